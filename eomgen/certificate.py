@@ -1,0 +1,292 @@
+"""System, Assembly -> Certificate: what was checked about the equations, by which arithmetic, and whether it holds.
+
+Independent routes must agree: energies and their derivatives (Lagrange), twists and wrenches
+(projection), recursion over the tree. What they share is checked by itself: twists against
+differences of poses, accelerations against free bodies in numbers, the energy identity, the emitted code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.errors import DerivationError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.formulations import ALL
+from eomgen.mechanics.kinematics import spin_between
+from eomgen.mechanics.maximal import free_body_accelerations
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import derivative, gradient, tangent
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.spatial import apply, transposed
+
+FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
+SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
+DIFFERENCE_TOLERANCE = 1e-18  # of a central difference with a step of 1e-15 at 50 digits
+TRIES = 20
+
+State = dict[Node, Any]
+Pairs = list[tuple[Scalar, Scalar]]
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that was checked.
+
+    Args:
+        name: what must hold, in words.
+        ok: whether it does.
+        how: by which arithmetic ("prime field" is exact; "50 digits"; "floating point").
+        detail: what differs, or "".
+    """
+
+    name: str
+    ok: bool
+    how: str
+    detail: str = ""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """The proof that comes with the equations."""
+
+    checks: tuple[Check, ...]
+
+    @property
+    def ok(self) -> bool:
+        return all(check.ok for check in self.checks)
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        lines = [f"certificate: {'holds' if self.ok else 'FAILS'} ({len(self.checks)} checks)"]
+        for check in self.checks:
+            mark = "ok  " if check.ok else "FAIL"
+            lines.append(f"  {mark} {check.name} [{check.how}]" + (f": {check.detail}" if check.detail else ""))
+        return "\n".join(lines)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For `--json`."""
+        rows = [{"name": c.name, "ok": c.ok, "how": c.how, "detail": c.detail} for c in self.checks]
+        return {"ok": self.ok, "checks": rows}
+
+
+def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None) -> Certificate:
+    """Check the equations of a system.
+
+    Args:
+        assembly: the equations that a user gets.
+        rhs: emitted code to be compared with the symbols.
+    """
+    checks = [*_routes(system, assembly), _mass_matrix(assembly), _twists(system), _energy(system, assembly)]
+    if assembly.J:
+        checks.append(_closing_rows(system, assembly))
+    checks.append(_free_bodies(system, assembly))
+    if rhs is not None:
+        checks.append(_code(system, assembly, rhs))
+    return Certificate(tuple(checks))
+
+
+def _compared(name: str, pairs: Pairs, labels: Sequence[str]) -> Check:
+    """A check that the two of each pair are the same function."""
+    try:
+        verdict = equal_at_random_states(pairs)
+    except DerivationError as error:
+        return Check(name, False, "no state found", error.what)
+    detail = "" if verdict.culprit is None else f"{labels[verdict.culprit]} differs"
+    return Check(name, verdict.equal, verdict.arithmetic, detail)
+
+
+def _routes(system: System, assembly: Assembly) -> Iterable[Check]:
+    """The equations against each formulation's own M, c, Q."""
+    speeds = [u.name for u in assembly.symbols.u]
+    for formulation in ALL:
+        if not formulation.applies(system):
+            continue
+        other = formulation.assemble(system)
+        pairs, labels = [], []
+        for i, name in enumerate(speeds):
+            pairs += [(assembly.M[i][j], other.M[i][j]) for j in range(len(speeds))]
+            labels += [f"M[{name}, {column}]" for column in speeds]
+            pairs += [(assembly.c[i], other.c[i]), (assembly.Q[i], other.Q[i])]
+            labels += [f"c[{name}]", f"Q[{name}]"]
+            pairs += [(assembly.forcing[i], other.forcing[i])]
+            labels += [f"Q - c [{name}]"]
+        yield _compared(f"M, c and Q agree with those by {formulation.title}", pairs, labels)
+
+
+def _mass_matrix(assembly: Assembly) -> Check:
+    size = range(len(assembly.M))
+    pairs = [(assembly.M[i][j], assembly.M[j][i]) for i in size for j in range(i)]
+    pairs += [
+        (assembly.M[i][j], derivative(derivative(assembly.T, assembly.symbols.u[i]), assembly.symbols.u[j]))
+        for i in size for j in range(i + 1)
+    ]  # fmt: skip
+    return _compared("M is symmetric and is the second derivative of T", pairs, [f"pair {k}" for k in range(len(pairs))])
+
+
+def _energy(system: System, assembly: Assembly) -> Check:
+    """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
+
+    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself.
+    """
+    scope, symbols = system.scope, assembly.symbols
+    momenta = gradient(assembly.T, symbols.u)
+    H = sum((p * u for p, u in zip(momenta, symbols.u, strict=True)), start=assembly.V - assembly.T)
+    elastic = _by_itself_or_not(scope, assembly.V)
+    explicit = tangent((assembly.V - assembly.T,), _own_motion(scope))[0]
+    power: Scalar = explicit
+    for k, u in enumerate(symbols.u):
+        inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
+        power = power + u * (inertia + elastic[k])
+    left = scope.with_accelerations((H,))[0]
+    return _compared("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
+
+
+def _by_itself_or_not(scope: Any, V: Scalar) -> tuple[Scalar, ...]:
+    """N^T dV/dq."""
+    row = gradient(V, scope.symbols.q)
+    return tuple(sum((scope.N[i][k] * x for i, x in enumerate(row)), start=0) for k in range(len(scope.symbols.u)))
+
+
+def _own_motion(scope: Any) -> dict[Node, Scalar]:
+    """What moves by itself: time, and the coordinates along nu."""
+    return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True))}
+
+
+def _closing_rows(system: System, assembly: Assembly) -> Check:
+    """J u + sigma = dphi/dt where there is a gap, and J a + gamma its derivative."""
+    scope, symbols = system.scope, assembly.symbols
+    pairs, labels = [], []
+    for i, phi in enumerate(assembly.phi):
+        row = sum((x * u for x, u in zip(assembly.J[i], symbols.u, strict=True)), start=assembly.sigma[i])
+        if phi is not None:
+            pairs.append((row, scope.time_derivative((phi,))[0]))
+            labels.append(f"J u + sigma of row {i + 1}")
+        second = sum((x * a for x, a in zip(assembly.J[i], symbols.a, strict=True)), start=assembly.gamma[i])
+        pairs.append((second, scope.with_accelerations((row,))[0]))
+        labels.append(f"J a + gamma of row {i + 1}")
+    return _compared("the closing rows are the derivatives of their gaps", pairs, labels)
+
+
+def real_state(system: System, rng: Random) -> State:
+    """Random values of all symbols, at 50 digits; parameters and times positive."""
+    arithmetic = fifty_digits()
+    symbols = system.symbols
+
+    def draw(low: int, high: int) -> Any:
+        return arithmetic.number(1) * rng.randint(low * 10**12, high * 10**12) / 10**12
+
+    state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
+    state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
+    state[symbols.t] = draw(0, 1)
+    return state
+
+
+def _at_a_state(system: System, name: str, how: str, check: Callable[[State], str]) -> Check:
+    """A check at the first random real state where everything has a value; `check` names what differs."""
+    rng = Random(7)
+    for _ in range(TRIES):
+        state = real_state(system, rng)
+        try:
+            return Check(name, not (wrong := check(state)), how, wrong)
+        except (NoValue, ZeroDivisionError):
+            continue
+    return Check(name, False, how, f"no state with values was found in {TRIES} tries")
+
+
+def _twists(system: System) -> Check:
+    """Twists against central differences of the poses along the motion."""
+
+    def check(state: State) -> str:
+        arithmetic = fifty_digits()
+        h = arithmetic.number(1) / 10**15
+        after, before = (_moved(system, state, sign * h) for sign in (1, -1))
+        for link in system.motion.links:
+            R, p = link.pose.R, link.pose.p
+            flat = tuple(x for row in R for x in row) + tuple(p)
+            late, early = (evaluate(flat, values, arithmetic) for values in (after, before))
+            rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
+            here = evaluate(flat, state, arithmetic)
+            R_now = (tuple(here[0:3]), tuple(here[3:6]), tuple(here[6:9]))
+            spin = spin_between(R_now, (tuple(rates[0:3]), tuple(rates[3:6]), tuple(rates[6:9])))
+            velocity = apply(transposed(R_now), tuple(rates[9:12]))
+            twist = evaluate((*link.twist.w, *link.twist.v), state, arithmetic)
+            if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in zip(twist, (*spin, *velocity), strict=True)):
+                return f"the twist of '{link.name}' is not the rate of its pose"
+        return ""
+
+    return _at_a_state(system, "twists are the rates of the poses", "differences at 50 digits", check)
+
+
+def _moved(system: System, state: State, h: Any) -> State:
+    """The state h later, to first order."""
+    arithmetic = fifty_digits()
+    rates = evaluate(system.scope.rates, state, arithmetic)
+    values = dict(state)
+    for q, rate in zip(system.scope.symbols.q, rates, strict=True):
+        values[q] = values[q] + h * rate
+    values[system.scope.symbols.t] = values[system.scope.symbols.t] + h
+    return values
+
+
+def _free_bodies(system: System, assembly: Assembly) -> Check:
+    """Accelerations from the free bodies, which use neither B nor an energy."""
+
+    def check(state: State) -> str:
+        free = free_body_accelerations(system, state)
+        return _difference("a", free, accelerations_at(assembly, state), FLOAT_TOLERANCE)
+
+    return _at_a_state(system, "accelerations agree with those of the free bodies", "floating point", check)
+
+
+def _code(system: System, assembly: Assembly, rhs: RightHandSide) -> Check:
+    """The emitted code returns the symbols' numbers."""
+
+    def check(state: State) -> str:
+        symbols = assembly.symbols
+        x, p, inputs = (
+            [float(state[s]) for s in group]
+            for group in ((*symbols.q, *symbols.u), symbols.parameters.values(), symbols.inputs.values())
+        )
+        rates = [float(v) for v in evaluate(system.scope.rates, state, fifty_digits())]
+        dx = rhs(float(state[symbols.t]), x, p, inputs)
+        return _difference("dx", dx, np.concatenate([rates, accelerations_at(assembly, state)]), FLOAT_TOLERANCE)
+
+    return _at_a_state(system, f"the emitted code ({rhs.target}) returns the symbols' numbers", "floating point", check)
+
+
+def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
+    """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, by dense linear algebra.
+
+    Raises:
+        NoValue: M is singular at the state.
+    """
+    n, k = len(assembly.M), len(assembly.J)
+    entries = [x for row in assembly.M for x in row] + [x for row in assembly.J for x in row]
+    values = [float(v) for v in evaluate((*entries, *assembly.forcing, *assembly.gamma), state, fifty_digits())]
+    M = np.reshape(values[: n * n], (n, n))
+    J = np.reshape(values[n * n : n * n + k * n], (k, n))
+    right = np.array(values[n * n + k * n :]) * np.array([1] * n + [-1] * k)
+    if n == 0:
+        return np.zeros(0)
+    if np.linalg.cond(M) > SINGULAR:
+        raise NoValue("the mass matrix is singular")
+    if k == 0:
+        return np.linalg.solve(M, right)
+    return np.linalg.lstsq(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right, rcond=1e-12)[0][:n]
+
+
+def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:
+    """Which entry of two vectors differs, or ""."""
+    scale = 1 + max((abs(x) for x in b), default=0)
+    wrong = [i for i, (x, y) in enumerate(zip(a, b, strict=True)) if not abs(x - y) <= tolerance * scale]
+    return f"{name}[{wrong[0]}] is {a[wrong[0]]:.15g} against {b[wrong[0]]:.15g}" if wrong else ""

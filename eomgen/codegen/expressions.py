@@ -1,0 +1,118 @@
+"""Statements of a Program -> text of assignments, in the grammar that C and Python share.
+
+Signs and constants are written in place, and so is what is used once and short; everything else
+gets a variable. The order of operations is the graph's: the text rounds as the graph does.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Node, Number, Scalar
+
+SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
+LONGEST_INLINE = 60
+READ_TWICE = frozenset(("min", "max", "sign"))  # their arguments stand twice in the text
+LARGEST_WHOLE = 2**53  # up to here every whole number is a double
+
+Text = tuple[str, int]
+Call = Callable[[str, list[str]], str]
+
+
+class Writer:
+    """Texts of the nodes of one function body; grows while the body is written.
+
+    Args:
+        call: a function's text from its op and its arguments' texts, in the language.
+        names: the identifier of each symbol, and the text of what was computed elsewhere.
+        prefix: of our variables, v1, v2, ...
+    """
+
+    def __init__(self, call: Call, names: Mapping[Node, str], prefix: str = "v") -> None:
+        self._call, self._prefix = call, prefix
+        self._texts: dict[Node, Text] = {node: (text, ATOM) for node, text in names.items()}
+        self._count = 0
+
+    def assignments(self, nodes: Iterable[Node], once: frozenset[Node]) -> list[tuple[str, str]]:
+        """(variable, text) for the nodes in their order; those in `once` may go where they are used."""
+        lines = []
+        for node in nodes:
+            text, strength = self._operation(node)
+            if node in once and len(text) <= LONGEST_INLINE:
+                self._texts[node] = text, strength
+                continue
+            self._count += 1
+            variable = f"{self._prefix}{self._count}"
+            self._texts[node] = variable, ATOM
+            lines.append((variable, text))
+        return lines
+
+    def define(self, node: Node, text: str) -> None:
+        """Give a node a text of its own: the unknown of a solve."""
+        self._texts[node] = text, ATOM
+
+    def value(self, x: Scalar) -> str:
+        """The text of a scalar whose node was assigned."""
+        return self._text(x)[0]
+
+    def _text(self, x: Scalar) -> Text:
+        if type(x) is not Node:
+            return number(x)
+        known = self._texts.get(x)
+        if known is None:
+            if x.op == "neg":
+                known = f"-{_held(self._text(x.args[0]), PRODUCT)}", SUM
+            else:  # an exact constant: sqrt(2), pi/2
+                known = number(Fraction(evaluate([x], {}, FLOAT)[0]))
+            self._texts[x] = known
+        return known
+
+    def _operation(self, x: Node) -> Text:
+        arguments = [self._text(a) for a in x.args]
+        if x.op in ("add", "sub"):
+            a, b = arguments
+            return f"{a[0]} {'+' if x.op == 'add' else '-'} {_held(b, PRODUCT)}", SUM
+        if x.op in ("mul", "div"):
+            a, b = arguments
+            return f"{_held(a, PRODUCT)}{'*' if x.op == 'mul' else '/'}{_held(b, ATOM)}", PRODUCT
+        return self._call(x.op, [text for text, _ in arguments]), ATOM
+
+
+def used_once(bodies: Iterable[tuple[Sequence[Node], Sequence[Scalar]]]) -> frozenset[Node]:
+    """Nodes with one use in all, in the function body that computes them.
+
+    Args:
+        bodies: of each function body the nodes that it computes and the scalars that it writes down.
+    """
+    uses: Counter[Node] = Counter()
+    for computed, written in bodies:
+        own = frozenset(computed)
+        reads = [(a, 2 if node.op in READ_TWICE else 1) for node in computed for a in node.args]
+        for x, times in [*reads, *((x, 1) for x in written)]:
+            if type(x) is Node:
+                x = x.args[0] if x.op == "neg" else x
+                uses[x] += times if x in own else 2
+    return frozenset(node for node, count in uses.items() if count == 1)
+
+
+def number(a: Number) -> Text:
+    """The nearest double of an exact number; 1/3 stays a quotient, for the reader."""
+    if a < 0:
+        return f"-{_held(number(-a), PRODUCT)}", SUM
+    a = Fraction(a)
+    try:
+        value = float(a)
+    except OverflowError:
+        raise DerivationError(f"the number {str(a)[:20]}... is too large for a double") from None
+    if Fraction(value) == a or a.denominator > 10_000 or a.numerator > LARGEST_WHOLE:
+        return repr(value), ATOM
+    return f"{float(a.numerator)!r}/{float(a.denominator)!r}", PRODUCT
+
+
+def _held(text: Text, strength: int) -> str:
+    """The text, in parentheses where it holds together less than it must."""
+    return text[0] if text[1] >= strength else f"({text[0]})"

@@ -1,0 +1,57 @@
+"""The user's names -> identifiers of C and Python, no two alike."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import unicodedata
+from collections.abc import Iterable
+
+C_WORDS = frozenset(
+    "auto break case char const continue default do double else enum extern float for goto if inline int long "
+    "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
+    "asm main near far huge linux unix errno complex imaginary I bool true false NULL NAN INFINITY HUGE_VAL".split()
+)
+MATH_WORDS = frozenset(
+    "acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 "
+    "log1p log2 logb modf cbrt fabs hypot pow sqrt erf erfc lgamma tgamma gamma ceil floor nearbyint rint lrint round "
+    "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
+    "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
+)
+OWN_WORDS = frozenset("t x p c inputs dx given n constants evaluate math float SIZE".split())
+RESERVED = C_WORDS | MATH_WORDS | OWN_WORDS | frozenset(keyword.kwlist) | frozenset(keyword.softkwlist)
+LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_rhs.*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS)|_.*")  # our own variables, functions, and what C keeps for itself
+
+
+def identifiers(names: Iterable[str]) -> dict[str, str]:
+    """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot."""
+    chosen: dict[str, str] = {}
+    for name in names:
+        word = identifier(name)
+        if word in RESERVED or LOCAL.fullmatch(word):
+            word += "_"
+        unique, number = word, 2
+        while unique in chosen.values():
+            unique, number = f"{word}_{number}", number + 1
+        chosen[name] = unique
+    return chosen
+
+
+def identifier(name: str) -> str:
+    """The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'."""
+    word = "".join(_plain(letter) for letter in unicodedata.normalize("NFKC", name))
+    return f"n{word}" if not word or word[0].isdigit() else word
+
+
+def _plain(letter: str) -> str:
+    if letter == "'":
+        return "_dot"
+    if letter.isascii():
+        return letter if letter.isalnum() or letter == "_" else "_"
+    spelled = unicodedata.name(letter, "")
+    greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?(\w+)(?: WITH .*)?", spelled)
+    if greek:
+        word = greek[2].replace("LAMDA", "LAMBDA")
+        return word.lower() if greek[1] == "SMALL" else word.capitalize()
+    bare = unicodedata.normalize("NFKD", letter)[0]
+    return bare if bare.isascii() and bare.isalnum() else f"u{ord(letter):04x}"

@@ -1,0 +1,223 @@
+"""Assembly -> Program: a right-hand side as a list of statements, which every target can write down.
+
+Equations that need a linear solve carry it as one statement, `Solve`; an inverse is never formed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from eomgen.codegen import factorization
+from eomgen.errors import DerivationError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.symbolic.evaluation import FREE, Count, operations, order
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.symbols import Symbols
+
+UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
+Row = tuple[Scalar, ...]
+
+
+@dataclass(frozen=True)
+class Assign:
+    """One node, computed from its arguments."""
+
+    node: Node
+
+
+@dataclass(frozen=True)
+class Solve:
+    """A linear system in the midst of a program.
+
+    matrix a - border^T lam = right[:n],  border a = right[n:]
+
+    Args:
+        matrix: symmetric, n rows of n; positive definite where border a = 0.
+        border: k rows of n; of rows that depend on others the unknowns lam are 0, and a is right all the same.
+        right: n + k.
+        unknowns: the symbols that stand for (a, lam) in later statements, n + k.
+    """
+
+    matrix: tuple[Row, ...]
+    border: tuple[Row, ...]
+    right: Row
+    unknowns: tuple[Node, ...]
+
+    @property
+    def kind(self) -> Literal["dense", "kkt"]:
+        """"kkt" with closing rows, "dense" without; a small system without them is written out and is no `Solve`."""
+        return "kkt" if self.border else "dense"
+
+    @property
+    def entries(self) -> Row:
+        """The lower triangle of the matrix, row after row; the border, row after row; the right side."""
+        lower = [self.matrix[i][j] for i in range(len(self.matrix)) for j in range(i + 1)]
+        return (*lower, *(entry for row in self.border for entry in row), *self.right)
+
+    @property
+    def operations(self) -> int:
+        """L D L^T for k + 1 right sides; the k x k system of the multipliers, made and solved."""
+        n, k = len(self.matrix), len(self.border)
+        factor = sum(d * d + 2 * d for d in range(n))
+        border = 4 * k * n + k * n * n + 2 * k * n + k * k * n
+        return factor + (k + 1) * (2 * n * n - n) + (border + sum(d * d + 6 * d + 1 for d in range(k)) if k else 0)
+
+
+Statement = Assign | Solve
+
+
+@dataclass(frozen=True)
+class Program:
+    """A function of (t, x, p, inputs), its statements in the order in which they are run.
+
+    Args:
+        symbols: what the outputs are written in: x = (q, u), p, inputs and t are symbols.q, .u, .parameters, .inputs, .t.
+        defaults: the inputs' own expressions in t and parameters, used where the caller gives none.
+        preamble: statements that only `defaults` need.
+        hoisted: statements that depend on the parameters alone.
+        statements: all others.
+        outputs: the values that the function returns.
+        count: operations at every call, and hoisted (once for given parameters) apart; `defaults` are not counted.
+    """
+
+    symbols: Symbols
+    defaults: Row
+    preamble: tuple[Assign, ...]
+    hoisted: tuple[Assign, ...]
+    statements: tuple[Statement, ...]
+    outputs: Row
+    count: Count
+
+    @property
+    def states(self) -> tuple[Node, ...]:
+        """x = (q, u)"""
+        return self.symbols.q + self.symbols.u
+
+
+def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
+    """The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations.
+
+    M a = forcing, or with closing rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
+
+    Args:
+        assembly: the equations of motion.
+        inputs: the model's own expression of each input, in t and parameters.
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    symbols = assembly.symbols
+    rates = kinematics(assembly)
+    if assembly.J:
+        return program_of(rates + symbols.a, symbols, inputs=inputs, solve=bordered(assembly))
+    candidates = []
+    if assembly.accelerations is not None:
+        candidates.append(program_of(rates + assembly.accelerations, symbols, inputs=inputs))
+    if factorization.operation_count(assembly.M) <= UNROLLED_AT_MOST:
+        a = factorization.solved(assembly.M, assembly.forcing)
+        candidates.append(program_of(rates + a, symbols, inputs=inputs))
+    else:
+        solve = Solve(assembly.M, (), assembly.forcing, symbols.a)
+        candidates.append(program_of(rates + symbols.a, symbols, inputs=inputs, solve=solve))
+    return min(candidates, key=lambda program: program.count.total)
+
+
+def kinematics(assembly: Assembly) -> Row:
+    """q' = N u + nu"""
+    u = assembly.symbols.u
+    rates = []
+    for row, value in zip(assembly.N, assembly.nu, strict=True):
+        for entry, speed in zip(row, u, strict=True):
+            value = value + entry * speed
+        rates.append(value)
+    return tuple(rates)
+
+
+def bordered(assembly: Assembly) -> Solve:
+    """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
+    symbols = assembly.symbols
+    right = (*assembly.forcing, *(-g for g in assembly.gamma))
+    return Solve(assembly.M, assembly.J, right, symbols.a + symbols.lam)
+
+
+def program_of(
+    outputs: Sequence[Scalar],
+    symbols: Symbols,
+    *,
+    inputs: Mapping[str, Scalar] | None = None,
+    solve: Solve | None = None,
+) -> Program:
+    """Any outputs as a program.
+
+    Args:
+        outputs: expressions in `symbols`, and in the unknowns of `solve`.
+        symbols: the arguments' names.
+        inputs: the model's own expression of each input, in t and parameters.
+        solve: the linear system behind a and lam, where the outputs hold these.
+    Raises:
+        DerivationError: an output holds a symbol that is none of the arguments, or an input has no expression.
+    """
+    outputs, entries = tuple(outputs), tuple(solve.entries) if solve else ()
+    defaults = _defaults([*outputs, *entries], symbols, inputs or {})
+    parameters = frozenset(symbols.parameters.values())
+    _refuse_strangers([*outputs, *entries, *defaults], symbols, solve)
+    needed = order([*outputs, *entries])
+    depth = _depths([*needed, *order(defaults)], parameters)
+    hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
+    known = frozenset(hoisted)
+    count = operations([*outputs, *entries], parameters)
+    return Program(
+        symbols=symbols,
+        defaults=defaults,
+        preamble=tuple(Assign(x) for x in order(defaults) if _is_computed(x, depth) and x not in known),
+        hoisted=tuple(map(Assign, hoisted)),
+        statements=_scheduled([x for x in needed if depth[x] == _MOVING and x.op not in FREE], solve),
+        outputs=outputs,
+        count=Count(count.total + (solve.operations if solve else 0), count.hoisted),
+    )
+
+
+def _defaults(needed: Sequence[Scalar], symbols: Symbols, inputs: Mapping[str, Scalar]) -> Row:
+    """The inputs' own expressions; an input that nothing needs may do without."""
+    used = {x.name for x in order(needed) if x.op == "symbol"}
+    silent = [name for name in symbols.inputs if name in used and name not in inputs]
+    if silent:
+        raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}")
+    return tuple(inputs.get(name, 0) for name in symbols.inputs)
+
+
+_CONSTANT, _FIXED, _MOVING = 0, 1, 2  # what a node depends on at most: exact numbers, parameters, anything
+
+
+def _depths(nodes: Iterable[Node], parameters: frozenset[Node]) -> dict[Node, int]:
+    """What each node depends on at most; the nodes come arguments first."""
+    depth: dict[Node, int] = {}
+    for x in nodes:
+        if x.op == "symbol":
+            depth[x] = _FIXED if x in parameters else _MOVING
+        else:
+            depth[x] = max((depth[a] for a in x.args if type(a) is Node), default=_CONSTANT)
+    return depth
+
+
+def _is_computed(x: Node, depth: Mapping[Node, int]) -> bool:
+    return x.op not in FREE and depth[x] != _CONSTANT
+
+
+def _scheduled(moving: Sequence[Node], solve: Solve | None) -> tuple[Statement, ...]:
+    """In index order, but what the solve needs, then the solve, then the rest."""
+    if solve is None:
+        return tuple(map(Assign, moving))
+    first = frozenset(order(solve.entries))
+    before = [Assign(x) for x in moving if x in first]
+    after = [Assign(x) for x in moving if x not in first]
+    return (*before, solve, *after)
+
+
+def _refuse_strangers(outputs: Sequence[Scalar], symbols: Symbols, solve: Solve | None) -> None:
+    arguments = {symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values(), *symbols.inputs.values()}
+    arguments |= set(solve.unknowns) if solve else set()
+    strangers = [x.name for x in order(outputs) if x.op == "symbol" and x not in arguments]
+    if strangers:
+        raise DerivationError(f"not an argument of the program: {', '.join(map(repr, strangers))}")

@@ -1,0 +1,134 @@
+"""Program -> RightHandSide: dx = f(t, x, p, inputs) as a function of arrays."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.build import compiler
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets import ALL
+from eomgen.codegen.targets.base import Functions, Target
+from eomgen.errors import RunFailed, ToolMissing, UsageError
+
+_said: set[str] = set()
+
+
+class RightHandSide:
+    """A program as a function; safe to call from several threads.
+
+    `rhs(t, x, p, inputs=())` -> dx, a new array; x = (q, u) in the order of `coordinates`, `speeds`; p in the order of
+    `parameters`; inputs in that of `inputs`, or () for the model's own expressions.
+
+    Args:
+        program: what is computed.
+        functions: the program in memory.
+        target: name of the target that made them.
+        x0, p0: start and parameter values, None where one is missing.
+    """
+
+    def __init__(self, program: Program, functions: Functions, target: str, x0: Any, p0: Any) -> None:
+        symbols = program.symbols
+        self.program, self.target = program, target
+        self.coordinates = tuple(x.name for x in symbols.q)
+        self.speeds = tuple(x.name for x in symbols.u)
+        self.parameters, self.inputs = tuple(symbols.parameters), tuple(symbols.inputs)
+        self.x0 = None if x0 is None else np.array(x0, dtype=float)
+        self.p0 = None if p0 is None else np.array(p0, dtype=float)
+        self._functions, self._one = functions, functions.one
+        self._states = len(program.states)
+        self._known: tuple[bytes, Any] = (b"none yet", None)
+
+    def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
+        """dx at one state.
+
+        Raises:
+            UsageError: x, p or inputs of the wrong length.
+        """
+        if len(x) != self._states:
+            raise _wrong_length("x", self.coordinates + self.speeds, len(x))
+        key = np.asarray(p, dtype=float).tobytes()
+        known = self._known
+        if key != known[0]:
+            known = self._known = key, self._constants(p)
+        if len(inputs) == 0:
+            return self._one(t, x, known[1], None)
+        if len(inputs) != len(self.inputs):
+            raise _wrong_length("inputs", self.inputs, len(inputs))
+        return self._one(t, x, known[1], inputs)
+
+    def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
+        """dx at n states at once: t n or one number, x n x states, inputs () or n x inputs -> n x outputs."""
+        x = np.ascontiguousarray(x, dtype=float)
+        if x.ndim != 2 or x.shape[1] != self._states:
+            raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}")
+        t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=float), len(x)))
+        given = None
+        if np.size(inputs):
+            given = np.ascontiguousarray(np.broadcast_to(inputs, (len(x), len(self.inputs))), dtype=float)
+        return self._functions.many(t, x, self._checked(p), given)
+
+    @property
+    def source(self) -> str:
+        """The program's text in the target's language."""
+        return target_named(self.target).text(self.program, "eomgen")
+
+    def __repr__(self) -> str:
+        arguments = f"x = ({', '.join(self.coordinates + self.speeds)}), p = ({', '.join(self.parameters)})"
+        return f"<right-hand side in {self.target}: {arguments}>"
+
+    def _constants(self, p: Any) -> Any:
+        return self._functions.constants(self._checked(p))
+
+    def _checked(self, p: Any) -> np.ndarray:
+        p = np.ascontiguousarray(p, dtype=float)
+        if p.shape != (len(self.parameters),):
+            raise _wrong_length("p", self.parameters, p.size)
+        return p
+
+
+def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0: Any = None) -> RightHandSide:
+    """The program as a function.
+
+    Args:
+        program: what is computed.
+        target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
+        x0, p0: start and parameter values for the function's attributes.
+    Raises:
+        UsageError: an unknown target.
+        ToolMissing: "c" without a compiler.
+        RunFailed: "c", and the compiler fails.
+    """
+    if target is not None:
+        return RightHandSide(program, target_named(target).load(program), target, x0, p0)
+    if compiler() is None:
+        _say("no C compiler found: the equations run in numpy, some 30 times slower")
+        return compiled(program, "numpy", x0=x0, p0=p0)
+    try:
+        return compiled(program, "c", x0=x0, p0=p0)
+    except (RunFailed, ToolMissing) as error:
+        _say(f"{error.what.splitlines()[0]}: the equations run in numpy, some 30 times slower")
+        return compiled(program, "numpy", x0=x0, p0=p0)
+
+
+def target_named(name: str) -> Target:
+    """The target of this name; UsageError where there is none."""
+    for target in ALL:
+        if target.name == name:
+            return target
+    raise UsageError(f"unknown target '{name}'", mend=f"targets are {', '.join(target.name for target in ALL)}")
+
+
+def _say(line: str) -> None:
+    """One line on stderr, once in a process."""
+    if line not in _said:
+        _said.add(line)
+        print(f"eomgen: {line}", file=sys.stderr)
+
+
+def _wrong_length(what: str, names: tuple[str, ...], given: int) -> UsageError:
+    listed = f": {', '.join(names)}" if names else ""
+    return UsageError(f"{what} has {given} entries, not {len(names)}{listed}")

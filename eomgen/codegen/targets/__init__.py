@@ -1,0 +1,5 @@
+"""The languages that programs are written in; adding one is one file and one name here."""
+
+from eomgen.codegen.targets import c, numpy
+
+ALL = (numpy.TARGET, c.TARGET)

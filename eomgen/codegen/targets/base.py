@@ -1,0 +1,149 @@
+"""What a target gives: the text of a program in its language, and that text made callable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.codegen.expressions import used_once
+from eomgen.codegen.names import identifiers
+from eomgen.codegen.program import Assign, Program, Solve
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.graph import Node, Scalar
+
+
+@dataclass(frozen=True)
+class Functions:
+    """A program in memory.
+
+    Args:
+        constants: p, an array -> what the parameters determine, p included, in a form that only `one` reads.
+        one: (t, x, constants, inputs or None) -> a new array of the outputs.
+        many: the same of n instants at once: t n, x n x states, p, inputs None or n x inputs -> n x outputs.
+    """
+
+    constants: Callable[[Any], Any]
+    one: Callable[..., Any]
+    many: Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A right answer: dx at (t, x, p), by the model's own inputs or by given ones.
+
+    Args:
+        tolerance: of |dx - given| / max(1, largest |dx|).
+    """
+
+    t: float
+    x: tuple[float, ...]
+    p: tuple[float, ...]
+    inputs: tuple[float, ...] | None
+    dx: tuple[float, ...]
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Description:
+    """What emitted files say about themselves.
+
+    Args:
+        title: the model's name.
+        origin: who made the file from what, one line.
+        remarks: of an argument's name: its unit and what it is.
+        vectors: right answers, for the self-test.
+    """
+
+    title: str
+    origin: str
+    remarks: Mapping[str, str]
+    vectors: tuple[Vector, ...] = ()
+
+
+@dataclass(frozen=True)
+class Target:
+    """A language that programs are written in.
+
+    Args:
+        name: as the user says it.
+        text: (program, stem) -> its functions in the language.
+        files: (program, stem, description) -> {file name: text}, ready to be used by others.
+        load: the program, callable.
+    """
+
+    name: str
+    text: Callable[[Program, str], str]
+    files: Callable[[Program, str, Description], dict[str, str]]
+    load: Callable[[Program], Functions]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A program cut into function bodies, with the names that its text uses.
+
+    Args:
+        names: identifier of each symbol.
+        kept: hoisted nodes that the later bodies read, in the order of the array of constants.
+        once: nodes written where they are used.
+        before, solve, after: the statements around the solve (None: everything is in `before`).
+    """
+
+    program: Program
+    names: dict[Node, str]
+    kept: tuple[Node, ...]
+    once: frozenset[Node]
+    before: tuple[Node, ...]
+    solve: Solve | None
+    after: tuple[Node, ...]
+
+    def loads(self, symbols: Sequence[Node], used: frozenset[Node]) -> list[tuple[int, Node]]:
+        """(place, symbol) of those arguments that are used."""
+        return [(place, symbol) for place, symbol in enumerate(symbols) if symbol in used]
+
+
+def layout(program: Program) -> Layout:
+    """The bodies of a program: constants from parameters, the inputs' own values, and the rest."""
+    symbols = program.symbols
+    arguments = [*program.states, *symbols.parameters.values(), *symbols.inputs.values()]
+    solve = next((s for s in program.statements if type(s) is Solve), None)
+    unknowns = [x for x in (solve.unknowns if solve else ()) if x not in arguments]
+    words = identifiers([x.name for x in [*arguments, *unknowns]])
+    names = {x: words[x.name] for x in [*arguments, *unknowns]} | {symbols.t: "t"}
+    cut = program.statements.index(solve) if solve else len(program.statements)
+    before, after = _nodes(program.statements[:cut]), _nodes(program.statements[cut + 1 :])
+    written = (*(solve.entries if solve else ()), *program.outputs)
+    preamble, hoisted = _nodes(program.preamble), _nodes(program.hoisted)
+    read = _read([*before, *after, *preamble], [*written, *program.defaults])
+    kept = tuple(x for x in hoisted if x in read)
+    once = used_once([(hoisted, kept), (before + after, written), (preamble, program.defaults)])
+    return Layout(program, names, kept, once, before, solve, after)
+
+
+def used_symbols(values: Sequence[Scalar], stop: Sequence[Node]) -> frozenset[Node]:
+    """The symbols from which values are computed; what is in `stop` was computed elsewhere."""
+    return frozenset(x for x in order(values, frozenset(stop)) if x.op == "symbol")
+
+
+def _nodes(statements: Sequence[Any]) -> tuple[Node, ...]:
+    return tuple(s.node for s in statements if type(s) is Assign)
+
+
+def _read(nodes: Sequence[Node], values: Sequence[Scalar]) -> frozenset[Node]:
+    """What is read by the nodes and values themselves, signs looked through."""
+    found = [*(a for node in nodes for a in node.args), *values]
+    return frozenset(x.args[0] if x.op == "neg" else x for x in found if type(x) is Node)
+
+
+def header(program: Program, description: Description) -> list[str]:
+    """Title, origin, and the order of x, p and inputs, a line each."""
+    symbols = program.symbols
+    lines = [f"{description.title}: dx = f(t, x, p), the equations of motion solved for the accelerations", ""]
+    lines += [description.origin, ""]
+    groups = {"x": program.states, "p": symbols.parameters.values(), "inputs": symbols.inputs.values()}
+    for array, members in groups.items():
+        for place, x in enumerate(members):
+            remark = description.remarks.get(x.name, "")
+            lines.append(f"    {array}[{place}]  {x.name}{'  ' + remark if remark else ''}")
+    lines.append(f"    dx  {len(program.outputs)} values, in the order of x")
+    return [" ".join(line.split("\n")) for line in lines]

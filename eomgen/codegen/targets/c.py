@@ -1,0 +1,236 @@
+"""Program -> C99: `void NAME_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from eomgen.codegen.build import library
+from eomgen.codegen.expressions import Writer
+from eomgen.codegen.program import Program, Solve
+from eomgen.codegen.targets.base import Description, Functions, Layout, Target, header, layout, used_symbols
+from eomgen.codegen.targets.c_loading import functions_of
+from eomgen.codegen.targets.c_self_test import self_test
+from eomgen.codegen.targets.c_solving import solving_text
+from eomgen.symbolic.graph import Node, Scalar
+
+_PLAIN = frozenset("sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split())
+_WRITTEN = {
+    "abs": "fabs({0})",
+    "sign": "(double)(({0} > 0) - ({0} < 0))",
+    "min": "({0} < {1} ? {0} : {1})",
+    "max": "({0} > {1} ? {0} : {1})",
+    "less": "({0} < {1} ? 1.0 : 0.0)",
+    "less_equal": "({0} <= {1} ? 1.0 : 0.0)",
+    "select": "({0} != 0 ? {1} : {2})",
+}
+ARGUMENTS = "double t, const double *x, const double *p"
+
+
+def c_text(program: Program, stem: str, remarks: Mapping[str, str] | None = None) -> str:
+    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many.
+
+    Args:
+        program: what is computed.
+        stem: NAME, an identifier.
+        remarks: of an argument's name: its unit and what it is, for the comments.
+    """
+    bodies = layout(program)
+    remarks = remarks or {}
+    solve = solving_text(len(bodies.solve.matrix), len(bodies.solve.border)) if bodies.solve else ""
+    parts = [
+        "#include <math.h>\n#include <stddef.h>\n",
+        solve,
+        _constants(bodies, stem, remarks),
+        _evaluate(bodies, stem, remarks),
+        _wrappers(bodies, stem),
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def prototypes(program: Program, stem: str) -> str:
+    """The declarations of what `c_text` defines, and the sizes of its arrays."""
+    bodies, name = layout(program), stem.upper()
+    symbols = program.symbols
+    return (
+        f"#define {name}_STATES {len(program.states)}\n"
+        f"#define {name}_PARAMETERS {len(symbols.parameters)}\n"
+        f"#define {name}_INPUTS {len(symbols.inputs)}\n"
+        f"#define {name}_CONSTANTS {len(bodies.kept)}\n\n"
+        f"/* dx at (t, x, p); inputs NULL: the model's own. */\n"
+        f"void {stem}_rhs({ARGUMENTS}, const double *inputs, double *dx);\n\n"
+        f"/* The same in two steps: c once for given p, then as often as one likes. */\n"
+        f"void {stem}_constants(const double *p, double *c);\n"
+        f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *dx);\n\n"
+        f"/* n instants at once: t n, x n x states, inputs NULL or n x inputs, dx n x states. */\n"
+        f"void {stem}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
+        f"double *dx);\n"
+    )
+
+
+def _constants(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
+    """What the parameters alone determine."""
+    nodes = [s.node for s in bodies.program.hoisted]
+    writer = Writer(_call, bodies.names)
+    used = used_symbols(bodies.kept, ())
+    lines = _loads(bodies, "p", list(bodies.program.symbols.parameters.values()), used, remarks)
+    lines += _assignments(writer, nodes, bodies.once)
+    lines += [f"c[{place}] = {writer.value(x)};" for place, x in enumerate(bodies.kept)]
+    if not bodies.kept:
+        lines = ["(void)p;", "(void)c;"]
+    return _function(f"void {stem}_constants(const double *p, double *c)", lines)
+
+
+def _evaluate(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
+    """Everything else."""
+    program, solve = bodies.program, bodies.solve
+    symbols = program.symbols
+    written = (*(solve.entries if solve else ()), *program.outputs)
+    used = used_symbols(written, bodies.kept)
+    inputs = [x for x in symbols.inputs.values() if x in used]
+    loaded = used | (used_symbols(program.defaults, bodies.kept) if inputs else frozenset())
+    writer = Writer(_call, _names(bodies))
+    lines = _loads(bodies, "x", program.states, loaded, remarks)
+    lines += _loads(bodies, "p", list(symbols.parameters.values()), loaded, remarks)
+    lines += _inputs(bodies, inputs, remarks)
+    lines += _assignments(writer, bodies.before, bodies.once)
+    if solve:
+        lines += _solve(solve, writer, bodies.names)
+    lines += _assignments(writer, bodies.after, bodies.once)
+    results = [f"dx[{place}] = {writer.value(x)};" for place, x in enumerate(program.outputs)]
+    lines += results
+    head = f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *dx)"
+    return _function(head, [*_silenced(bodies, loaded, inputs), *lines])
+
+
+def _names(bodies: Layout) -> dict[Node, str]:
+    return bodies.names | {x: f"c[{place}]" for place, x in enumerate(bodies.kept)}
+
+
+def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node]) -> list[str]:
+    """(void) for arguments that this program does not need."""
+    program = bodies.program
+    needed = {
+        "t": program.symbols.t in loaded,
+        "x": any(x in loaded for x in program.states),
+        "p": any(x in loaded for x in program.symbols.parameters.values()),
+        "c": bool(bodies.kept),
+        "inputs": bool(inputs),
+        "dx": bool(program.outputs),
+    }
+    return [f"(void){name};" for name, is_needed in needed.items() if not is_needed]
+
+
+def _loads(
+    bodies: Layout, array: str, symbols: Sequence[Node], used: frozenset[Node], remarks: Mapping[str, str]
+) -> list[str]:
+    lines = []
+    for place, x in bodies.loads(symbols, used):
+        lines.append(f"const double {bodies.names[x]} = {array}[{place}];{_remark(x.name, bodies.names[x], remarks)}")
+    return lines
+
+
+def _remark(name: str, word: str, remarks: Mapping[str, str]) -> str:
+    text = remarks.get(name, "")
+    said = f"{name}: {text}" if text and name != word else text or (name if name != word else "")
+    return f" /* {comment(said)} */" if said else ""
+
+
+def comment(text: str) -> str:
+    """Text that cannot end the comment it stands in, on one line."""
+    for mark, harmless in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?"), ("\\", "/")):
+        text = text.replace(mark, harmless)
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _inputs(bodies: Layout, inputs: Sequence[Node], remarks: Mapping[str, str]) -> list[str]:
+    """Each input from the caller, or by the model's own expression."""
+    if not inputs:
+        return []
+    program, places = bodies.program, {x: i for i, x in enumerate(bodies.program.symbols.inputs.values())}
+    writer = Writer(_call, _names(bodies), prefix="i")
+    own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
+    lines = [f"double {bodies.names[x]};{_remark(x.name, bodies.names[x], remarks)}" for x in inputs]
+    lines += ["if (inputs != NULL) {"]
+    lines += [f"    {bodies.names[x]} = inputs[{places[x]}];" for x in inputs]
+    lines += ["} else {", *(f"    {line}" for line in own)]
+    lines += [f"    {bodies.names[x]} = {writer.value(program.defaults[places[x]])};" for x in inputs]
+    return [*lines, "}"]
+
+
+def _assignments(writer: Writer, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
+    return [f"const double {variable} = {text};" for variable, text in writer.assignments(nodes, once)]
+
+
+def _solve(solve: Solve, writer: Writer, names: Mapping[Node, str]) -> list[str]:
+    """Fill the arrays, solve, name the unknowns."""
+    n, k = len(solve.matrix), len(solve.border)
+    lines = [f"double solve_M[{n * n}] = {{0}}, solve_f[{n}];"]
+    lines += [f"double solve_J[{k * n}] = {{0}}, solve_g[{k}];"] if k else []
+    lines += _filled("solve_M", [(i * n + j, solve.matrix[i][j]) for i in range(n) for j in range(i + 1)], writer)
+    lines += _filled("solve_J", [(m * n + i, solve.border[m][i]) for m in range(k) for i in range(n)], writer)
+    lines += [f"solve_f[{i}] = {writer.value(solve.right[i])};" for i in range(n)]
+    lines += [f"solve_g[{m}] = {writer.value(solve.right[n + m])};" for m in range(k)]
+    lines += [f"solve({n}, {k}, solve_M, solve_J, solve_f, solve_g);" if k else f"solve({n}, solve_M, solve_f);"]
+    for place, x in enumerate(solve.unknowns):
+        writer.define(x, f"solve_f[{place}]" if place < n else f"solve_g[{place - n}]")
+    return lines
+
+
+def _filled(array: str, entries: Sequence[tuple[int, Scalar]], writer: Writer) -> list[str]:
+    filled = [(place, x) for place, x in entries if type(x) is Node or x != 0]
+    return [f"{array}[{place}] = {writer.value(x)};" for place, x in filled]
+
+
+def _wrappers(bodies: Layout, stem: str) -> str:
+    size = max(len(bodies.kept), 1)
+    states, inputs, outputs = (
+        len(bodies.program.states),
+        len(bodies.program.symbols.inputs),
+        len(bodies.program.outputs),
+    )
+    one = [f"double c[{size}];", f"{stem}_constants(p, c);", f"{stem}_evaluate(t, x, p, c, inputs, dx);"]
+    many = [
+        f"double c[{size}];",
+        f"{stem}_constants(p, c);",
+        "for (size_t i = 0; i < n; i++)",
+        f"    {stem}_evaluate(t[i], x + i*{states}, p, c, inputs ? inputs + i*{inputs} : NULL, dx + i*{outputs});",
+    ]
+    head = f"void {stem}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
+    return "\n".join(
+        [
+            _function(f"void {stem}_rhs({ARGUMENTS}, const double *inputs, double *dx)", one),
+            _function(f"{head}double *dx)", many),
+        ]
+    )
+
+
+def _function(head: str, lines: Sequence[str]) -> str:
+    return "\n".join([head, "{", *(f"    {line}" for line in lines), "}", ""])
+
+
+def _call(op: str, arguments: list[str]) -> str:
+    if op in _PLAIN:
+        return f"{op}({', '.join(arguments)})"
+    return _WRITTEN[op].format(*arguments)
+
+
+def load(program: Program) -> Functions:
+    """The program compiled (or found in the cache) and callable."""
+    return functions_of(library(c_text(program, "eomgen")), program, "eomgen", len(layout(program).kept))
+
+
+def files(program: Program, stem: str, description: Description) -> dict[str, str]:
+    """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
+    guard = f"{stem.upper()}_RHS_H"
+    head = "\n".join(["/*", *(f" * {comment(line)}".rstrip() for line in header(program, description)), " */", ""])
+    declared = (
+        f"{head}#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n\n"
+        '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
+        f"{prototypes(program, stem)}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n"
+    )
+    defined = f'{head}#include "{stem}_rhs.h"\n\n{c_text(program, stem, description.remarks)}'
+    test = self_test(program, stem, description.vectors)
+    return {f"{stem}_rhs.c": f"{defined}\n{test}", f"{stem}_rhs.h": declared}
+
+
+TARGET = Target("c", c_text, files, load)

@@ -1,0 +1,64 @@
+"""A compiled program behind ctypes, with as little Python a call as can be."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets.base import Functions
+
+_ADDRESS = ctypes.c_void_p
+
+
+class _Buffers(threading.local):
+    """Arrays that the compiled function reads and writes; every thread has its own."""
+
+    def __init__(self, states: int, outputs: int) -> None:
+        self.x, self.dx = np.zeros(states), np.zeros(outputs)
+        self.x_at, self.dx_at = self.x.ctypes.data, self.dx.ctypes.data
+
+
+@dataclass(frozen=True)
+class _Constants:
+    """Parameters and what they determine, and where they lie."""
+
+    p: np.ndarray
+    c: np.ndarray
+    p_at: int
+    c_at: int
+
+
+def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: int) -> Functions:
+    """The functions of `c_text` as Python's; the number of constants is that of its layout."""
+    states, outputs = len(program.states), len(program.outputs)
+    make, evaluate, many = (getattr(library, f"{stem}_{what}") for what in ("constants", "evaluate", "many"))
+    make.argtypes, make.restype = [_ADDRESS] * 2, None
+    evaluate.argtypes, evaluate.restype = [ctypes.c_double, *[_ADDRESS] * 5], None
+    many.argtypes, many.restype = [ctypes.c_size_t, *[_ADDRESS] * 5], None
+    buffers = _Buffers(states, outputs)
+
+    def constants_of(p: np.ndarray) -> _Constants:
+        p, c = np.array(p, dtype=float), np.zeros(constants)
+        make(p.ctypes.data, c.ctypes.data)
+        return _Constants(p, c, p.ctypes.data, c.ctypes.data)
+
+    def one(t: float, x: Any, known: _Constants, inputs: Any) -> np.ndarray:
+        own = buffers
+        own.x[:] = x
+        given = None if inputs is None else np.array(inputs, dtype=float)
+        at = None if given is None else given.ctypes.data
+        evaluate(t, own.x_at, known.p_at, known.c_at, at, own.dx_at)
+        return own.dx.copy()
+
+    def all_of(t: np.ndarray, x: np.ndarray, p: np.ndarray, inputs: np.ndarray | None) -> np.ndarray:
+        dx = np.empty((len(t), outputs))
+        at = None if inputs is None else inputs.ctypes.data
+        many(len(t), t.ctypes.data, x.ctypes.data, p.ctypes.data, at, dx.ctypes.data)
+        return dx
+
+    return Functions(constants_of, one, all_of)

@@ -1,0 +1,98 @@
+"""Program -> right answers at random states, in 50 digits: what emitted code is held against."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from eomgen.codegen.program import Program, Solve
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.solving import solve_bordered
+from eomgen.codegen.targets.base import Vector
+from eomgen.errors import DerivationError
+from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+
+TOLERANCE = 1e-12
+WORST = 1e-9  # an ill-conditioned state proves nothing
+TRIES = 60
+
+
+def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1) -> tuple[Vector, ...]:
+    """Right answers near the start (else near 0), half of them with inputs given where there are any.
+
+    Args:
+        x0, p0: start and parameter values; where None, states near 0 and parameters between 0.5 and 2.
+    Raises:
+        DerivationError: no states were found at which the right-hand side has a value.
+    """
+    rng = random.Random(seed)
+    floats = compiled(program, "numpy")
+    found: list[Vector] = []
+    for _ in range(TRIES):
+        if len(found) == count:
+            break
+        vector = _vector(program, floats, _state(program, rng, x0, p0, with_inputs=len(found) % 2 == 1))
+        if vector is not None:
+            found.append(vector)
+    if not found:
+        raise DerivationError("the right-hand side has no value at any of the states tried for test vectors")
+    return tuple(found)
+
+
+def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> list[Any]:
+    """The program's outputs in any arithmetic.
+
+    Args:
+        values: of t, x, p, and of inputs that are given; the others follow from their own expressions.
+    """
+    inputs = list(program.symbols.inputs.values())
+    missing = [x for x in inputs if x not in values]
+    own = [program.defaults[inputs.index(x)] for x in missing]
+    values = values | dict(zip(missing, evaluate(own, values, arithmetic), strict=True))
+    for solve in (s for s in program.statements if type(s) is Solve):
+        values = values | _solved(solve, evaluate(solve.entries, values, arithmetic))
+    return evaluate(program.outputs, values, arithmetic)
+
+
+def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
+    n, k = len(solve.matrix), len(solve.border)
+    rows = n * (n + 1) // 2
+    M = [entries[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
+    J = [entries[rows + m * n : rows + (m + 1) * n] for m in range(k)]
+    right = entries[rows + k * n :]
+    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:]), strict=True))
+
+
+def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> Vector:
+    """A state without its answer; short decimals, for the reader."""
+    symbols = program.symbols
+    start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
+    x = tuple(round(v + rng.uniform(-1, 1), 3) for v in start)
+    p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
+    inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
+    return Vector(round(rng.uniform(0, 2), 3), x, p, inputs if with_inputs and inputs else None, (), TOLERANCE)
+
+
+def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | None:
+    """The state with its answer, or None where there is none."""
+    symbols = program.symbols
+    arguments = [symbols.t, *program.states, *symbols.parameters.values()]
+    numbers = [state.t, *state.x, *state.p]
+    if state.inputs is not None:
+        arguments += symbols.inputs.values()
+        numbers += state.inputs
+    arithmetic = fifty_digits()
+    values = {node: arithmetic.number(Fraction(number)) for node, number in zip(arguments, numbers, strict=True)}
+    try:
+        dx = tuple(float(value) for value in outputs_at(program, values, arithmetic))
+    except NoValue:
+        return None
+    found = floats(state.t, state.x, state.p, state.inputs or ())
+    largest = max(1.0, *map(abs, dx)) if dx else 1.0
+    error = max((abs(a - b) for a, b in zip(found, dx, strict=True)), default=0.0) / largest
+    if not error < WORST:
+        return None
+    return Vector(state.t, state.x, state.p, state.inputs, dx, max(TOLERANCE, 10 * error))

@@ -1,0 +1,109 @@
+"""What can go wrong, said so that it can be mended: what is wrong, where, and how to mend it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class EomgenError(Exception):
+    """A failure that a person can act on.
+
+    Args:
+        what: what is wrong, the culprit printed.
+        where: a path that the user can open or a part of the model ("" when there is none).
+        mend: what to do about it ("" when nothing is known).
+    """
+
+    exit_code = 3
+
+    def __init__(self, what: str, where: str = "", mend: str = "") -> None:
+        self.what, self.where, self.mend = what, where, mend
+        super().__init__(self.__str__())
+
+    def __str__(self) -> str:
+        head = f"{self.where}: {self.what}" if self.where else self.what
+        return f"{head}\nmend: {self.mend}" if self.mend else head
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with a model.
+
+    Args:
+        where: "file:line:column", or the path of the part ("bodies.arm.joint.on") for a model made in Python.
+        what: what is wrong, the culprit printed.
+        excerpt: the source line and the caret line below it, or "".
+        mend: the nearest right thing, or "".
+    """
+
+    where: str
+    what: str
+    excerpt: str = ""
+    mend: str = ""
+
+    def __str__(self) -> str:
+        lines = [f"{self.where}: {self.what}" if self.where else self.what]
+        if self.excerpt:
+            lines.append(self.excerpt)
+        if self.mend:
+            lines.append(f"mend: {self.mend}")
+        return "\n".join(lines)
+
+
+class ModelError(EomgenError):
+    """The model is wrong. Carries every problem that was found, not just the first."""
+
+    exit_code = 1
+
+    def __init__(self, problems: tuple[Problem, ...] | str, where: str = "", mend: str = "") -> None:
+        if isinstance(problems, str):
+            problems = (Problem(where, problems, mend=mend),)
+        self.problems = tuple(problems)
+        super().__init__(self.problems[0].what, self.problems[0].where, self.problems[0].mend)
+
+    def __str__(self) -> str:
+        return "\n\n".join(str(problem) for problem in self.problems)
+
+
+class MissingValues(ModelError):
+    """Numbers were asked of parameters that have none; names them all."""
+
+    def __init__(self, names: tuple[str, ...], where: str = "") -> None:
+        self.names = tuple(names)
+        listed = ", ".join(f"'{name}'" for name in self.names)
+        what = f"no value for {'parameter' if len(self.names) == 1 else 'parameters'} {listed}"
+        super().__init__(what, where, f"give {'it a value' if len(self.names) == 1 else 'them values'} in [parameters]")
+
+
+class ExpressionError(EomgenError):
+    """A text that is not an expression of the grammar; `column` counts from 0 within the text."""
+
+    exit_code = 1
+
+    def __init__(self, what: str, column: int = 0, mend: str = "", length: int = 1) -> None:
+        self.column, self.length = column, length
+        super().__init__(what, "", mend)
+
+
+class UsageError(EomgenError):
+    """The command was called wrongly."""
+
+    exit_code = 2
+
+
+class DerivationError(EomgenError):
+    """The equations could not be derived, or a result could not be had from them."""
+
+
+class NotYet(DerivationError):
+    """A kind that the model file knows and this version cannot derive yet."""
+
+
+class RunFailed(EomgenError):
+    """A simulation or an emitted program failed."""
+
+
+class ToolMissing(EomgenError):
+    """An optional tool (a compiler, say) is not on this machine."""
+
+    exit_code = 4

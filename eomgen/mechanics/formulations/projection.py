@@ -1,0 +1,89 @@
+"""Newton-Euler of every body, projected on the motions that the joints allow.
+
+    M = sum B^T I B,   c = sum B^T (I alpha + xi x* (I xi)),   Q = sum B^T W
+"""
+
+from __future__ import annotations
+
+from eomgen.mechanics.armature import armature_bias, armature_mass
+from eomgen.mechanics.assembly import Assembly, Row, assembled
+from eomgen.mechanics.inertia import kinetic_energy, mass_properties
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.loads import Loads, body_wrench, joint_wrenches, weights
+from eomgen.mechanics.system import System
+from eomgen.mechanics.work import placeless_forces
+from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.spatial import Inertia, Twist, Wrench, cross, plus
+
+name = "projection"
+title = "projection of Newton-Euler"
+
+
+def applies(system: System) -> bool:
+    """Always."""
+    return True
+
+
+def assemble(system: System) -> Assembly:
+    """The equations of motion from wrenches and twists; closing rows by multipliers."""
+    M, c = inertia_side(system.motion)
+    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
+
+
+def inertia_side(motion: Motion) -> tuple[tuple[Row, ...], Row]:
+    """(M, c) from the twists of the bodies."""
+    size = len(motion.scope.symbols.u)
+    M: list[list[Scalar]] = [[0] * size for _ in range(size)]
+    c: list[Scalar] = [0] * size
+    for i, link in enumerate(motion.links):
+        mass = mass_properties(motion.scope, link.name)
+        inertia = Inertia.about_center(mass.m, mass.com, mass.I)
+        columns = [column for column in zip(*motion.B[i], strict=True)]
+        touched = [k for k, column in enumerate(columns) if not all(is_zero(x) for x in column)]
+        bias = _bias(inertia, link.twist, _twist(motion.alpha[i]))
+        for k in touched:
+            c[k] = c[k] + _twist(columns[k]).power(bias)
+            momentum = inertia.momentum(_twist(columns[k]))
+            for j in touched:
+                if j >= k:
+                    M[k][j] = M[k][j] + _twist(columns[j]).power(momentum)
+    for k in range(size):
+        for j in range(k):
+            M[k][j] = M[j][k]
+    return _with_armatures(motion, M, c)
+
+
+def _bias(inertia: Inertia, xi: Twist, alpha: Twist) -> Wrench:
+    """I alpha + xi x* (I xi): the wrench that the motion takes at a = 0, body axes, at the origin."""
+    momentum = inertia.momentum(xi)
+    turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))
+    return inertia.momentum(alpha).plus(turning)
+
+
+def _twist(entries) -> Twist:
+    return Twist(tuple(entries[:3]), tuple(entries[3:]))
+
+
+def _with_armatures(motion: Motion, M, c) -> tuple[tuple[Row, ...], Row]:
+    for i, j, value in armature_mass(motion):
+        M[i][j] = M[i][j] + value
+    added = armature_bias(motion, len(c))
+    return tuple(tuple(row) for row in M), tuple(a + b for a, b in zip(c, added, strict=True))
+
+
+def force_side(loads: Loads) -> Row:
+    """Q = sum B^T W of every wrench, and what acts at no place."""
+    motion = loads.motion
+    Q = list(placeless_forces(loads))
+    wrenches = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
+    wrenches += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
+    total: dict[str, Wrench] = {}
+    for found in wrenches:
+        if found is not None:
+            body, wrench = found
+            total[body] = total[body].plus(wrench) if body in total else wrench
+    for body, wrench in total.items():
+        rows = motion.B[motion.index[body]]
+        for k in range(len(Q)):
+            Q[k] = Q[k] + _twist([row[k] for row in rows]).power(wrench)
+    return tuple(Q)

@@ -1,0 +1,64 @@
+"""The recursive forms: bias forces body by body, mass matrix by composite bodies. For trees."""
+
+from __future__ import annotations
+
+from eomgen.mechanics.armature import armature_bias, armature_mass
+from eomgen.mechanics.assembly import Assembly, Row, assembled
+from eomgen.mechanics.inertia import kinetic_energy
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.loads import Loads
+from eomgen.mechanics.recursion import applied_wrenches, bias_forces, mass_matrix
+from eomgen.mechanics.system import System
+from eomgen.mechanics.tree import Branch, branches_of
+from eomgen.mechanics.work import generalized_forces, joint_forces, placeless_forces
+from eomgen.symbolic.spatial import ZERO, times
+
+name = "recursive"
+title = "recursion over the tree"
+
+
+def applies(system: System) -> bool:
+    """Every speed is the rate of a coordinate."""
+    return True
+
+
+def assemble(system: System) -> Assembly:
+    """The equations of motion by recursion over the tree; closing rows by multipliers."""
+    motion = system.motion
+    branches = branches_of(motion)
+    return assembled(
+        system,
+        M=mass(motion, branches),
+        c=inertia_terms(motion, branches),
+        Q=generalized_forces(system.loads),
+        T=kinetic_energy(motion),
+        forcing=forcing(system.loads, branches),
+    )
+
+
+def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> Row:
+    """c: what inertia takes at a = 0, armatures included."""
+    size = len(motion.scope.symbols.u)
+    bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
+    return tuple(a + b for a, b in zip(bias, armature_bias(motion, size), strict=True))
+
+
+def forcing(loads: Loads, branches: tuple[Branch, ...]) -> Row:
+    """Q - c in one sweep, weight as an upward acceleration of the ground."""
+    motion = loads.motion
+    size = len(motion.scope.symbols.u)
+    bias = bias_forces(
+        branches, size,
+        base_acceleration=times(-1, loads.fields), applied=applied_wrenches(loads, branches),
+    )  # fmt: skip
+    direct = [a + b for a, b in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
+    armature = armature_bias(motion, size)
+    return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
+
+
+def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[Row, ...]:
+    """M by composite bodies, armatures included."""
+    M = mass_matrix(branches, len(motion.scope.symbols.u))
+    for i, j, value in armature_mass(motion):
+        M[i][j] = M[i][j] + value
+    return tuple(tuple(row) for row in M)

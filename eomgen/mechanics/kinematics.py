@@ -1,0 +1,258 @@
+"""Scope -> Motion: where every body is and how it moves, over the scalars of the graph.
+
+Bodies hang in a tree. The joint of body i gives its variables s(q, t), the pose X(s) of the child's
+joint frame and the subspace S, so that the twist of the child at its own origin, in its own axes, is
+
+    xi_i = Ad(parent -> i) xi_parent + S s',      s' = D u + d.
+
+Two descriptions of velocity are kept apart on purpose: the twists of this recursion, and the time
+derivatives of the poses. The certificate compares them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.scope import Scope
+from eomgen.model.joints.base import Z, unit, vector
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import Scalar, collected
+from eomgen.symbolic.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Pose,
+    Twist,
+    Vector,
+    apply,
+    cross,
+    minus,
+    plus,
+    product,
+    rotation,
+    times,
+    transposed,
+)
+
+GROUND = -1
+
+
+@dataclass(frozen=True)
+class Link:
+    """One body in the tree.
+
+    Args:
+        name: the body's name.
+        parent: index of the parent link, GROUND for the ground.
+        joint: the model's joint (None: the ground's frame).
+        before: where the joint sits in the parent's frame (`at`, `turned`).
+        point: where the joint sits in this body, body axes, 3 [m].
+        s, s_rate: the joint's variables and s' = D u + d.
+        relative: the joint's pose at s.
+        S: columns of the subspace, each (w, v), at the joint point, child's axes.
+        pose: of the body's frame in the ground.
+        angle: against the ground's axes (plane only) [rad].
+        twist: at the body's origin, body axes.
+    """
+
+    name: str
+    parent: int
+    joint: Any
+    before: Pose
+    point: Vector
+    s: tuple[Scalar, ...]
+    s_rate: tuple[Scalar, ...]
+    relative: Pose
+    S: tuple[tuple[Vector, Vector], ...]
+    pose: Pose
+    angle: Scalar | None
+    twist: Twist
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses and twists of all bodies, parents before children."""
+
+    scope: Scope
+    links: tuple[Link, ...]
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """The place of each body in `links`."""
+        return {link.name: i for i, link in enumerate(self.links)}
+
+    def link(self, body: str) -> Link:
+        return self.links[self.index[body]]
+
+    @cached_property
+    def points(self) -> dict[str, dict[str, Vector]]:
+        """Points of each body, body axes [m]."""
+        return {link.name: body_points(self.scope, link.name) for link in self.links}
+
+    def place(self, point: str) -> tuple[str | None, Vector]:
+        """(body, position in its axes) of a named point; (None, position) for a point of the ground."""
+        body, name = self.scope.model.resolve_point(point)
+        if body is None:
+            return None, self.scope.vector(self.scope.model.points[name])
+        return body, self.points[body][name]
+
+    def position(self, place: tuple[str | None, Vector]) -> Vector:
+        """The place seen from the ground, 3 [m]."""
+        body, r = place
+        return r if body is None else self.link(body).pose.point(r)
+
+    @cached_property
+    def B(self) -> tuple[tuple[tuple[Scalar, ...], ...], ...]:
+        """Of each body the 6 rows of xi = B u + beta (angular first, body origin, body axes)."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rows = jacobian(tuple(twists), self.scope.symbols.u)
+        return tuple(tuple(rows[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+    @cached_property
+    def alpha(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Of each body the 6 entries of xi' = B a + alpha."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rates = self.scope.time_derivative(tuple(twists))
+        return tuple(tuple(rates[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+
+def motion_of(scope: Scope) -> Motion:
+    """Poses and twists of every body of the model.
+
+    Raises:
+        DerivationError: a joint whose place depends on an input.
+        NotYet: a joint kind that this version does not derive.
+    """
+    links: list[Link] = []
+    index: dict[str, int] = {}
+    for name in parents_first(scope.model):
+        link = _link(scope, name, links, index)
+        index[name] = len(links)
+        links.append(link)
+    return Motion(scope, tuple(links))
+
+
+def parents_first(model: Any) -> list[str]:
+    """The bodies, every one after the one it hangs on, else in the model's order."""
+    done: dict[str, None] = {}
+    waiting = list(model.bodies)
+    while waiting:
+        ready = [name for name in waiting if parent_of(model, name) in (None, *done)]
+        if not ready:
+            raise DerivationError(f"bodies hang on one another in a ring: {', '.join(waiting)}")
+        for name in ready:
+            done[name] = None
+        waiting = [name for name in waiting if name not in done]
+    return list(done)
+
+
+def parent_of(model: Any, body: str) -> str | None:
+    """The body on which this one hangs (None: the ground)."""
+    joint = model.bodies[body].joint
+    return None if joint is None else joint.parent
+
+
+def body_points(scope: Scope, body: str) -> dict[str, Vector]:
+    """Points of one body: its own, its shape's, `origin`, and `center` where it has mass; body axes [m]."""
+    part = scope.model.bodies[body]
+    points: dict[str, Vector] = {"origin": ZERO}
+    if part.center is not None or part.mass is not None:
+        points["center"] = scope.vector(part.center)
+    if part.shape is not None:
+        points |= part.shape.points(scope.value)
+    points |= {name: scope.vector(place) for name, place in part.points.items()}
+    return points
+
+
+def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> Link:
+    joint = scope.model.bodies[name].joint
+    if joint is not None and not joint.works_in(scope.model.space):
+        raise NotYet(f"the joint '{joint.kind}' is not derived yet", f"bodies.{name}.joint")
+    plane = scope.model.space == "plane"
+    if joint is None:
+        return Link(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
+    parent_name = parent_of(scope.model, name)
+    parent = GROUND if parent_name is None else index[parent_name]
+    above = None if parent == GROUND else links[parent]
+    before = Pose(_turned(scope, joint), _seat(scope, joint))
+    point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
+    s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
+    s_rate = scope.time_derivative(s)
+    relative = joint.pose(s, scope.value)
+    S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
+    angle = None
+    local = before.then(relative)
+    if plane:
+        angle = collected((above.angle if above else 0) + joint.turn(s, scope.value))
+        R = rotation((0, 0, 1), cos(angle), sin(angle))
+        joint_at = plus(above.pose.p, apply(above.pose.R, local.p)) if above else local.p
+    else:
+        R = product(above.pose.R, local.R) if above else local.R
+        joint_at = above.pose.point(local.p) if above else local.p
+    pose = Pose(R, minus(joint_at, apply(R, point)))
+    twist = _twist(scope, above, before, local, s_rate, S, point)
+    return Link(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+
+
+def _twist(
+    scope: Scope,
+    above: Link | None,
+    before: Pose,
+    local: Pose,
+    s_rate: tuple[Scalar, ...],
+    S: tuple[tuple[Vector, Vector], ...],
+    point: Vector,
+) -> Twist:
+    """Twist of the child at its origin, child's axes; a seat that moves by itself adds its rate."""
+    R_CP = transposed(local.R)
+    carried = (above.twist if above else Twist()).at(local.p)
+    seat_rate = scope.time_derivative(before.p)
+    at_joint = Twist(apply(R_CP, carried.w), apply(R_CP, plus(carried.v, seat_rate)))
+    for rate, (w, v) in zip(s_rate, S, strict=True):
+        at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
+    moved = at_joint.at(times(-1, point))
+    drift = scope.time_derivative(point)  # a joint that slides along its own body
+    return Twist(moved.w, minus(moved.v, drift))
+
+
+def _turned(scope: Scope, joint: Any) -> Matrix:
+    """The fixed rotation before the joint: each turn about the axes left by the one before."""
+    R = IDENTITY
+    for turn in joint.turned or ():
+        axis = unit(vector(turn.axis, scope.value, Z))
+        angle = scope.value(turn.angle)
+        R = product(R, rotation(axis, cos(angle), sin(angle)))
+    return R
+
+
+def _seat(scope: Scope, joint: Any) -> Vector:
+    """Where the joint sits, parent's axes: `at`, or the parent's point named by `on`."""
+    on = joint.on
+    if on is not None and "." in on:
+        body, point = on.split(".", 1)
+        return body_points(scope, body)[point]
+    return ground_place(scope, joint.at) if joint.seated else ZERO
+
+
+def ground_place(scope: Scope, at: Any) -> Vector:
+    """A place on the ground: coordinates, or the name of a ground point [m]."""
+    return scope.vector(scope.model.points[at] if isinstance(at, str) else at)
+
+
+def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
+    """Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'."""
+    W = product(transposed(R), R_rate)
+    return (W[2][1], W[0][2], W[1][0])
+
+
+def velocity_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r) [m/s]."""
+    body, r = place
+    if body is None:
+        return ZERO
+    link = motion.link(body)
+    return apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))

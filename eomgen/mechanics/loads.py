@@ -1,0 +1,260 @@
+"""Motion -> Loads: every applied force, as loads at places and as potentials.
+
+One description serves both ways to the generalized forces: virtual work on positions,
+Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.kinematics import Motion, ground_place
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, UniformField
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.spatial import ZERO, Vector, Wrench, apply, cross, dot, plus, times, transposed
+
+
+@dataclass(frozen=True)
+class Applied:
+    """One named force of the model.
+
+    Args:
+        name: its name.
+        loads: forces and couples, whether or not they have a potential.
+        potential: V [J], or None where it has none.
+    """
+
+    name: str
+    loads: tuple[Load, ...]
+    potential: Scalar | None
+
+
+@dataclass(frozen=True)
+class JointEffort:
+    """A scalar force on a joint's variable: drive, spring and damper of the joint.
+
+    Args:
+        body: the child; the parent bears the opposite.
+        variable: index of the joint's variable s.
+        drive: torque or force without a potential (damping included) [N m or N].
+        potential: k (s - rest)^2 / 2 [J], or 0.
+        effort: the whole effort along s, -dV/ds included.
+    """
+
+    body: str
+    variable: int
+    drive: Scalar
+    potential: Scalar
+    effort: Scalar
+
+
+@dataclass(frozen=True)
+class Loads:
+    """All that is applied to the system."""
+
+    motion: Motion
+    applied: tuple[Applied, ...]
+    efforts: tuple[JointEffort, ...]
+
+    @cached_property
+    def potential_energy(self) -> Scalar:
+        """V, of every force that has one [J]."""
+        total: Scalar = 0
+        for force in self.applied:
+            total = total + (0 if force.potential is None else force.potential)
+        return sum((e.potential for e in self.efforts), start=total)
+
+    @property
+    def fields(self) -> Vector:
+        """The sum of the uniform acceleration fields on every mass [m/s^2]."""
+        total = ZERO
+        for load in self._all:
+            if isinstance(load, UniformField):
+                total = plus(total, load.acceleration)
+        return total
+
+    @property
+    def placed(self) -> tuple[PointForce | Couple, ...]:
+        """Forces and couples at bodies, the uniform fields left out."""
+        return tuple(load for load in self._all if isinstance(load, (PointForce, Couple)))
+
+    @property
+    def generalized(self) -> tuple[GeneralizedForce, ...]:
+        return tuple(load for load in self._all if isinstance(load, GeneralizedForce))
+
+    @property
+    def _all(self) -> tuple[Load, ...]:
+        return tuple(load for force in self.applied for load in force.loads)
+
+
+@dataclass(frozen=True)
+class SystemScene:
+    """What the force laws ask of a system in motion."""
+
+    motion: Motion
+
+    def value(self, expression) -> Scalar:
+        return self.motion.scope.value(expression)
+
+    def value_at(self, expression, also: dict[str, Scalar]) -> Scalar:
+        """An expression in which further names stand for given scalars (they win over the model's)."""
+        return expression.evaluate({**self.motion.scope.names, **also})
+
+    def vector(self, expressions) -> Vector:
+        return self.motion.scope.vector(expressions)
+
+    def ground_place(self, at) -> Vector:
+        return ground_place(self.motion.scope, at)
+
+    @property
+    def plane(self) -> bool:
+        return self.motion.scope.model.space == "plane"
+
+    def place(self, point: str) -> Place:
+        body, r = self.motion.place(point)
+        return (body, r)
+
+    def position(self, place: Place) -> Vector:
+        return self.motion.position(place)
+
+    def velocity(self, place: Place) -> Vector:
+        """d/dt of the position [m/s]."""
+        return self.motion.scope.time_derivative(self.position(place))  # type: ignore[return-value]
+
+    def angle(self, body: str) -> Scalar:
+        angle = self.motion.link(body).angle
+        if angle is None:
+            raise DerivationError(f"body '{body}' has no single angle in space", f"bodies.{body}",
+                                  "put the spring or damper into the joint")
+        return angle
+
+    def angle_rate(self, body: str) -> Scalar:
+        return self.motion.scope.time_derivative((self.angle(body),))[0]
+
+    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[Place, Scalar], ...]:
+        """(mass centre, mass) of the named bodies, or of all, that have mass."""
+        names = [link.name for link in self.motion.links] if bodies is None else bodies
+        rows = []
+        for name in names:
+            body = mass_properties(self.motion.scope, name)
+            if not is_zero(body.m):
+                rows.append(((name, body.com), body.m))
+        return tuple(rows)
+
+    def start(self, scalar: Scalar) -> Scalar:
+        """The scalar at the start values of the coordinates and t = 0."""
+        scope = self.motion.scope
+        coordinates = scope.model.coordinates.values()
+        at = {q: start_value(scope, c) for q, c in zip(scope.symbols.q, coordinates, strict=True)}
+        return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
+
+
+def start_value(scope, coordinate) -> Scalar:
+    """Where a coordinate starts, as an expression of the parameters."""
+    if coordinate.motion is not None:
+        return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
+    return scope.value(coordinate.start)
+
+
+def loads_of(motion: Motion) -> Loads:
+    """Every applied force of the model, as loads and potentials."""
+    scene = SystemScene(motion)
+    applied = []
+    for name, force in motion.scope.model.forces.items():
+        if not force.works:
+            raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
+        applied.append(Applied(name, tuple(force.loads(scene)), force.potential(scene)))
+    efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
+    _refuse_accelerations(motion, applied, efforts)
+    return Loads(motion, tuple(applied), tuple(efforts))
+
+
+def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[JointEffort]) -> None:
+    accelerations = motion.scope.symbols.a
+    for force in applied:
+        parts = [x for load in force.loads for x in _scalars(load)]
+        if accelerations and any(depends_on(x, accelerations) for x in parts):
+            raise DerivationError("a force cannot depend on accelerations", f"forces.{force.name}")
+    for effort in efforts:
+        if accelerations and depends_on(effort.effort, accelerations):
+            raise DerivationError("a joint's drive cannot depend on accelerations", f"bodies.{effort.body}.joint")
+
+
+def _scalars(load: Load) -> tuple[Scalar, ...]:
+    if isinstance(load, PointForce):
+        return load.force
+    if isinstance(load, Couple):
+        return load.couple
+    return (load.value,) if isinstance(load, GeneralizedForce) else load.acceleration
+
+
+def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
+    """Drive, spring and damper of one joint: effort = drive - c s' - k (s - rest)."""
+    if link.joint is None:
+        return []
+    scope, rows = motion.scope, []
+    for k, e in enumerate(link.joint.efforts()):
+        if e is None or e.drive is None and e.stiffness is None and e.damping is None:
+            continue
+        drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
+        stretch = link.s[k] - scope.value(e.rest)
+        stiffness = scope.value(e.stiffness)
+        potential = Fraction(1, 2) * stiffness * stretch * stretch
+        rows.append(JointEffort(link.name, k, drive, potential, drive - stiffness * stretch))
+    return rows
+
+
+def joint_wrenches(motion: Motion, effort: JointEffort) -> list[tuple[str, Wrench]]:
+    """The effort of a joint as wrenches at the origins of child and parent, each in its own axes.
+
+    The wrench is dual to the joint's column: it does the work effort * s' on the relative motion.
+    """
+    link = motion.link(effort.body)
+    w, v = link.S[effort.variable]
+    square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
+    rotary = not all(is_zero(x) for x in w)
+    direction = w if rotary else v
+    magnitude = effort.effort if type(square) is int and square == 1 else effort.effort / square
+    at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
+    rows = [(link.name, at_joint.moved(link.point))]
+    if link.parent >= 0:
+        local = link.before.then(link.relative)
+        on_parent = Wrench(times(-1, at_joint.tau), times(-1, at_joint.f)).turned(local.R)
+        rows.append((motion.links[link.parent].name, on_parent.moved(local.p)))
+    return rows
+
+
+def body_wrench(motion: Motion, load: PointForce | Couple) -> tuple[str, Wrench] | None:
+    """A load as a wrench at its body's origin in body axes (None: it acts on the ground)."""
+    if isinstance(load, Couple):
+        return load.body, Wrench(in_body_axes(motion, load.body, load.couple, load.axes), ZERO)
+    body, r = load.place
+    if body is None:
+        return None
+    f = in_body_axes(motion, body, load.force, load.axes)
+    return body, Wrench(cross(r, f), f)
+
+
+def in_body_axes(motion: Motion, body: str, vector: Vector, axes: str | None) -> Vector:
+    """A vector given in the axes of the ground (None) or of a body, in the axes of `body`."""
+    if axes == body:
+        return vector
+    return apply(transposed(motion.link(body).pose.R), in_ground_axes(motion, vector, axes))
+
+
+def in_ground_axes(motion: Motion, vector: Vector, axes: str | None) -> Vector:
+    """A vector given in the axes of a body, in the ground's."""
+    return vector if axes is None else apply(motion.link(axes).pose.R, vector)
+
+
+def weights(loads: Loads) -> tuple[PointForce, ...]:
+    """The uniform fields as forces m g at the mass centres."""
+    g = loads.fields
+    if all(is_zero(x) for x in g):
+        return ()
+    return tuple(PointForce(place, times(m, g)) for place, m in SystemScene(loads.motion).masses(None))

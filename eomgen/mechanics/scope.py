@@ -1,0 +1,156 @@
+"""Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
+
+q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero
+row of N and its given rate in nu.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.model.parts import Coordinate, Model
+from eomgen.symbolic.derivative import depends_on, tangent
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.graph import Graph, Node, Scalar
+from eomgen.symbolic.spatial import Vector
+from eomgen.symbolic.symbols import Symbols
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The symbols of a model and its kinematic equations.
+
+    Args:
+        model: the model.
+        symbols: its symbols.
+        N, nu: q' = N u + nu; N has nq rows of nu entries.
+        names: what each name of an expression stands for: parameters, q, u, `theta'`, `theta''`, inputs, t, pi.
+    """
+
+    model: Model
+    symbols: Symbols
+    N: tuple[tuple[Scalar, ...], ...]
+    nu: tuple[Scalar, ...]
+    names: dict[str, Scalar]
+
+    @property
+    def graph(self) -> Graph:
+        return self.symbols.graph
+
+    @cached_property
+    def rates(self) -> tuple[Scalar, ...]:
+        """q' = N u + nu, nq."""
+        return tuple(
+            sum((n * u for n, u in zip(row, self.symbols.u, strict=True) if not _zero(n)), start=bias)
+            for row, bias in zip(self.N, self.nu, strict=True)
+        )
+
+    @cached_property
+    def flow(self) -> dict[Node, Scalar]:
+        """The seeds of d/dt at a = 0: q -> q', t -> 1."""
+        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True))}
+
+    def value(self, expression: Expression | None) -> Scalar:
+        """An expression of the model in the symbols (absent: 0)."""
+        return 0 if expression is None else expression.evaluate(self.names)
+
+    def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
+        """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""
+        values = [self.value(e) for e in expressions or ()]
+        return tuple(values + [0] * (3 - len(values)))  # type: ignore[return-value]
+
+    def time_derivative(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """d/dt of functions of q, u and t where a = 0: the part that stays when nothing accelerates."""
+        inputs = tuple(self.symbols.inputs.values())
+        if inputs and any(depends_on(x, inputs) for x in outputs):
+            raise DerivationError(
+                "an input stands where a time derivative is needed, and a caller may replace it by anything",
+                mend="let inputs act in forces and torques only; drive a coordinate by `motion`",
+            )
+        return tangent(outputs, self.flow)
+
+    def with_accelerations(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """d/dt of functions of q, u and t, the accelerations included: linear in a."""
+        flow = {**self.flow, **dict(zip(self.symbols.u, self.symbols.a, strict=True))}
+        return tangent(outputs, flow)
+
+
+def scope_of(model: Model) -> Scope:
+    """The symbols of a model, its kinematic equations, and the meaning of its names.
+
+    Raises:
+        NotYet: eliminated coordinates or declared speeds, which this version does not derive.
+        DerivationError: a given acceleration whose integral has no closed form.
+    """
+    for name, coordinate in model.coordinates.items():
+        if coordinate.dependent:
+            raise NotYet(f"coordinate '{name}' is dependent: elimination is not derived yet", f"coordinates.{name}",
+                         "leave out `dependent`: the constraints then close by multipliers")
+    if model.speeds:
+        raise NotYet("declared speeds are not derived yet", "speeds", "use the rates of the coordinates")
+    graph = Graph()
+    t = graph.symbol("t")
+    parameters = {name: graph.symbol(name) for name in model.parameters}
+    q = tuple(graph.symbol(name) for name in model.coordinates)
+    free = [name for name, c in model.coordinates.items() if not c.driven]
+    u = tuple(graph.symbol(name + "'") for name in free)
+    a = tuple(graph.symbol(name + "''") for name in free)
+    inputs = {name: graph.symbol(name) for name in model.inputs}
+    symbols = Symbols(graph, t, parameters, inputs, q, u, a)
+    names: dict[str, Scalar] = {**parameters, **inputs, "t": t, "pi": graph.pi}
+    names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
+    N, nu = [], []
+    speed = dict(zip(free, range(len(free)), strict=True))
+    for name, coordinate in model.coordinates.items():
+        if name in speed:
+            names[name + "'"], names[name + "''"] = u[speed[name]], a[speed[name]]
+            N.append(tuple(int(k == speed[name]) for k in range(len(free))))
+            nu.append(0)
+        else:
+            rate = driven_rate(coordinate, names, t, f"coordinates.{name}")
+            names[name + "'"], names[name + "''"] = rate, tangent((rate,), {t: 1})[0]
+            N.append((0,) * len(free))
+            nu.append(rate)
+    return Scope(model, symbols, tuple(N), tuple(nu), names)
+
+
+def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str) -> Scalar:
+    """The rate of a driven coordinate: f' for `motion`, f for `rate`, speed + integral of f for `acceleration`."""
+    if coordinate.motion is not None:
+        return tangent((coordinate.motion.evaluate(names),), {t: 1})[0]
+    if coordinate.rate is not None:
+        return coordinate.rate.evaluate(names)
+    assert coordinate.acceleration is not None
+    start = 0 if coordinate.speed is None else coordinate.speed.evaluate(names)
+    return start + integral_from_zero(coordinate.acceleration.evaluate(names), t, where)
+
+
+def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
+    """The integral of f from 0 to t in closed form.
+
+    Raises:
+        DerivationError: none was found.
+    """
+    if not depends_on(f, (t,)):
+        return f * t
+    from sympy import Integral
+    from sympy.integrals.manualintegrate import manualintegrate
+
+    from eomgen.symbolic.derivative import symbols_of
+    from eomgen.symbolic.sympy_form import from_sympy, to_sympy
+
+    expression, time = to_sympy((f, t))
+    primitive = manualintegrate(expression, time)
+    if primitive.has(Integral):
+        raise DerivationError(
+            "the given acceleration has no integral in closed form", where,
+            "give the coordinate's `motion` or `rate` instead",
+        )
+    lookup = {symbol.name: symbol for symbol in symbols_of((f, t))}
+    return from_sympy(primitive - primitive.subs(time, 0), lookup)
+
+
+def _zero(a: Scalar) -> bool:
+    return type(a) is int and a == 0

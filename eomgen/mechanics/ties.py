@@ -1,0 +1,120 @@
+"""Motion -> Ties: the rows of the constraints.
+
+A row holds a wrench on each body that it touches; the motion that it forbids is the dual:
+
+    W^T xi + s_t = 0,   J = W^T B,   sigma = W^T beta + s_t,   J u + sigma = 0,   J a + gamma = 0
+
+A row without bodies (`equation`) gives dphi/dq, or its row in the rates, directly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.errors import NotYet
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.loads import SystemScene, body_wrench
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import PointForce
+from eomgen.symbolic.derivative import jacobian, substituted, tangent
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import Wrench
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scalar row of a tie.
+
+    Args:
+        tie, number: its name and place in the tie, from 1.
+        wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation.
+        velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
+        gap: phi(q, t), or None where only the velocity row is given.
+        identical: the coordinates satisfy the row by themselves: it only carries a reaction.
+    """
+
+    tie: str
+    number: int
+    wrenches: tuple[tuple[str, Wrench], ...]
+    velocity: Scalar
+    gap: Scalar | None
+    identical: bool
+
+    @property
+    def label(self) -> str:
+        return f"lam({self.tie}, {self.number})"
+
+
+@dataclass(frozen=True)
+class Ties:
+    """All rows of all ties, and the matrices of those that close."""
+
+    motion: Motion
+    rows: tuple[Row, ...]
+
+    @property
+    def closing(self) -> tuple[Row, ...]:
+        return tuple(row for row in self.rows if not row.identical)
+
+    @cached_property
+    def J(self) -> tuple[tuple[Scalar, ...], ...]:
+        """J u + sigma = 0: one row for each closing row."""
+        velocities = tuple(row.velocity for row in self.closing)
+        return jacobian(velocities, self.motion.scope.symbols.u) if velocities else ()
+
+    @cached_property
+    def sigma(self) -> tuple[Scalar, ...]:
+        still = {u: 0 for u in self.motion.scope.symbols.u}
+        return substituted(tuple(row.velocity for row in self.closing), still)
+
+    @cached_property
+    def gamma(self) -> tuple[Scalar, ...]:
+        """J a + gamma = 0: the total derivative of the velocity row at a = 0."""
+        return self.motion.scope.time_derivative(tuple(row.velocity for row in self.closing))
+
+    @property
+    def phi(self) -> tuple[Scalar | None, ...]:
+        return tuple(row.gap for row in self.closing)
+
+
+def ties_of(motion: Motion) -> Ties:
+    """The rows of every constraint of the model.
+
+    Raises:
+        NotYet: a kind whose rows this version does not build.
+    """
+    scene = SystemScene(motion)
+    rows = []
+    for name, constraint in motion.scope.model.constraints.items():
+        if not constraint.works:
+            raise NotYet(f"the rows of '{constraint.kind}' are not built yet", f"constraints.{name}")
+        for number, tie_row in enumerate(constraint.rows(scene), start=1):
+            rows.append(_row(motion, name, number, tie_row))
+    return Ties(motion, tuple(rows))
+
+
+def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
+    scope = motion.scope
+    wrenches = []
+    for place, push in row.pushes:
+        found = body_wrench(motion, PointForce(place, push))
+        if found is not None:
+            wrenches.append(found)
+    if row.pushes:
+        moving_by_itself = tangent((row.gap,), {scope.symbols.t: 1})[0]
+        velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=moving_by_itself)
+    elif row.rate is not None:
+        velocity = row.rate
+    else:
+        velocity = scope.time_derivative((row.gap,))[0]
+    identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
+    return Row(name, number, tuple(wrenches), velocity, row.gap, identical)
+
+
+def holds_identically(scalar: Scalar) -> bool:
+    """Whether the scalar is zero at all values of its symbols (exactly, at random states)."""
+    if type(scalar) is int:
+        return scalar == 0
+    return equal_at_random_states([(scalar, 0)]).equal

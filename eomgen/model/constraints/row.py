@@ -1,0 +1,28 @@
+"""What the law of a constraint gives: rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.model.forces.load import Place, Scalar, Scene, Vector
+
+
+@dataclass(frozen=True)
+class TieRow:
+    """One scalar row of a constraint.
+
+    Args:
+        pushes: (place, force in ground axes) for a unit of the row's multiplier; empty for an equation.
+        gap: phi(q, t), 0 when the tie holds; None where only the velocity row is given.
+        rate: the row of an equation given in rates, 0 when it holds; None elsewhere.
+    """
+
+    pushes: tuple[tuple[Place, Vector], ...]
+    gap: Scalar | None
+    rate: Scalar | None = None
+
+
+def axes_of(scene: Scene) -> tuple[Vector, ...]:
+    """The ground's axes in which a point can be held: x, y, and in space z."""
+    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    return axes[:2] if scene.plane else axes

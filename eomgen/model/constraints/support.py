@@ -1,0 +1,46 @@
+"""Support: a point stays on a line or a plane."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import Scene
+from eomgen.model.friction import FrictionLaw
+from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.spatial import dot, minus
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support(Constraint):
+    """The point stays on the line (plane) across `normal` through `at`; the support pushes along `normal`.
+
+    Args:
+        point: what is supported.
+        normal: ground axes, 2 or 3.
+        at: a place on the line, or a ground point's name (None: where the point stands).
+        unilateral: it can only push.
+        friction: in the contact.
+    """
+
+    kind: ClassVar[str] = "support"
+    works: ClassVar[bool] = True
+    point: PointName
+    normal: Direction
+    at: GroundPlace | None = None
+    unilateral: Flag = False
+    friction: FrictionLaw | None = None
+
+    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+        """n . (p - p_0) = 0, n of unit length; the support pushes along n."""
+        n = scene.vector(self.normal)
+        size = sqrt(dot(n, n))
+        n = tuple(over(x, size) for x in n)
+        place = scene.place(self.point)
+        position = scene.position(place)
+        if self.at is None:
+            origin = tuple(scene.start(x) for x in position)
+        else:
+            origin = scene.ground_place(self.at)
+        return (TieRow(((place, n),), dot(n, minus(position, origin))),)  # type: ignore[arg-type]

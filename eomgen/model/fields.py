@@ -1,0 +1,467 @@
+"""What a value of a model may be: one rule per concept, written once in a field's type.
+
+A part of the model is a frozen dataclass whose fields are annotated `Annotated[type, rule]`. From
+these rules alone come the reading of texts and numbers (`read`), the walk that every check makes
+(`leaves`) and the JSON Schema (`schema`). Nothing is computed here.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+from typing import Any
+
+from eomgen.errors import ExpressionError
+from eomgen.model.table import Table
+from eomgen.symbolic.expressions import Expression, as_expression, parse_equation
+from eomgen.symbolic.units import Unit, parse_unit
+
+Path = tuple[str | int, ...]
+
+PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
+TIME = "parameters and time"
+CONFIGURATION = "parameters, coordinates and time"
+RATES = "parameters, coordinates, their rates and time"
+MOTION = "parameters, coordinates, rates, speeds, inputs and time"
+EVERYTHING = "all names, accelerations and functions of the motion"
+
+
+class Decimal(str):
+    """A decimal of the file as it was written (tomllib's `parse_float`): a number, exact."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing wrong, at a path into the model.
+
+    Args:
+        path: keys and indices that lead to the culprit.
+        what: what is wrong, the culprit printed.
+        mend: the nearest right thing, or "".
+        column, length: the culprit within the text of an expression (None: all of it).
+        key: the culprit is the key itself, not its value.
+    """
+
+    path: Path
+    what: str
+    mend: str = ""
+    column: int | None = None
+    length: int | None = None
+    key: bool = False
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A value that a rule reads at once (an expression, a vector, a name), and where it stands."""
+
+    path: Path
+    rule: Any
+    value: Any
+    part: Any = None
+
+
+def nearest(word: str, known) -> str:
+    """ "did you mean 'forearm'?", or "" where nothing is near."""
+    words = [str(name) for name in known]
+    close = get_close_matches(word, words, n=1, cutoff=0.6)
+    close = close or [name for name in words if name.lower() == word.lower()]
+    return f"did you mean '{close[0]}'?" if close else ""
+
+
+def shown(raw: Any) -> str:
+    """A value of the file in a message."""
+    if isinstance(raw, Mapping):
+        return "a table"
+    if isinstance(raw, (list, tuple)):
+        return "a list"
+    if isinstance(raw, bool):
+        return str(raw).lower()
+    text = str(raw)
+    text = text if len(text) <= 60 else text[:57] + "..."
+    return f"'{text}'" if isinstance(raw, str) and not isinstance(raw, Decimal) else text
+
+
+TABLES = {
+    "parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input", "points": "point",
+    "bodies": "body", "constraints": "constraint", "trusses": "truss", "forces": "force", "outputs": "output",
+    "unknowns": "unknown",
+}  # fmt: skip
+"""The tables of a model that name things, and what one of those is called."""
+
+
+def whereabouts(path: Path, what: str = "") -> str:
+    """A part in words: "the joint of body 'hand'", "parameter 'm'"."""
+    if len(path) < 2 or path[0] not in TABLES:
+        return f"[{path[0]}]" if path else what or "the model"
+    owner = f"{TABLES[str(path[0])]} '{path[1]}'"
+    inner = [str(key) for key in path[2:] if isinstance(key, str)]
+    return f"the {inner[-1]} of {owner}" if inner else owner
+
+
+@dataclass(frozen=True)
+class FormulaRule:
+    """A number or the text of an expression.
+
+    Args:
+        unit: the SI unit that the value has (None: not known from the field alone).
+        sign: "" any, "nonnegative", or "positive".
+        scope: which names may stand in it.
+        words: texts that stand for themselves (`length = "start"`).
+        also: names that mean something here only (`r` of `between`).
+    """
+
+    unit: str | None = None
+    sign: str = ""
+    scope: str = PARAMETERS
+    words: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if isinstance(raw, Mapping):
+            return self._quantity(raw, path, found)
+        if isinstance(raw, str) and raw in self.words:
+            return str(raw)
+        return _expression(raw, path, found)
+
+    def _quantity(self, raw: Mapping, path: Path, found: list[Finding]) -> Expression | None:
+        unknown_keys(raw, ("value", "unit"), path, found, "a quantity")
+        if "value" not in raw:
+            found.append(Finding(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
+            return None
+        unit = UNIT.read(raw["unit"], (*path, "unit"), found) if "unit" in raw else None
+        if unit is not None and self.unit is not None and not unit.fits(parse_unit(self.unit)):
+            what = f"the unit '{unit.text}' does not fit: this is in {named(self.unit)}"
+            found.append(Finding((*path, "unit"), what))
+        return in_si(_expression(raw["value"], (*path, "value"), found), unit, (*path, "value"), found)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"$ref": "#/$defs/quantity"}
+
+
+def named(unit: str) -> str:
+    """A unit in a message."""
+    return "radians or a pure number" if unit in ("", "1", "rad") else unit
+
+
+def in_si(value: Expression | None, unit: Unit | None, path: Path, found: list[Finding]) -> Expression | None:
+    """A value given in a unit, exactly in SI."""
+    if value is None or unit is None or (unit.factor == 1 and unit.pi_power == 0):
+        return value
+    if value.names - {"pi", "t"}:
+        found.append(Finding(
+            path, f"'{value.text}' has parameters in it, which are in SI already, but the unit '{unit.text}' is not SI",
+            "leave the unit out, or give it to the numbers",
+        ))  # fmt: skip
+        return None
+    return unit.expression_in_si(value)
+
+
+def _expression(raw: Any, path: Path, found: list[Finding], references: bool = False) -> Expression | None:
+    if isinstance(raw, bool) or not isinstance(raw, (int, float, str, Fraction, Expression)):
+        found.append(Finding(path, f"a number or an expression is needed here, not {shown(raw)}"))
+        return None
+    try:
+        return as_expression(raw, references=references)
+    except ExpressionError as error:
+        found.append(Finding(path, error.what, error.mend, error.column, error.length))
+        return None
+
+
+@dataclass(frozen=True)
+class OutputRule:
+    """An expression that may call functions of the motion: `speed(bar.end)`."""
+
+    scope: str = EVERYTHING
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Expression | None:
+        return _expression(raw, path, found, references=True)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"$ref": "#/$defs/expression"}
+
+
+@dataclass(frozen=True)
+class Equation:
+    """left = right, as it was written."""
+
+    left: Expression
+    right: Expression
+    text: str
+
+
+@dataclass(frozen=True)
+class EquationRule:
+    """An equation between expressions that may call functions of the motion: `theta = pi/2`."""
+
+    scope: str = EVERYTHING
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Equation | None:
+        if isinstance(raw, Equation):
+            return raw
+        if not isinstance(raw, str) or isinstance(raw, Decimal):
+            found.append(Finding(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
+            return None
+        try:
+            return Equation(*parse_equation(raw), text=raw)
+        except ExpressionError as error:
+            found.append(Finding(path, error.what, error.mend, error.column, error.length))
+            return None
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "string", "description": "an equation, like theta = pi/2"}
+
+
+@dataclass(frozen=True)
+class VectorRule:
+    """A list of expressions, two in the plane and three in space (or always `length`).
+
+    Args:
+        item: the rule of a component.
+        length: how many (None: as the space says).
+        point: a ground point's name may stand for it.
+        nonzero: a direction, so not all of it may be 0.
+    """
+
+    item: FormulaRule = FormulaRule()
+    length: int | None = None
+    point: bool = False
+    nonzero: bool = False
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if self.point and isinstance(raw, str) and not isinstance(raw, Decimal):
+            return str(raw)
+        if not isinstance(raw, (list, tuple)):
+            also = " or the name of a point of the ground" if self.point else ""
+            found.append(Finding(path, f"a list of components{also} is needed here, not {shown(raw)}"))
+            return None
+        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
+        return None if None in items else tuple(items)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+        if not isinstance(value, str):
+            for i, x in enumerate(value):
+                yield from self.item.leaves(x, (*path, i), part)
+
+    def schema(self, definitions: dict) -> dict:
+        low, high = (self.length, self.length) if self.length else (2, 3)
+        vector = {"type": "array", "items": self.item.schema(definitions), "minItems": low, "maxItems": high}
+        return {"anyOf": [{"type": "string"}, vector]} if self.point else vector
+
+
+@dataclass(frozen=True)
+class AxialRule:
+    """What has one component in the plane (about z) and several in space: a couple, an inertia.
+
+    Args:
+        item: the rule of a component.
+        lengths: how many components it may have in space.
+    """
+
+    item: FormulaRule
+    lengths: tuple[int, ...] = (3,)
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if not isinstance(raw, (list, tuple)):
+            value = self.item.read(raw, path, found)
+            return None if value is None else (value,)
+        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
+        return None if None in items else tuple(items)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+        for i, x in enumerate(value):
+            yield from self.item.leaves(x, path if len(value) == 1 else (*path, i), part)
+
+    def schema(self, definitions: dict) -> dict:
+        one = self.item.schema(definitions)
+        low, high = min(self.lengths), max(self.lengths)
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": low, "maxItems": high}]}
+
+
+@dataclass(frozen=True)
+class NameRule:
+    """The name of something declared elsewhere.
+
+    Args:
+        of: "body", "point" (`O`, `arm.end`), "own point" (of the body whose table this is), "seat" (a body or a
+            body's point), "coordinate", "speed", "free speed" or "axes" ("ground" or a body).
+    """
+
+    of: str
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
+        if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
+            return str(raw)
+        found.append(Finding(path, f"the name of a {self.of} is needed here, not {shown(raw)}"))
+        return None
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "string", "description": f"the name of a {self.of}"}
+
+
+@dataclass(frozen=True)
+class TextRule:
+    """Words for people, or one of a few words (`options`)."""
+
+    options: tuple[str, ...] = ()
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
+        if not isinstance(raw, str) or isinstance(raw, Decimal):
+            found.append(Finding(path, f"a text is needed here, not {shown(raw)}"))
+            return None
+        if self.options and raw not in self.options:
+            listed = ", ".join(f"'{word}'" for word in self.options)
+            mend = nearest(raw, self.options) or f"use one of {listed}"
+            found.append(Finding(path, f"unknown word {shown(raw)}", mend))
+            return None
+        return str(raw)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"enum": list(self.options)} if self.options else {"type": "string"}
+
+
+@dataclass(frozen=True)
+class FlagRule:
+    """true or false."""
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> bool | None:
+        if isinstance(raw, bool):
+            return raw
+        found.append(Finding(path, f"true or false is needed here, not {shown(raw)}"))
+        return None
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True)
+class UnitRule:
+    """The text of a unit: `kg*m^2`."""
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Unit | None:
+        if isinstance(raw, Unit):
+            return raw
+        if not isinstance(raw, str) or isinstance(raw, Decimal):
+            found.append(Finding(path, f"a unit is needed here, not {shown(raw)}", 'like "kg*m^2"'))
+            return None
+        try:
+            return parse_unit(raw)
+        except ExpressionError as error:
+            found.append(Finding(path, error.what, error.mend, error.column, error.length))
+            return None
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "string", "description": "a unit, like kg*m^2 or deg"}
+
+
+UNIT = UnitRule()
+
+
+@dataclass(frozen=True)
+class ListRule:
+    """A list of things of one rule (`single`: one of them may stand for itself)."""
+
+    item: Any
+    least: int = 1
+    most: int | None = None
+    single: bool = False
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> tuple | None:
+        if self.single and not isinstance(raw, (list, tuple)):
+            one = self.item.read(raw, path, found)
+            return None if one is None else (one,)
+        if not isinstance(raw, (list, tuple)):
+            found.append(Finding(path, f"a list is needed here, not {shown(raw)}"))
+            return None
+        if len(raw) < self.least or (self.most is not None and len(raw) > self.most):
+            count = str(self.least) if self.least == self.most else f"at least {self.least}"
+            count = f"at most {self.most}" if self.most is not None and len(raw) > self.most > self.least else count
+            found.append(Finding(path, f"{count} entries are needed here, not {len(raw)}"))
+            return None
+        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
+        return None if None in items else tuple(items)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        for i, x in enumerate(value):
+            yield from self.item.leaves(x, path if self.single and len(value) == 1 else (*path, i), part)
+
+    def schema(self, definitions: dict) -> dict:
+        many: dict = {"type": "array", "items": self.item.schema(definitions), "minItems": self.least}
+        if self.most is not None:
+            many["maxItems"] = self.most
+        return {"anyOf": [self.item.schema(definitions), many]} if self.single else many
+
+
+@dataclass(frozen=True)
+class TableRule:
+    """A table of named things of one rule; `what` names one of them in messages."""
+
+    item: Any
+    what: str
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Table | None:
+        if not isinstance(raw, Mapping):
+            found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
+            return None
+        return Table({str(name): self.item.read(x, (*path, name), found) for name, x in raw.items()})
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        for name, x in value.items():
+            if x is not None:
+                yield from self.item.leaves(x, (*path, name), part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "object", "additionalProperties": self.item.schema(definitions)}
+
+
+@dataclass(frozen=True)
+class EitherRule:
+    """A text is read by one rule, anything else by another."""
+
+    text: Any
+    other: Any
+
+    def _rule(self, value: Any) -> Any:
+        return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        return self._rule(raw).read(raw, path, found)
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        yield from self._rule(value).leaves(value, path, part)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"anyOf": [self.text.schema(definitions), self.other.schema(definitions)]}
+
+
+def unknown_keys(raw: Mapping, known, path: Path, found: list[Finding], what: str) -> None:
+    """Every key of a table that nobody reads is a finding."""
+    for key in raw:
+        if key not in known:
+            listed = ", ".join(f"'{name}'" for name in known)
+            mend = nearest(str(key), known) or (f"known here: {listed}" if listed else "")
+            found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True))

@@ -1,0 +1,30 @@
+"""Between: a pull between two points as a law of their distance."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.reach import reach
+from eomgen.model.kinds import BodyName, Pull, TwoPoints
+
+
+@dataclass(frozen=True, kw_only=True)
+class Between(Force):
+    """Two points pull each other with f(r, r'), r their distance; attraction positive [N].
+
+    Args:
+        points: the two points (beside `body`, bare names are that body's points).
+        body: whose points bare names are.
+        pull: the law; `r` and `r'` mean the distance and its rate here.
+    """
+
+    kind: ClassVar[str] = "between"
+    points: TwoPoints
+    body: BodyName | None = None
+    pull: Pull
+
+    def loads(self, scene: Scene) -> tuple[Load, ...]:
+        """A pull f(r, r')."""
+        line = reach(scene, self.points)
+        return line.pulled(scene.value_at(self.pull, {"r": line.length, "r'": line.rate}))

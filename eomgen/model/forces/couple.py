@@ -1,0 +1,31 @@
+"""Couple: on a body."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces import load
+from eomgen.model.forces.base import Force
+from eomgen.model.kinds import AxesName, BodyName, Couple
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoupleForce(Force):
+    """A couple on a body.
+
+    Args:
+        body: on which it acts.
+        couple: about z in the plane, 1; in space 3 components [N m].
+        axes: "ground", or the body whose axes the components are in.
+    """
+
+    kind: ClassVar[str] = "couple"
+    body: BodyName
+    couple: Couple
+    axes: AxesName = "ground"
+
+    def loads(self, scene: load.Scene) -> tuple[load.Load, ...]:
+        axes = None if self.axes == "ground" else self.axes
+        couple = scene.vector(self.couple)
+        if len(self.couple) == 1:
+            couple = (0, 0, couple[0])
+        return (load.Couple(self.body, couple, axes),)

@@ -1,0 +1,30 @@
+"""Damper: between two points."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.reach import reach
+from eomgen.model.kinds import Direction, Law, TwoPoints
+
+
+@dataclass(frozen=True, kw_only=True)
+class Damper(Force):
+    """A straight damper: pull c l', l the distance of its points.
+
+    Args:
+        points: its two ends.
+        damping: c [N s/m].
+        along: a fixed direction along which the rate is measured instead, ground axes, 2 or 3.
+    """
+
+    kind: ClassVar[str] = "damper"
+    points: TwoPoints
+    damping: Law
+    along: Direction | None = None
+
+    def loads(self, scene: Scene) -> tuple[Load, ...]:
+        """A pull c l'."""
+        line = reach(scene, self.points, self.along)
+        return line.pulled(scene.value(self.damping) * line.rate)

@@ -1,0 +1,25 @@
+"""Generalized: a force that belongs to a coordinate and to no point."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import GeneralizedForce, Load, Scene
+from eomgen.model.kinds import CoordinateName, Law
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generalized(Force):
+    """A generalized force: virtual work value * delta q.
+
+    Args:
+        coordinate: its q.
+        value: the force [N] or couple [N m] that does work on q.
+    """
+
+    kind: ClassVar[str] = "generalized"
+    coordinate: CoordinateName
+    value: Law
+
+    def loads(self, scene: Scene) -> tuple[Load, ...]:
+        return (GeneralizedForce(self.coordinate, scene.value(self.value)),)

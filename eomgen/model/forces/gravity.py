@@ -1,0 +1,38 @@
+"""Gravity: a weight on every body, or on some."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, UniformField
+from eomgen.model.kinds import Acceleration, Bodies
+from eomgen.symbolic.spatial import dot, times
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gravity(Force):
+    """m g at the mass centre of each body: V = - m g . r.
+
+    Args:
+        acceleration: g, ground axes, 2 or 3 [m/s^2].
+        bodies: on which it acts (None: all).
+    """
+
+    kind: ClassVar[str] = "gravity"
+    acceleration: Acceleration
+    bodies: Bodies | None = None
+
+    def loads(self, scene: Scene) -> tuple[Load, ...]:
+        """A uniform field, or m g at the mass centre of each named body."""
+        g = scene.vector(self.acceleration)
+        if self.bodies is None:
+            return (UniformField(g),)
+        return tuple(PointForce(place, times(m, g)) for place, m in scene.masses(self.bodies))
+
+    def potential(self, scene: Scene) -> Scalar | None:
+        """V = - sum m g . r"""
+        g = scene.vector(self.acceleration)
+        V: Scalar = 0
+        for place, m in scene.masses(self.bodies):
+            V = V - m * dot(g, scene.position(place))
+        return V

@@ -1,0 +1,66 @@
+"""What a force law gives: forces at points, couples on bodies, and forces without a place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+Scalar = Any
+Vector = tuple[Scalar, Scalar, Scalar]
+Place = tuple["str | None", Vector]
+"""(body, position in its axes); the body None is the ground."""
+
+
+@dataclass(frozen=True)
+class PointForce:
+    """A force on a body at a place of it; `axes` names the body in whose axes it is written, None the ground's [N]."""
+
+    place: Place
+    force: Vector
+    axes: str | None = None
+
+
+@dataclass(frozen=True)
+class Couple:
+    """A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m]."""
+
+    body: str
+    couple: Vector
+    axes: str | None = None
+
+
+@dataclass(frozen=True)
+class GeneralizedForce:
+    """A force along a coordinate, at no place."""
+
+    coordinate: str
+    value: Scalar
+
+
+@dataclass(frozen=True)
+class UniformField:
+    """An acceleration field that acts on every mass of the model: a weight m g at every mass centre [m/s^2]."""
+
+    acceleration: Vector
+
+
+Load = PointForce | Couple | GeneralizedForce | UniformField
+
+
+class Scene(Protocol):
+    """What a force law may ask of the system, over any scalar."""
+
+    def value(self, expression: Any) -> Scalar: ...
+    def value_at(self, expression: Any, also: dict[str, Scalar]) -> Scalar: ...
+    def vector(self, expressions: Any) -> Vector: ...
+    def place(self, point: str) -> Place: ...
+    def position(self, place: Place) -> Vector: ...
+    def velocity(self, place: Place) -> Vector: ...
+    def angle(self, body: str) -> Scalar: ...
+    def angle_rate(self, body: str) -> Scalar: ...
+    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[Place, Scalar], ...]: ...
+    def start(self, scalar: Scalar) -> Scalar: ...
+    def ground_place(self, at: Any) -> Vector: ...
+
+    @property
+    def plane(self) -> bool: ...

@@ -1,0 +1,19 @@
+"""Potential: an energy of the coordinates."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import Scalar, Scene
+from eomgen.model.kinds import Energy
+
+
+@dataclass(frozen=True, kw_only=True)
+class Potential(Force):
+    """A potential energy given as an expression of coordinates, parameters and time [J]."""
+
+    kind: ClassVar[str] = "potential"
+    energy: Energy
+
+    def potential(self, scene: Scene) -> Scalar | None:
+        return scene.value(self.energy)

@@ -1,0 +1,47 @@
+"""From one point to another: distance, direction and rate, for whatever acts along a line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.model.forces.load import Load, Place, PointForce, Scalar, Scene, Vector
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.spatial import dot, minus, times
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The line from one point to another.
+
+    Args:
+        ends: the two points.
+        length: their distance, or the component along a fixed direction [m].
+        direction: unit vector from the first to the second, ground axes.
+        rate: of the length [m/s].
+    """
+
+    ends: tuple[Place, Place]
+    length: Scalar
+    direction: Vector
+    rate: Scalar
+
+    def pulled(self, tension: Scalar) -> tuple[Load, ...]:
+        """Equal and opposite forces that draw the ends together [N]."""
+        pull = times(tension, self.direction)
+        return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))
+
+
+def reach(scene: Scene, points: tuple[str, ...], along: tuple | None = None) -> Reach:
+    """The line between two points: l = |p2 - p1|, or n . (p2 - p1) along a fixed direction n."""
+    ends = (scene.place(points[0]), scene.place(points[1]))
+    gap = minus(scene.position(ends[1]), scene.position(ends[0]))
+    rate = minus(scene.velocity(ends[1]), scene.velocity(ends[0]))
+    if along is None:
+        length = sqrt(dot(gap, gap))
+        direction = tuple(over(x, length) for x in gap)
+    else:
+        n = scene.vector(along)
+        size = sqrt(dot(n, n))
+        direction = tuple(over(x, size) for x in n)
+        length = dot(gap, direction)  # type: ignore[arg-type]
+    return Reach(ends, length, direction, dot(rate, direction))  # type: ignore[arg-type]

@@ -1,0 +1,41 @@
+"""Spring: between two points."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.load import Load, Scalar, Scene
+from eomgen.model.forces.reach import reach
+from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring(Force):
+    """A straight spring: V = k (l - l0)^2 / 2, l the distance of its points.
+
+    Args:
+        points: its two ends.
+        stiffness: k [N/m].
+        length: natural length l0 [m], or "start": the distance at the start.
+        along: a fixed direction along which the stretch is measured instead, ground axes, 2 or 3.
+    """
+
+    kind: ClassVar[str] = "spring"
+    points: TwoPoints
+    stiffness: LinearStiffness
+    length: NaturalLength
+    along: Direction | None = None
+
+    def loads(self, scene: Scene) -> tuple[Load, ...]:
+        """A pull k (l - l0)."""
+        line = reach(scene, self.points, self.along)
+        return line.pulled(scene.value(self.stiffness) * self._stretch(scene, line.length))
+
+    def potential(self, scene: Scene) -> Scalar | None:
+        """V = k (l - l0)^2 / 2"""
+        stretch = self._stretch(scene, reach(scene, self.points, self.along).length)
+        return Fraction(1, 2) * scene.value(self.stiffness) * stretch * stretch
+
+    def _stretch(self, scene: Scene, length: Scalar) -> Scalar:
+        return length - (scene.start(length) if self.length == "start" else scene.value(self.length))

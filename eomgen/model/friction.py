@@ -1,0 +1,25 @@
+"""Friction of a contact: Coulomb's `mu`, or a viscous coefficient."""
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from eomgen.model.fields import FormulaRule
+from eomgen.model.kinds import Friction
+from eomgen.model.part import Part, PartRule
+from eomgen.model.fields import FormulaRule
+from eomgen.symbolic.expressions import Expression
+
+Viscosity = Annotated[Expression, FormulaRule(None, "nonnegative")]  # -c N v: s/m
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resistance(Part):
+    """`friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v."""
+
+    shorthand: ClassVar[str] = "coulomb"
+    title: ClassVar[str] = "friction"
+    coulomb: Friction | None = None
+    viscous: Viscosity | None = None
+
+
+FrictionLaw = Annotated[Resistance, PartRule(Resistance)]

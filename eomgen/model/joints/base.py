@@ -1,0 +1,147 @@
+"""What every joint gives: its variables s, the pose X(s), the subspace S and its complement W, over any scalar.
+
+The joint sits at a point of the parent (`on`, `at`), in axes that may be turned by a fixed rotation (`turned`), and at
+a point of the child (`point`). Everything here is from the (turned) parent's joint frame to the child's joint frame.
+A column of S or W has six entries, angular part (torque) first, at the joint point, in the child's axes.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from eomgen.model.fields import ListRule
+from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
+from eomgen.model.part import Part, PartRule
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.spatial import Pose, Vector, cross, dot
+
+Value = Callable[[Expression], Any]
+Scalars = tuple[Any, ...]
+Column = tuple[Any, Any, Any, Any, Any, Any]
+
+X: Vector = (1, 0, 0)
+Y: Vector = (0, 1, 0)
+Z: Vector = (0, 0, 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turned(Part):
+    """A fixed rotation by `angle` about `axis` (default z)."""
+
+    title: ClassVar[str] = "turned"
+    axis: SpaceDirection | None = None
+    angle: ConstantAngle
+
+
+Turns = Annotated[tuple[Turned, ...], ListRule(PartRule(Turned), single=True)]
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What acts along one variable s of a joint, on the child and opposite on the parent (None: nothing).
+
+    drive - stiffness (s - rest) - damping s', and armature s'^2 / 2 more of kinetic energy.
+    """
+
+    drive: Expression | None = None
+    stiffness: Expression | None = None
+    damping: Expression | None = None
+    rest: Expression | None = None
+    armature: Expression | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint(Part):
+    """How a body hangs on its parent.
+
+    Args:
+        on: the parent, or a point of it (`arm.end`); None: the ground.
+        at: where the joint sits, parent's axes [m]; on the ground also a point's name.
+        point: the point of this body that sits there; None: its origin.
+        turned: fixed rotations before the joint, each about the axes that the one before left.
+    """
+
+    kind: ClassVar[str]
+    works: ClassVar[bool] = True
+    carries_reaction: ClassVar[bool] = True
+    seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
+
+    on: SeatName | None = None
+    at: MovingGroundPlace | None = None
+    point: OwnPointName | None = None
+    turned: Turns | None = None
+
+    @property
+    def parent(self) -> str | None:
+        """The body on which this one hangs (None: the ground)."""
+        return None if self.on is None else self.on.split(".", 1)[0]
+
+    def turns(self) -> tuple[Expression, ...]:
+        """The expressions that turn the child against the parent."""
+        raise NotImplementedError
+
+    def works_in(self, space: str) -> bool:
+        """Whether this version derives the joint in this space."""
+        return self.works
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        """The joint's variables s, f of them."""
+        raise NotImplementedError
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        """Pose of the child's joint frame in the parent's."""
+        raise NotImplementedError
+
+    def turn(self, s: Scalars, value: Value) -> Any:
+        """In the plane: the angle of the child against the parent [rad]."""
+        return 0
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        """S, f columns: the twist of the child against the parent is S s'."""
+        raise NotImplementedError
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        """W, 6 - f columns with S^T W = 0: the wrenches that the joint can carry."""
+        raise NotImplementedError
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        """Drive, spring, damper and rotor of each variable, in the order of s."""
+        return ()
+
+
+def vector(components: tuple[Expression, ...] | None, value: Value, default: Vector = (0, 0, 0)) -> Vector:
+    """A vector of the model, 3, with z = 0 in the plane."""
+    if components is None:
+        return default
+    values = [value(c) for c in components]
+    return tuple(values + [0] * (3 - len(values)))  # type: ignore[return-value]
+
+
+def unit(axis: Vector) -> Vector:
+    """The axis over its length, exactly."""
+    square = dot(axis, axis)
+    if square == 1:
+        return axis
+    length = sqrt(square)
+    return tuple(over(a, length) for a in axis)  # type: ignore[return-value]
+
+
+def across(n: Vector) -> tuple[Vector, Vector]:
+    """Two directions that with the unit vector n span space (a component that is plainly 0 keeps them short)."""
+    for k in (2, 1, 0):
+        if n[k] == 0:
+            e = (X, Y, Z)[k]
+            return e, cross(n, e)
+    e = cross(n, Z)
+    return e, cross(n, e)
+
+
+def angular(n: Vector) -> Column:
+    """A turn about n, or a torque along it."""
+    return (*n, 0, 0, 0)
+
+
+def linear(n: Vector) -> Column:
+    """A displacement, or a force, along n."""
+    return (0, 0, 0, *n)

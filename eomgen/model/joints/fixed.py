@@ -1,0 +1,38 @@
+"""Fixed: the child does not move against its parent."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.kinds import ConstantAngle, SpaceDirection
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.spatial import Pose, rotation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fixed(Joint):
+    """Welded on at a constant `angle` about `axis` (default z): f = 0, W = 1."""
+
+    kind: ClassVar[str] = "fixed"
+    angle: ConstantAngle | None = None
+    axis: SpaceDirection | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return ()
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return ()
+
+    def turn(self, s: Scalars, value: Value) -> Any:
+        return 0 if self.angle is None else value(self.angle)
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        angle = self.turn(s, value)
+        return Pose(rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return ()
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return (*map(angular, (X, Y, Z)), *map(linear, (X, Y, Z)))

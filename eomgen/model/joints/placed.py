@@ -1,0 +1,74 @@
+"""Placed: where the child stands is given as expressions. Geometry, which carries no reaction."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
+from eomgen.model.kinds import Angle, SpaceDirection
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.spatial import Matrix, Pose, apply, rotation, transposed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Placed(Joint):
+    """Position `at` and orientation as expressions: s = (at, angle) or (at, angles), S as of a free body.
+
+    Args:
+        at: of `point` in the parent's axes, 2 or 3 [m].
+        angle: of the child about `axis` (default z) [rad]; in space `orientation` and `angles` instead.
+        orientation: a sequence of the body's own axes, "zxz"; or "quaternion", with `quaternion` and `omega`.
+    """
+
+    kind: ClassVar[str] = "placed"
+    carries_reaction: ClassVar[bool] = False
+    seated: ClassVar[bool] = False
+    angle: Angle | None = None
+    axis: SpaceDirection | None = None
+    orientation: Sequence | None = None
+    angles: Angles | None = None
+    quaternion: Quaternion | None = None
+    omega: Omega | None = None
+
+    def works_in(self, space: str) -> bool:
+        return self.orientation != "quaternion"
+
+    def turns(self) -> tuple[Expression, ...]:
+        return self.angles or (() if self.angle is None else (self.angle,))
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        zero = Expression.number(0)
+        at = (zero,) * (2 if space == "plane" else 3) if self.at is None else self.at
+        assert not isinstance(at, str), "a ground point's name stands for its coordinates before this is asked"
+        return (*at, *(self.angles or (self.angle or zero,)))
+
+    def turn(self, s: Scalars, value: Value) -> Any:
+        return s[2]
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        places = self._places(s)
+        position = (*s[:places], *([0] * (3 - places)))
+        return Pose(self._rotation(s[places:], value), position)  # type: ignore[arg-type]
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        places = self._places(s)
+        R_CP = transposed(self._rotation(s[places:], value))
+        along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[:places])
+        if self.angles is not None:
+            return (*along, *turning_columns(str(self.orientation), s[places:]))
+        return (*along, angular(unit(vector(self.axis, value, Z))))
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return ()
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return ()
+
+    def _places(self, s: Scalars) -> int:
+        return len(s) - (3 if self.angles is not None else 1)
+
+    def _rotation(self, angles: Scalars, value: Value) -> Matrix:
+        if self.angles is not None:
+            return rotation_by(str(self.orientation), angles)
+        return rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))

@@ -1,0 +1,70 @@
+"""Revolute: the child turns about one axis."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Scalars,
+    Value,
+    X,
+    Y,
+    Z,
+    across,
+    angular,
+    linear,
+    unit,
+    vector,
+)
+from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.spatial import Pose, rotation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revolute(Joint):
+    """A hinge: s = angle, X = Rot(n, s), S = (n, 0); W: the torques across n and every force.
+
+    Args:
+        angle: of the child against the parent, 0 = axes agree [rad].
+        axis: in the turned axes; need not have unit length; None: z.
+        torque: on the child, minus on the parent [N m].
+        stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+    """
+
+    kind: ClassVar[str] = "revolute"
+    angle: Angle
+    axis: SpaceDirection | None = None
+    torque: Torque | None = None
+    stiffness: AngularStiffness | None = None
+    damping: Law | None = None
+    rest: RestAngle | None = None
+    armature: RotorInertia | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def normal(self, value: Value):
+        """The unit axis n."""
+        return unit(vector(self.axis, value, Z))
+
+    def turn(self, s: Scalars, value: Value) -> Any:
+        return s[0]
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        return Pose(rotation(self.normal(value), cos(s[0]), sin(s[0])))
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return (angular(self.normal(value)),)
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return (*map(angular, across(self.normal(value))), *map(linear, (X, Y, Z)))
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)

@@ -1,0 +1,196 @@
+"""A part of a model: a frozen dataclass that reads its own fields by their rules, from Python or from a file."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields
+from functools import cache
+from types import NoneType, UnionType
+from typing import Any, ClassVar, Union, get_args, get_origin
+
+from eomgen.errors import ModelError, Problem
+from eomgen.model.fields import Finding, Leaf, Path, in_si, nearest, shown, unknown_keys, whereabouts
+from eomgen.symbolic.expressions import Expression
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One field of a part.
+
+    Args:
+        name: the attribute in Python.
+        key: the key in the file (`from` for the attribute `from_`).
+        rule: what its value may be.
+        required: it has no default.
+        inline: its keys stand among the keys of the part itself.
+        default: its value when it is left out.
+    """
+
+    name: str
+    key: str
+    rule: Any
+    required: bool
+    inline: bool
+    default: Any
+
+
+@cache
+def slots_of(cls: type) -> tuple[Slot, ...]:
+    """The fields of a part, in order."""
+    slots = []
+    for field in fields(cls):
+        default = field.default_factory() if field.default_factory is not MISSING else field.default
+        required = default is MISSING
+        slots.append(
+            Slot(field.name, field.name.rstrip("_"), _rule_of(field.type), required,
+                 bool(field.metadata.get("inline")), None if required else default)
+        )  # fmt: skip
+    return tuple(slots)
+
+
+def _rule_of(annotation: Any) -> Any:
+    if get_origin(annotation) in (Union, UnionType):
+        (annotation,) = (a for a in get_args(annotation) if a is not NoneType)
+    return annotation.__metadata__[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """Base of every part. Values given in Python are read by the same rules as those of a file.
+
+    Raises:
+        ModelError: on construction, naming every field whose value cannot be read.
+    """
+
+    shorthand: ClassVar[str] = ""  # the field that a bare value stands for: `m = 1.2`
+    title: ClassVar[str] = ""  # what messages call it
+    in_unit: ClassVar[tuple[str, ...]] = ()  # the fields whose numbers are in the part's own `unit`
+
+    def __post_init__(self) -> None:
+        found: list[Finding] = []
+        raw = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
+        given = [slot for slot in slots_of(type(self)) if raw[slot.name] is not slot.default]
+        values = {slot.name: slot.rule.read(raw[slot.name], (slot.key,), found) for slot in given}
+        for name, value in _in_si(type(self), values, raw, (), found).items():
+            object.__setattr__(self, name, value)
+        if found:
+            raise ModelError(tuple(
+                Problem(".".join([title_of(type(self)), *map(str, f.path)]), f.what, mend=f.mend) for f in found
+            ))  # fmt: skip
+
+
+def _in_si(cls: type, values: dict, raw: Mapping, path: Path, found: list[Finding]) -> dict:
+    """The values read, those given in the part's `unit` exactly in SI (an Expression is in SI already)."""
+    unit = values.get("unit")
+    if unit is None or not cls.in_unit:
+        return values
+    fresh = [name for name in cls.in_unit if values.get(name) is not None and not isinstance(raw[name], Expression)]
+    return {**values, **{name: in_si(values[name], unit, (*path, name), found) for name in fresh}}
+
+
+def title_of(cls: type) -> str:
+    """What messages call a part of this class."""
+    return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
+
+
+def made(cls: type, values: Mapping[str, Any]) -> Any:
+    """A part from values that were read already."""
+    part = object.__new__(cls)
+    for slot in slots_of(cls):
+        object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
+    return part
+
+
+@dataclass(frozen=True)
+class PartRule:
+    """A table that is a part of this class (or a part made in Python)."""
+
+    cls: type
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if isinstance(raw, self.cls):
+            return raw
+        if not isinstance(raw, Mapping):
+            if not self.cls.shorthand or isinstance(raw, (list, tuple)):
+                found.append(Finding(path, f"a table is needed here ({title_of(self.cls)}), not {shown(raw)}"))
+                return None
+            return self._shorthand(raw, path, found)
+        return read_part(self.cls, raw, path, found)
+
+    def _shorthand(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        (slot,) = (s for s in slots_of(self.cls) if s.name == self.cls.shorthand)
+        return made(self.cls, {slot.name: slot.rule.read(raw, path, found)})
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        return leaves_of(value, path)
+
+    def schema(self, definitions: dict) -> dict:
+        from eomgen.model.schema import part_schema
+
+        return part_schema(self.cls, definitions)
+
+
+def read_part(cls: type, raw: Mapping, path: Path, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
+    """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
+    slots = slots_of(cls)
+    inline = next((slot for slot in slots if slot.inline), None)
+    own = [slot for slot in slots if slot is not inline]
+    keys = (*known, *(slot.key for slot in own))
+    values = {}
+    if inline is not None:
+        rest = {key: value for key, value in raw.items() if key not in keys}
+        values[inline.name] = inline.rule.read(rest, path, found)
+    else:
+        unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)))
+    for slot in own:
+        if slot.key in raw:
+            values[slot.name] = slot.rule.read(raw[slot.key], (*path, slot.key), found)
+        elif slot.required:
+            found.append(Finding(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'"))
+            values[slot.name] = None
+    return made(cls, _in_si(cls, values, raw, path, found))
+
+
+def leaves_of(part: Any, path: Path) -> Iterator[Leaf]:
+    """Every value of a part and of the parts in it, with its path and its rule."""
+    for slot in slots_of(type(part)):
+        value = getattr(part, slot.name)
+        if value is not None:
+            yield from slot.rule.leaves(value, path if slot.inline else (*path, slot.key), part)
+
+
+@dataclass(frozen=True)
+class SeamRule:
+    """A table whose `kind` names one of several classes.
+
+    Args:
+        what: what a member is called: "shape", "joint", "force", "constraint".
+        members: the seam's tuple ALL.
+    """
+
+    what: str
+    members: tuple[type, ...]
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if isinstance(raw, self.members):
+            return raw
+        if not isinstance(raw, Mapping):
+            found.append(Finding(path, f"a {self.what} is a table with a 'kind', not {shown(raw)}"))
+            return None
+        kinds = {member.kind: member for member in self.members}
+        kind = raw.get("kind")
+        if kind is None:
+            found.append(Finding(path, f"{whereabouts(path, self.what)} has no 'kind'", f"one of {', '.join(kinds)}"))
+            return None
+        if kind not in kinds:
+            mend = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
+            found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend))
+            return None
+        return read_part(kinds[kind], raw, path, found, known=("kind",))
+
+    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+        return leaves_of(value, path)
+
+    def schema(self, definitions: dict) -> dict:
+        from eomgen.model.schema import part_schema
+
+        branches = [part_schema(member, definitions) for member in self.members]
+        return {"oneOf": branches, "required": ["kind"], "discriminator": {"propertyName": "kind"}}

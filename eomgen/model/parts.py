@@ -1,0 +1,288 @@
+"""Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+from eomgen.model import constraints, forces, joints, shapes
+from eomgen.model.constraints import Constraint
+from eomgen.model.fields import (
+    UNIT,
+    Equation,
+    EquationRule,
+    ListRule,
+    NameRule,
+    OutputRule,
+    TableRule,
+    TextRule,
+)
+from eomgen.model.forces import Force
+from eomgen.model.joints import Joint
+from eomgen.model.kinds import (
+    ConstantAngle,
+    Coordinates,
+    Flag,
+    Formula,
+    Inertia,
+    Mass,
+    MovingPlace,
+    Place,
+    RateLaw,
+    SpaceDirection,
+    Text,
+    TimeLaw,
+    TwoOwnPoints,
+)
+from eomgen.model.part import Part, PartRule, SeamRule
+from eomgen.model.shapes import Shape
+from eomgen.model.table import Table
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.units import Unit
+
+UnitText = Annotated[Unit, UNIT]
+ShapeField = Annotated[Shape, SeamRule("shape", shapes.ALL)]
+JointField = Annotated[Joint, SeamRule("joint", joints.ALL)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter(Part):
+    """A constant of the system.
+
+    Args:
+        value: a number, an expression of other parameters, or None (then only derivations can be made).
+        unit: in which the number is given; `value` is in SI already.
+        about: a remark.
+        positive: whether roots of its squares may be taken.
+    """
+
+    shorthand: ClassVar[str] = "value"
+    title: ClassVar[str] = "parameter"
+    in_unit: ClassVar[tuple[str, ...]] = ("value",)
+    value: Formula | None = None
+    unit: UnitText | None = None
+    about: Text | None = None
+    positive: Flag = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coordinate(Part):
+    """A generalized coordinate q.
+
+    Args:
+        start, speed: q and q' at the start (None: 0).
+        unit: in which the numbers are given; they are in SI already.
+        near: first guess of a dependent coordinate, or of an equilibrium.
+        dependent: eliminated through the constraints.
+        motion, rate, acceleration: q, q' or q'' as a function of time, of a driven coordinate.
+    """
+
+    shorthand: ClassVar[str] = "start"
+    title: ClassVar[str] = "coordinate"
+    in_unit: ClassVar[tuple[str, ...]] = ("start", "speed", "near", "motion", "rate", "acceleration")
+    start: Formula | None = None
+    speed: Formula | None = None
+    unit: UnitText | None = None
+    about: Text | None = None
+    near: Formula | None = None
+    dependent: Flag = False
+    motion: TimeLaw | None = None
+    rate: TimeLaw | None = None
+    acceleration: TimeLaw | None = None
+
+    @property
+    def driven(self) -> bool:
+        """Whether it moves as the model says."""
+        return any(law is not None for law in (self.motion, self.rate, self.acceleration))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Speed(Part):
+    """A generalized speed that is not a rate: `rate`, a combination of the rates (None: named by a joint's `omega`)."""
+
+    shorthand: ClassVar[str] = "rate"
+    title: ClassVar[str] = "speed"
+    rate: RateLaw | None = None
+    start: Formula | None = None
+    about: Text | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input(Part):
+    """A known function of time that a caller may replace."""
+
+    shorthand: ClassVar[str] = "value"
+    title: ClassVar[str] = "input"
+    in_unit: ClassVar[tuple[str, ...]] = ("value",)
+    value: TimeLaw
+    about: Text | None = None
+    unit: UnitText | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece(Part):
+    """One piece of a composite body: a shape `at` a place, turned by `angle`; a hole takes away.
+
+    Args:
+        shape: its form; its mass only where the densities are not equal.
+        at: where the shape's origin is, body axes, 2 or 3 [m].
+        angle: about `axis` (default z) [rad].
+    """
+
+    title: ClassVar[str] = "a piece"
+    shape: ShapeField = field(metadata={"inline": True})
+    at: Place | None = None
+    angle: ConstantAngle | None = None
+    axis: SpaceDirection | None = None
+    hole: Flag = False
+
+
+Pieces = Annotated[tuple[Piece, ...], ListRule(PartRule(Piece))]
+Points = Annotated[Table[tuple[Expression, ...]], TableRule(MovingPlace.__metadata__[0], "point")]
+GroundPoints = Annotated[Table[tuple[Expression, ...]], TableRule(Place.__metadata__[0], "point")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body(Part):
+    """A rigid body: its mass (`shape`; or `mass`, `center`, `inertia`; or `mass` and `parts`), its points, its joint.
+
+    Args:
+        center: mass centre in the body's axes (None: the origin) [m].
+        inertia: about the mass centre, body axes: 1 value in the plane, 3 principal values or
+            6 `[xx, yy, zz, xy, yz, zx]` with the tensor's sign in space [kg m^2].
+        line: two of its points, a member's axis.
+        measured: published data, which may break the triangle inequality.
+    """
+
+    title: ClassVar[str] = "body"
+    about: Text | None = None
+    shape: ShapeField | None = None
+    mass: Mass | None = None
+    center: Place | None = None
+    inertia: Inertia | None = None
+    parts: Pieces | None = None
+    points: Points = Table()
+    line: TwoOwnPoints | None = None
+    joint: JointField | None = None
+    measured: Flag = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Truss(Part):
+    """Massless two-force members between hinges: nodes and members `n1-n2`."""
+
+    title: ClassVar[str] = "truss"
+    nodes: GroundPoints
+    members: Annotated[tuple[str, ...], ListRule(NameRule("member"))]
+    about: Text | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Linearize(Part):
+    """About which state the equations are linearized, and in which coordinates (None: all)."""
+
+    title: ClassVar[str] = "[linearize]"
+    about: Annotated[str, TextRule(("equilibrium", "start"))] = "equilibrium"
+    coordinates: Coordinates | None = None
+
+
+Equations = Annotated[tuple[Equation, ...], ListRule(EquationRule(), single=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given(Part):
+    """Kinematics at one instant: known velocities and accelerations as equations."""
+
+    title: ClassVar[str] = "[given]"
+    velocity: Equations | None = None
+    acceleration: Equations | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unknown(Part):
+    """A number that is asked, and what it is."""
+
+    shorthand: ClassVar[str] = "about"
+    title: ClassVar[str] = "unknown"
+    about: Text | None = None
+    unit: UnitText | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output(Part):
+    """What is asked, by name.
+
+    Args:
+        value: an expression that may call functions of the motion.
+        at: the instant: an equation; the first time after the start at which it holds.
+        from_: "start" or "rest" (`from` in a file).
+        side: just before or just after the instant.
+        unit: in which the result is given (None: SI).
+    """
+
+    shorthand: ClassVar[str] = "value"
+    title: ClassVar[str] = "output"
+    value: Annotated[Expression, OutputRule()]
+    at: Annotated[Equation, EquationRule()] | None = None
+    from_: Annotated[str, TextRule(("start", "rest"))] | None = None
+    side: Annotated[str, TextRule(("before", "after"))] | None = None
+    unit: UnitText | None = None
+    about: Text | None = None
+
+
+def _table(cls: type, what: str) -> TableRule:
+    return TableRule(PartRule(cls), what)
+
+
+Constraints = Annotated[Table[Constraint], TableRule(SeamRule("constraint", constraints.ALL), "constraint")]
+Forces = Annotated[Table[Force], TableRule(SeamRule("force", forces.ALL), "force")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Model(Part):
+    """A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order.
+
+    Raises:
+        ModelError: on construction, with every problem at once.
+    """
+
+    title: ClassVar[str] = "the model"
+    name: Text = "model"
+    space: Annotated[str, TextRule(("plane", "space"))] = "plane"
+    about: Text | None = None
+    source: Text | None = None
+    parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
+    coordinates: Annotated[Table[Coordinate], _table(Coordinate, "coordinate")] = Table()
+    speeds: Annotated[Table[Speed], _table(Speed, "speed")] = Table()
+    inputs: Annotated[Table[Input], _table(Input, "input")] = Table()
+    points: GroundPoints = Table()
+    bodies: Annotated[Table[Body], _table(Body, "body")] = Table()
+    constraints: Constraints = Table()
+    trusses: Annotated[Table[Truss], _table(Truss, "truss")] = Table()
+    forces: Forces = Table()
+    linearize: Annotated[Linearize, PartRule(Linearize)] | None = None
+    given: Annotated[Given, PartRule(Given)] | None = None
+    unknowns: Annotated[Table[Unknown], _table(Unknown, "unknown")] = Table()
+    outputs: Annotated[Table[Output], _table(Output, "output")] = Table()
+
+    def __post_init__(self) -> None:
+        from eomgen.model.making import finish
+
+        finish(self)
+
+    def body_points(self, body: str) -> tuple[str, ...]:
+        """The names of a body's points: `origin`, its shape's or mass centre's, its own."""
+        part = self.bodies[body]
+        names = ["origin"]
+        if part.shape is not None:
+            names += part.shape.point_names
+        elif part.mass is not None or part.center is not None:
+            names.append("center")
+        return tuple(dict.fromkeys([*names, *part.points]))
+
+    def resolve_point(self, point: str) -> tuple[str | None, str]:
+        """(body, its point) of "arm.end"; (None, point) of a point of the ground; (truss, node) of "T.n1"."""
+        owner, dot, name = point.partition(".")
+        return (owner, name) if dot else (None, owner)
+
+    def place(self, at: tuple[Expression, ...] | str) -> tuple[Expression, ...]:
+        """Coordinates of a place on the ground that may be given by a point's name [m]."""
+        return self.points[at] if isinstance(at, str) else at

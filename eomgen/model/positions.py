@@ -1,0 +1,251 @@
+"""TOML text -> where every key and value stands in it (tomllib gives the values but not their places)."""
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass, field
+
+Path = tuple[str | int, ...]
+
+_BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_SPACE = re.compile(r"[ \t]*")
+_KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'""")
+_STRING = re.compile(
+    r'"""(?:[^"\\]|\\[\s\S]|"(?!""))*"{3,5}'
+    r"|'''(?:[^']|'(?!''))*'{3,5}"
+    r'|"(?:[^"\\\n]|\\.)*"'
+    r"|'[^'\n]*'"
+)
+_BARE = re.compile(r"[^,\]}#\n]+")
+_ESCAPE = re.compile(r"\\(?:u[0-9A-Fa-f]{4}|U[0-9A-Fa-f]{8}|\s*\n\s*|[\s\S])")
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of the text, from `start` up to `end`."""
+
+    start: int
+    end: int
+
+
+@dataclass
+class Index:
+    """Where the keys and values of a text stand.
+
+    Args:
+        text: the text.
+        keys, values: the span of each key, and of each value (a table's header stands for its value), by path.
+        twice: (path, span) of every key that was given before.
+    """
+
+    text: str
+    keys: dict[Path, Span] = field(default_factory=dict)
+    values: dict[Path, Span] = field(default_factory=dict)
+    twice: list[tuple[Path, Span]] = field(default_factory=list)
+    _lines: list[int] = field(default_factory=list)
+
+    def line_and_column(self, offset: int) -> tuple[int, int]:
+        """Line and column of an offset, both from 1."""
+        if not self._lines:
+            self._lines = [0, *(m.end() for m in re.finditer("\n", self.text))]
+        line = bisect_right(self._lines, offset)
+        return line, offset - self._lines[line - 1] + 1
+
+    def line(self, number: int) -> str:
+        """The text of a line, from 1."""
+        self.line_and_column(0)
+        start = self._lines[number - 1]
+        return self.text[start:].split("\n", 1)[0].rstrip("\r")
+
+    def nearest(self, path: Path, key: bool = False) -> Span:
+        """The span of the value at a path (or of its key), else of what it is in."""
+        if key and path in self.keys:
+            return self.keys[path]
+        while path:
+            if path in self.values:
+                return self.values[path]
+            path = path[:-1]
+        return Span(0, 0)
+
+    def within(self, path: Path, column: int, length: int) -> Span:
+        """The span of some characters of the string that is the value at a path."""
+        whole = self.nearest(path)
+        offsets = _offsets(self.text[whole.start : whole.end])
+        if offsets is None:
+            return whole
+        last = len(offsets) - 1
+        first, after = min(column, last), min(column + max(1, length), last)
+        return Span(whole.start + offsets[first], whole.start + max(offsets[after], offsets[first] + 1))
+
+
+def index_of(text: str) -> Index:
+    """The places of all keys and values of a TOML text; of a text that is none, those up to where that shows."""
+    scanner = _Scanner(text)
+    try:
+        scanner.document()
+    except _Lost:
+        pass
+    return scanner.index
+
+
+class _Lost(Exception):
+    """The text is not TOML from here on."""
+
+
+class _Scanner:
+    """One pass over a text that tomllib has accepted, or refused for a key that is there twice."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.at, self.index = text, 0, Index(text)
+        self.counts: dict[Path, int] = {}
+
+    def document(self) -> None:
+        table: Path = ()
+        self.match(_BLANK)
+        while self.at < len(self.text):
+            if self.text.startswith("[", self.at):
+                table = self.header()
+            else:
+                self.pair(table)
+            self.match(_BLANK)
+
+    def match(self, pattern: re.Pattern[str]) -> str:
+        found = pattern.match(self.text, self.at)
+        if found is None:
+            raise _Lost
+        self.at = found.end()
+        return found.group()
+
+    def take(self, sign: str) -> None:
+        if not self.text.startswith(sign, self.at):
+            raise _Lost
+        self.at += len(sign)
+
+    def header(self) -> Path:
+        start, many = self.at, self.text.startswith("[[", self.at)
+        self.take("[[" if many else "[")
+        keys = self.dotted()
+        self.take("]]" if many else "]")
+        path: Path = ()
+        for k, (name, _) in enumerate(keys):
+            path = (*path, name)
+            if many and k == len(keys) - 1:
+                self.counts[path] = self.counts.get(path, -1) + 1
+            if path in self.counts:
+                path = (*path, self.counts[path])
+        span = keys[-1][1]
+        if path in self.index.values and not many and self.index.values[path] in self.headers:
+            self.index.twice.append((path, span))
+        self.index.keys.setdefault(path, span)
+        self.index.values.setdefault(path, Span(start, self.at))
+        self.headers.append(self.index.values[path])
+        for k in range(1, len(keys)):
+            self.index.values.setdefault(tuple(name for name, _ in keys[:k]), Span(start, self.at))
+        return path
+
+    @property
+    def headers(self) -> list[Span]:
+        return self.__dict__.setdefault("_headers", [])
+
+    def dotted(self) -> list[tuple[str, Span]]:
+        """A key, dotted or not: its pieces and where they stand."""
+        pieces = []
+        while True:
+            self.match(_SPACE)
+            start = self.at
+            word = self.match(_KEY)
+            pieces.append((_decoded(word), Span(start, self.at)))
+            self.match(_SPACE)
+            if not self.text.startswith(".", self.at):
+                return pieces
+            self.at += 1
+
+    def pair(self, table: Path) -> None:
+        keys = self.dotted()
+        self.take("=")
+        self.match(_SPACE)
+        path = table
+        for name, span in keys[:-1]:
+            path = (*path, name)
+            self.index.keys.setdefault(path, span)
+            self.index.values.setdefault(path, span)
+        name, span = keys[-1]
+        path = (*path, name)
+        if path in self.index.keys:
+            self.index.twice.append((path, span))
+        self.index.keys.setdefault(path, span)
+        self.value(path)
+
+    def value(self, path: Path) -> None:
+        start = self.at
+        sign = self.text[self.at : self.at + 1]
+        if sign == "{":
+            self.inline_table(path)
+        elif sign == "[":
+            self.array(path)
+        elif sign in ("'", '"'):
+            self.match(_STRING)
+        else:
+            self.at -= len(word := self.match(_BARE)) - len(word.rstrip())
+        self.index.values.setdefault(path, Span(start, self.at))
+
+    def inline_table(self, path: Path) -> None:
+        self.take("{")
+        self.match(_BLANK)
+        while not self.text.startswith("}", self.at):
+            self.pair(path)
+            self.match(_BLANK)
+            if self.text.startswith(",", self.at):
+                self.at += 1
+                self.match(_BLANK)
+            elif not self.text.startswith("}", self.at):
+                raise _Lost
+        self.take("}")
+
+    def array(self, path: Path) -> None:
+        self.take("[")
+        self.match(_BLANK)
+        count = 0
+        while not self.text.startswith("]", self.at):
+            self.value((*path, count))
+            count += 1
+            self.match(_BLANK)
+            if self.text.startswith(",", self.at):
+                self.at += 1
+                self.match(_BLANK)
+            elif not self.text.startswith("]", self.at):
+                raise _Lost
+        self.take("]")
+
+
+def _decoded(word: str) -> str:
+    if word[0] == "'":
+        return word[1:-1]
+    if word[0] == '"':
+        import tomllib
+
+        try:
+            return next(iter(tomllib.loads(f"{word}=0")))
+        except tomllib.TOMLDecodeError as error:
+            raise _Lost from error
+    return word
+
+
+def _offsets(source: str) -> list[int] | None:
+    """Of each character of a string's value, where it stands in the string's source; one more for its end."""
+    if not source or source[0] not in "'\"":
+        return None
+    quote = source[:3] if source[:3] in ('"""', "'''") else source[0]
+    at, end = len(quote), len(source) - len(quote)
+    if len(quote) == 3 and source[at : at + 1] == "\n":
+        at += 1
+    offsets = []
+    while at < end:
+        escape = _ESCAPE.match(source, at) if source[0] == '"' else None
+        if escape is None:
+            offsets.append(at)
+            at += 1
+        else:
+            if "\n" not in escape.group():
+                offsets.append(at)
+            at = escape.end()
+    return [*offsets, end]

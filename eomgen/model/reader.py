@@ -1,0 +1,151 @@
+"""Text of a model file -> Model, or every problem at once with its place in the text."""
+
+import re
+import tomllib
+from pathlib import Path as FilePath
+from typing import Any
+
+from eomgen.errors import ModelError, Problem
+from eomgen.model.fields import Decimal, Finding
+from eomgen.model.making import draft_of, findings_of
+from eomgen.model.parts import Model
+from eomgen.model.positions import Index, Span, index_of
+
+LARGEST = 1_000_000  # bytes
+WIDEST = 100  # characters of a source line that an error shows
+VERSION = 1
+
+
+def load(path: str | FilePath) -> Model:
+    """The model that a file declares.
+
+    Raises:
+        ModelError: the file cannot be read, or the model is wrong; every problem at once.
+    """
+    try:
+        with open(path, "rb") as file:
+            data = file.read(LARGEST + 1)
+    except OSError as error:
+        raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
+    return _loads(data, str(path), FilePath(path).stem)
+
+
+def loads(text: str | bytes, name: str = "<text>") -> Model:
+    """The model that a text declares; `name` stands for the file in error messages.
+
+    Raises:
+        ModelError: the model is wrong; every problem at once.
+    """
+    try:
+        data = text.encode() if isinstance(text, str) else text
+    except UnicodeEncodeError as error:
+        raise ModelError("the text is not UTF-8", name, "save it as UTF-8") from error
+    return _loads(data, name, "model")
+
+
+def _loads(data: bytes, name: str, title: str) -> Model:
+    text = _text(data, name)
+    index = index_of(text)
+    raw, twice = _table(text, index, name)
+    found = [*twice, *_version(raw)]
+    draft = draft_of(raw, title, found)
+    found += findings_of(draft, found)
+    if found:
+        raise ModelError(_problems(found, index, name))
+    return draft
+
+
+def _text(data: bytes, name: str) -> str:
+    if len(data) > LARGEST:
+        raise ModelError("the file is over 1 MB", f"{name}:1:1", "say it in Python: a model is the same value there")
+    try:
+        return data.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode("utf-8-sig", "replace")
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        raise ModelError(f"not UTF-8: byte 0x{data[error.start]:02x}", f"{name}:{line}:{column}", "save it as UTF-8") from error
+
+
+def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Finding]]:
+    """The values of a text, and its keys that are there twice (of which the first one counts)."""
+    try:
+        return tomllib.loads(text, parse_float=_decimal), []
+    except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
+        failure = error
+    twice = [
+        Finding(path, f"'{path[-1]}' is given twice", f"first given in line {_line(index, path)}", key=True)
+        for path, _ in index.twice
+    ]
+    if twice:
+        raise ModelError(tuple(
+            _problem(finding, span, index, name) for finding, (_, span) in zip(twice, index.twice, strict=True)
+        ))  # fmt: skip
+    raise ModelError((_not_toml(failure, index, name),)) from failure
+
+
+def _line(index: Index, path: tuple) -> int:
+    return index.line_and_column(index.keys[path].start)[0]
+
+
+def _decimal(word: str) -> Decimal:
+    return Decimal(word.replace("_", "").lstrip("+"))
+
+
+def _not_toml(error: Exception, index: Index, name: str) -> Problem:
+    """The problem that tomllib tells, at the place that it tells."""
+    message = str(error)
+    place = re.search(r"\(at (?:line (\d+), column (\d+)|end of document)\)", message)
+    what = re.sub(r"\s*\(at .*\)$", "", message)
+    if isinstance(error, RecursionError):
+        what = "tables or lists too deep inside one another"
+    elif place is None:
+        what = "a number with too many digits"
+    if place is not None and place.group(1):
+        lines = index.text.split("\n")
+        offset = sum(len(line) + 1 for line in lines[: int(place.group(1)) - 1]) + int(place.group(2)) - 1
+    else:
+        offset = max(0, len(index.text.rstrip()) - 1) if place is not None else 0
+    return _problem(Finding((), f"not TOML: {what}", _toml_mend(what)), Span(offset, offset + 1), index, name)
+
+
+def _toml_mend(what: str) -> str:
+    if "value" in what.lower():
+        return 'an expression stands in quotes: angle = "theta - pi/2"'
+    return "see https://toml.io" if "digits" not in what and "deep" not in what else "make it smaller"
+
+
+def _version(raw: dict[str, Any]) -> list[Finding]:
+    """The findings of the first key, `eomgen = 1`."""
+    if "eomgen" not in raw:
+        return [Finding((), "the file does not say that it is a model", "begin it with the line: eomgen = 1")]
+    version = raw["eomgen"]
+    if type(version) is not int or version != VERSION:
+        return [Finding(("eomgen",), f"this is version {VERSION} of the model file, not {version!r}", "write eomgen = 1")]
+    return []
+
+
+def _problems(found: list[Finding], index: Index, name: str) -> tuple[Problem, ...]:
+    """Each finding at its place, in the order of the file."""
+    placed = sorted(((_span(finding, index), finding) for finding in found), key=lambda pair: pair[0].start)
+    problems = [_problem(finding, span, index, name) for span, finding in placed]
+    return tuple(dict.fromkeys(problems))
+
+
+def _span(finding: Finding, index: Index) -> Span:
+    if finding.column is not None:
+        return index.within(finding.path, finding.column, finding.length or 1)
+    return index.nearest(finding.path, finding.key)
+
+
+def _problem(finding: Finding, span: Span, index: Index, name: str) -> Problem:
+    line, column = index.line_and_column(span.start)
+    return Problem(f"{name}:{line}:{column}", finding.what, _excerpt(index.line(line), column, span), finding.mend)
+
+
+def _excerpt(source: str, column: int, span: Span) -> str:
+    """The source line (the part of it around the culprit) and the carets under it."""
+    first = 0 if len(source) <= WIDEST else max(0, column - 1 - WIDEST // 2)
+    shown = source[first : first + WIDEST].replace("\t", " ")
+    at = column - 1 - first
+    carets = max(1, min(span.end - span.start, len(shown.rstrip()) - at))
+    return f"    {shown.rstrip()}\n    {' ' * at}{'^' * carets}"

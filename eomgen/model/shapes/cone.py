@@ -1,0 +1,29 @@
+"""Cone: a solid round cone."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cone(Shape):
+    """A solid cone about its mass centre (the origin), apex towards +z, h/4 of its height h below the origin.
+
+    I_zz = 3 m r^2 / 10, I_xx = I_yy = 3 m (4 r^2 + h^2) / 80.
+    """
+
+    kind: ClassVar[str] = "cone"
+    radius: Length
+    height: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def mass_properties(self, value: Value) -> MassProperties:
+        m, r, h = self.mass_of(value), value(self.radius), value(self.height)
+        across = Fraction(3, 20) * m * r * r + Fraction(3, 80) * m * h * h
+        return MassProperties(m, ZERO, diagonal(across, across, Fraction(3, 10) * m * r * r))

@@ -1,0 +1,31 @@
+"""Triangle: a thin right-angled plate."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import MassProperties, Shape, Value
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Triangle(Shape):
+    """A thin homogeneous plate, right angle at the origin, legs w along +x and h along +y.
+
+    Centre (w/3, h/3); about it I_xx = m h^2 / 18, I_yy = m w^2 / 18, I_xy = + m w h / 36 (the tensor's sign).
+    """
+
+    kind: ClassVar[str] = "triangle"
+    width: Length
+    height: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        third = Fraction(1, 3)
+        return {"origin": ZERO, "center": (third * value(self.width), third * value(self.height), 0)}
+
+    def mass_properties(self, value: Value) -> MassProperties:
+        m, w, h = self.mass_of(value), value(self.width), value(self.height)
+        xx, yy, xy = Fraction(1, 18) * m * h * h, Fraction(1, 18) * m * w * w, Fraction(1, 36) * m * w * h
+        center = (Fraction(1, 3) * w, Fraction(1, 3) * h, 0)
+        return MassProperties(m, center, ((xx, xy, 0), (xy, yy, 0), (0, 0, xx + yy)))

@@ -1,0 +1,162 @@
+"""What a simulation gives: states over time, how well the laws were kept, and how it ended."""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+import os
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any, Literal
+
+import numpy as np
+
+from eomgen.errors import RunFailed
+
+Status = Literal["finished", "not finite", "step too small", "too many steps", "interrupted"]
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of time in which the model stays the same.
+
+    Args:
+        start, end: its times [s].
+        ended_by: what ended it, in words.
+    """
+
+    start: float
+    end: float
+    ended_by: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory:
+    """A motion. One that ended early holds what there is, and says why.
+
+    Args:
+        t: times, n [s].
+        x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
+        coordinates, speeds: the names.
+        energy: T + V, n [J]; None where nobody gave it.
+        drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
+        gap: largest |phi| of the closing ties; None where none closes.
+        phases: in order.
+        status: "finished" or what stopped it.
+        message: the same as a sentence.
+        steps, evaluations: taken by the integrator.
+    """
+
+    t: np.ndarray
+    x: np.ndarray
+    coordinates: tuple[str, ...]
+    speeds: tuple[str, ...]
+    energy: np.ndarray | None
+    drift: float | None
+    gap: float | None
+    phases: tuple[Phase, ...]
+    status: Status
+    message: str
+    steps: int
+    evaluations: int
+
+    @property
+    def ok(self) -> bool:
+        """True where the end was reached."""
+        return self.status == "finished"
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The column of a coordinate or speed, of "t" or "energy"."""
+        columns = self.columns()
+        if name not in columns:
+            raise KeyError(f"no column '{name}'; there are {', '.join(columns)}")
+        return columns[name]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Every column by name: t, coordinates, speeds, energy."""
+        named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
+        return named if self.energy is None else named | {"energy": self.energy}
+
+    def to_csv(self, path: str | Path | IO[str]) -> None:
+        """A header line and one line an instant; every digit of a double.
+
+        Raises:
+            RunFailed: the file cannot be written; what was there before is then still there.
+        """
+        columns = self.columns()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        if isinstance(path, (str, Path)):
+            _write(Path(path), lambda file: file.write(text.getvalue().encode()))
+        else:
+            path.write(text.getvalue())
+
+    def to_npz(self, path: str | Path) -> None:
+        """numpy's archive: t, x, coordinates, speeds, energy, status, message.
+
+        Raises:
+            RunFailed: the file cannot be written; what was there before is then still there.
+        """
+        arrays: dict[str, Any] = {"t": self.t, "x": self.x, "status": self.status, "message": self.message}
+        arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
+        if self.energy is not None:
+            arrays["energy"] = self.energy
+        _write(Path(path), lambda file: np.savez_compressed(file, **arrays))
+
+    def to_pandas(self) -> Any:
+        """The columns as a DataFrame over t (needs pandas)."""
+        import pandas
+
+        columns = self.columns()
+        times = columns.pop("t")
+        return pandas.DataFrame(columns, index=pandas.Index(times, name="t"))
+
+    def summary(self) -> str:
+        """How it went, in a line or two."""
+        parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]
+        if self.drift is not None:
+            parts.append(f"Energy drift {self.drift:.1e} of the energy that moves.")
+        if self.gap is not None:
+            parts.append(f"Ties open by at most {self.gap:.1e}.")
+        return " ".join(parts)
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.coordinates + self.speeds)
+        return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
+
+    def _repr_html_(self) -> str:
+        shown = np.unique(np.linspace(0, max(len(self.t) - 1, 0), 6).astype(int)) if len(self.t) else []
+        columns = self.columns()
+        head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
+        rows = ("".join(f"<td>{column[i]:.6g}</td>" for column in columns.values()) for i in shown)
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return f"<p>{html.escape(self.summary())}</p><table><tr>{head}</tr>{body}</table>"
+
+
+def _write(path: Path, fill: Callable[[IO[bytes]], object]) -> None:
+    """Write aside and move into place."""
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".eomgen-", delete=False) as file:
+            fill(file)
+    except OSError as error:
+        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+    try:
+        os.chmod(file.name, 0o666 & ~_umask())
+        os.replace(file.name, path)
+    except OSError as error:
+        os.unlink(file.name)
+        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,276 @@
+"""Expressions, values of their symbols -> values, in the arithmetic that one chooses; and what that costs.
+
+The loops run in the order of `Node.index`, never by recursion: a chain of 50 links is thousands of nodes deep.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.graph import LARGEST_POWER, Node, Number, Scalar
+
+FREE = frozenset(("symbol", "pi", "neg"))
+PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
+
+
+class NoValue(ArithmeticError):
+    """This state has no value in this arithmetic (a root that is not there, a zero divisor): take another state."""
+
+
+class NoMeaning(NoValue):
+    """A function or constant has no meaning in this arithmetic at any state: take another arithmetic."""
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """Numbers of one kind.
+
+    Args:
+        name: for messages, "prime field".
+        number: turns an exact number into one of this kind.
+        functions: the operation of each op, "pi" as a function of nothing.
+        failed: the value of a node outside its domain; may raise NoValue instead.
+    """
+
+    name: str
+    number: Callable[[Number], Any]
+    functions: Mapping[str, Callable[..., Any]]
+    failed: Callable[[Node], Any]
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many operations an evaluation takes.
+
+    Args:
+        total: at every call, once the parameters are fixed.
+        hoisted: apart from those, once for given parameters.
+    """
+
+    total: int
+    hoisted: int
+
+
+def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> list[Node]:
+    """Every node that the outputs need, arguments before results; what is `given` is not looked into."""
+    stack = [x for x in outputs if type(x) is Node]
+    seen: set[Node] = set()
+    while stack:
+        x = stack.pop()
+        if x in seen:
+            continue
+        seen.add(x)
+        if x.op != "symbol" and x not in given:
+            stack += [a for a in x.args if type(a) is Node]
+    return sorted(seen, key=_index)
+
+
+def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any]:
+    """The outputs' values.
+
+    Args:
+        outputs: scalars of one graph, exact numbers among them.
+        values: a value for every symbol in the outputs; any other node may be given too, and is then not computed.
+        arithmetic: FLOAT, RATIONAL, PRIME_FIELD or fifty_digits().
+    Raises:
+        DerivationError: a symbol without a value; all are named.
+        NoValue: outside the domain (floats give nan instead).
+    """
+    nodes = order(outputs, values)
+    known = {x: values[x] for x in nodes if x in values}
+    missing = [x.name for x in nodes if x.op == "symbol" and x not in known]
+    if missing:
+        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}")
+    number, functions = arithmetic.number, arithmetic.functions
+    for x in nodes:
+        if x in known:
+            continue
+        arguments = [known[a] if type(a) is Node else number(a) for a in x.args]
+        try:
+            known[x] = functions[x.op](*arguments)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            known[x] = arithmetic.failed(x)
+    return [known[x] if type(x) is Node else number(x) for x in outputs]
+
+
+def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Count:
+    """The operations in the outputs, each sub-expression once.
+
+    Every + - * / power and function is one; signs, symbols, pi, and what depends on exact constants only are free.
+    What depends on `parameters` only is hoisted.
+    """
+    parameters = frozenset(parameters)
+    constant, fixed, moving = 0, 1, 2  # what a node depends on at most: exact constants, parameters, anything
+    kind: dict[Node, int] = {}
+    counts = [0, 0, 0]
+    for x in order(outputs):
+        if x.op == "symbol":
+            kind[x] = fixed if x in parameters else moving
+            continue
+        of = constant
+        for a in x.args:
+            if type(a) is Node and kind[a] > of:
+                of = kind[a]
+        kind[x] = of
+        if x.op not in FREE:
+            counts[of] += 1
+    return Count(total=counts[moving], hoisted=counts[fixed])
+
+
+def _index(x: Node) -> int:
+    return x.index
+
+
+# -- the arithmetics ------------------------------------------------------------------------------
+
+
+def _sign(a: Any) -> int:
+    return (a > 0) - (a < 0)
+
+
+def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
+    return if_true if condition else if_false
+
+
+_RING: dict[str, Callable[..., Any]] = {
+    "neg": operator.neg,
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+}
+_ORDERED: dict[str, Callable[..., Any]] = {
+    "abs": abs,
+    "sign": _sign,
+    "min": min,
+    "max": max,
+    "less": operator.lt,
+    "less_equal": operator.le,
+    "select": _select,
+}
+
+
+def _no_value(x: Node) -> Any:
+    raise NoValue(f"'{x.op}' outside its domain")
+
+
+def _meaningless(op: str, arithmetic: str) -> Callable[..., Any]:
+    def refuse(*_: Any) -> Any:
+        raise NoMeaning(f"'{op}' has no meaning in {arithmetic}")
+
+    return refuse
+
+
+def _refusing(ops: str, arithmetic: str) -> dict[str, Callable[..., Any]]:
+    return {op: _meaningless(op, arithmetic) for op in ops.split()}
+
+
+FLOAT = Arithmetic(
+    "floats",
+    float,
+    _RING
+    | _ORDERED
+    | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}
+    | {"pow": math.pow, "pi": lambda: math.pi},
+    lambda x: math.nan,
+)
+
+
+def _rational_root(a: Fraction | int) -> Fraction:
+    a = Fraction(a)
+    if a < 0:
+        raise NoValue("the root of a negative number")
+    root = Fraction(math.isqrt(a.numerator), math.isqrt(a.denominator))
+    if root * root != a:
+        raise NoValue(f"{a} is not a square")
+    return root
+
+
+def _whole_power(a: Any, exponent: Any) -> Any:
+    if Fraction(exponent).denominator != 1 or abs(exponent) > LARGEST_POWER:
+        raise NoMeaning("a power that is not a small whole number")
+    return a ** int(exponent)
+
+
+RATIONAL = Arithmetic(
+    "rationals",
+    Fraction,
+    _RING
+    | _ORDERED
+    | {"sqrt": _rational_root, "pow": _whole_power}
+    | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "the rationals"),
+    _no_value,
+)
+
+
+@cache
+def _residue(c: Number) -> int:
+    return c.numerator * pow(c.denominator, -1, PRIME) % PRIME
+
+
+def _root_modulo(a: int) -> int:
+    """The root that is a square itself, so that sqrt(a) sqrt(b) = sqrt(a b) as over the positive reals."""
+    root = pow(a, (PRIME + 1) // 4, PRIME)
+    if root * root % PRIME != a % PRIME:
+        raise NoValue("not a square modulo the prime")
+    return root
+
+
+def _power_modulo(a: int, exponent: int) -> int:
+    if exponent > LARGEST_POWER:
+        raise NoMeaning("a power that is not a small whole number")
+    return pow(a, exponent, PRIME)
+
+
+def _quotient_modulo(a: int, b: int) -> int:
+    return a * pow(b, -1, PRIME) % PRIME  # ValueError where b is 0
+
+
+PRIME_FIELD = Arithmetic(
+    "prime field",
+    _residue,
+    {
+        "neg": lambda a: -a % PRIME,
+        "add": lambda a, b: (a + b) % PRIME,
+        "sub": lambda a, b: (a - b) % PRIME,
+        "mul": lambda a, b: a * b % PRIME,
+        "div": _quotient_modulo,
+        "sqrt": _root_modulo,
+        "pow": _power_modulo,
+    }
+    | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "a prime field")
+    | _refusing("abs sign min max less less_equal select", "a prime field"),
+    _no_value,
+)
+
+
+@cache
+def fifty_digits() -> Arithmetic:
+    """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue."""
+    from mpmath.ctx_mp import MPContext
+
+    mp = MPContext()
+    mp.dps = 50
+
+    def real(function: Callable[..., Any]) -> Callable[..., Any]:
+        def guarded(*arguments: Any) -> Any:
+            value = function(*arguments)
+            if isinstance(value, mp.mpc) or not mp.isfinite(value):
+                raise NoValue("no finite real value")
+            return value
+
+        return guarded
+
+    names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
+    functions = {op: real(getattr(mp, op)) for op in names}
+    own = {"pow": real(mp.power), "pi": lambda: +mp.pi}
+    return Arithmetic(
+        "50 digits", lambda c: mp.mpf(c.numerator) / c.denominator, _RING | _ORDERED | functions | own, _no_value
+    )

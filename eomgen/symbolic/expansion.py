@@ -1,0 +1,348 @@
+"""Nodes -> sums of terms (see `terms`): everything multiplied out, waves for products of sines and cosines.
+
+What is no polynomial stays as an atom with canonical arguments: exp(f), abs(f), sqrt(f) with atom^2 = f, and 1/f for a
+sum f, an atom with negative powers. The work is bounded: `TooLarge` rather than minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.terms import (
+    HALF,
+    ONE,
+    Key,
+    Monomial,
+    Terms,
+    TooLarge,
+    Vector,
+    accumulate,
+    common_monomial,
+    constant,
+    content,
+    inverse,
+    plus,
+    scaled,
+    tidy,
+    times,
+    wave,
+)
+
+LARGEST_EXPONENT = 64
+RADIAN = -1  # the angle of a plain number: sin(1)
+_TURNS = {  # cos(turn * pi) = coefficient * sqrt(root)
+    Fraction(0): (Fraction(1), 1),
+    Fraction(1, 6): (HALF, 3),
+    Fraction(1, 4): (HALF, 2),
+    Fraction(1, 3): (HALF, 1),
+    Fraction(1, 2): (Fraction(0), 1),
+}
+
+
+@dataclass(frozen=True)
+class Opaque:
+    """An atom that is no symbol: a function with its canonical arguments ("sum": an f that one divides by)."""
+
+    op: str
+    arguments: tuple[Terms, ...]
+
+
+class Expansion:
+    """The expanded forms of the nodes of one graph.
+
+    Args:
+        graph: owner of the nodes; atoms are nodes of it and are named by their index.
+        limit: products of terms that may be made before TooLarge is raised.
+    """
+
+    def __init__(self, graph: Graph, limit: int) -> None:
+        self.graph, self.limit, self.work = graph, limit, 0
+        self.atoms: dict[int, Node] = {}
+        self.opaque: dict[int, Opaque] = {}
+        self._known: dict[Node, Terms] = {}
+
+    def of(self, x: Scalar) -> Terms:
+        """x as a sum of terms.
+
+        Raises:
+            TooLarge: the limit of work is reached.
+        """
+        if type(x) is not Node:
+            return constant(x)
+        for node in order((x,), self._known):
+            if node not in self._known:
+                self._known[node] = self._expanded(node)
+        return self._known[x]
+
+    # -- one node from its arguments ---------------------------------------------------------------
+
+    def _expanded(self, x: Node) -> Terms:
+        op = x.op
+        if op in ("symbol", "pi"):
+            return self._atom(x)
+        parts = [self._known[a] if type(a) is Node else constant(a) for a in x.args]
+        if op == "mul":
+            return self.product(parts[0], parts[1])
+        if op in ("add", "sub"):
+            self._spend(len(parts[1]))
+            return plus(parts[0], parts[1], 1 if op == "add" else -1)
+        if op == "neg":
+            return scaled(parts[0], -1)
+        if op == "div":
+            return self.product(parts[0], self.reciprocal(parts[1]))
+        if op in ("sin", "cos"):
+            return self._circular(op, parts[0])
+        if op == "sqrt":
+            return self._root(parts[0])
+        if op == "pow" and type(x.args[1]) is int:
+            return self.power(parts[0], x.args[1])
+        return self._function(op, tuple(parts))
+
+    def product(self, a: Terms, b: Terms) -> Terms:
+        """a b, with atom^2 = f for atoms sqrt(f)."""
+        self._spend(len(a) * len(b))
+        return self._without_squared_roots(times(a, b))
+
+    def power(self, a: Terms, n: int) -> Terms:
+        """a ** n for a whole n >= 0."""
+        if n > LARGEST_EXPONENT:
+            raise TooLarge(f"the power {n} is too large to be multiplied out")
+        result = constant(1)
+        for _ in range(n):
+            result = self.product(result, a)
+        return result
+
+    def _spend(self, work: int) -> None:
+        self.work += work
+        if self.work > self.limit:
+            raise TooLarge(f"more than {self.limit} products of terms")
+
+    def _atom(self, x: Node) -> Terms:
+        self.atoms[x.index] = x
+        return {(((x.index, 1),), ()): 1}
+
+    def _function(self, op: str, arguments: tuple[Terms, ...]) -> Terms:
+        """An opaque atom op(arguments), the same one for equal arguments."""
+        nodes = [self.node(a) for a in arguments]
+        x = self.graph.select(*nodes) if op == "select" else self._applied(op, nodes)
+        if type(x) is not Node:
+            return constant(x)
+        inner = x.args[0] if x.op == "neg" else x
+        if inner.op != op:  # folded into something simpler
+            return self.of(x)
+        if inner is not x:
+            arguments = tuple(self.of(a) for a in inner.args)
+        self.opaque[inner.index] = Opaque(op, arguments)
+        return scaled(self._atom(inner), -1 if inner is not x else 1)
+
+    def _applied(self, op: str, nodes: list[Scalar]) -> Scalar:
+        return self.graph.pow(nodes[0], nodes[1]) if op == "pow" else self.graph.call(op, *nodes)
+
+    def _without_squared_roots(self, a: Terms) -> Terms:
+        roots = {atom for atom in self.opaque if self._is(atom, "sqrt")}
+        if not roots:
+            return a
+        result: Terms = {}
+        for (monomial, w), c in a.items():
+            squared = [(atom, e) for atom, e in monomial if atom in roots and e >= 2]
+            if not squared:
+                accumulate(result, (monomial, w), c)
+                continue
+            rest = tuple((atom, e % 2 if (atom, e) in squared else e) for atom, e in monomial)
+            part: Terms = {(tuple((atom, e) for atom, e in rest if e), w): c}
+            for atom, e in squared:
+                part = self.product(part, self.power(self.opaque[atom].arguments[0], e // 2))
+            result = plus(result, part)
+        return result
+
+    def _root(self, f: Terms) -> Terms:
+        """sqrt(f): the number's root taken out, the rest an atom."""
+        outside = content(f) if f else Fraction(0)
+        root = self.graph.sqrt(outside)
+        inside = scaled(f, 1 / outside) if f else f
+        if inside in ({}, constant(1)):
+            return self._constant_root(root)
+        return times(self._constant_root(root), self._function("sqrt", (inside,)))
+
+    def _constant_root(self, root: Scalar) -> Terms:
+        """c sqrt(n), as the graph folds the root of a number, as a term."""
+        if type(root) is not Node:
+            return constant(root)
+        c, node = (root.args[0], root.args[1]) if root.op == "mul" else (1, root)
+        return {(((-node.args[0], 1),), ()): c}
+
+    def reciprocal(self, f: Terms) -> Terms:
+        """1/f: a term where f is a monomial, else an atom to the power -1."""
+        if not f:
+            raise DerivationError("division by an expression that is zero")
+        if len(f) == 1:
+            ((monomial, w), c), *_ = f.items()
+            if w == () and all(self._invertible(atom) for atom, _ in monomial):
+                inverted, factor = inverse(monomial)
+                return {(inverted, ()): tidy(factor / Fraction(c))}
+            root = next((atom for atom, _ in monomial if self._is(atom, "sqrt")), None)
+            if root is not None:  # 1/(m sqrt(f)) = sqrt(f)/(m f)
+                by_root: Terms = {(((root, 1),), ()): 1}
+                return self.product(by_root, self.reciprocal(self.product(f, by_root)))
+        factor, monomial, primitive = self.primitive(f)
+        cleared, denominators = self.cleared(primitive)
+        if denominators:  # 1/(a + b/d) = d/(a d + b)
+            result = self.reciprocal(cleared)
+            for atom, e in denominators.items():
+                result = self.product(result, self.power(self.opaque[atom].arguments[0], e))
+        else:
+            result = self._inverted_sum(primitive)
+        inverted, _ = inverse(monomial)
+        return self.product(result, {(inverted, ()): tidy(1 / factor)})
+
+    def _is(self, atom: int, op: str) -> bool:
+        return atom in self.opaque and self.opaque[atom].op == op
+
+    def _invertible(self, atom: int) -> bool:
+        """Whether negative and positive powers of the atom are both atoms: not so for sqrt(f) and for sums."""
+        return not self._is(atom, "sqrt") and not self._is(atom, "sum")
+
+    def _inverted_sum(self, f: Terms) -> Terms:
+        node = self.node(f)
+        assert type(node) is Node
+        self.atoms[node.index] = node
+        self.opaque[node.index] = Opaque("sum", (f,))
+        return {(((node.index, -1),), ()): 1}
+
+    def primitive(self, f: Terms) -> tuple[Fraction, Monomial, Terms]:
+        """(c, m, g) with f = c m g: whole coefficients without common factor, the first one positive."""
+        monomial = tuple((atom, e) for atom, e in common_monomial(f) if self._invertible(atom))
+        inverted, _ = inverse(monomial)
+        factor = content(f)
+        if f[min(f)] < 0:
+            factor = -factor
+        return factor, monomial, scaled(times(f, {(inverted, ()): 1}), 1 / factor)
+
+    def cleared(self, f: Terms) -> tuple[Terms, dict[int, int]]:
+        """(numerator, {atom of a divisor: its power}): f = numerator / product of divisor ** power."""
+        powers: dict[int, int] = {}
+        for monomial, _ in f:
+            for atom, e in monomial:
+                if e < 0 and self._is(atom, "sum"):
+                    powers[atom] = max(powers.get(atom, 0), -e)
+        if not powers:
+            return f, {}
+        numerator: Terms = {}
+        for (monomial, w), c in f.items():
+            exponents = dict(monomial)
+            missing = {atom: power + exponents.pop(atom, 0) for atom, power in powers.items()}
+            part: Terms = {(tuple(sorted(exponents.items())), w): c}
+            for atom, e in missing.items():
+                part = self.product(part, self.power(self.opaque[atom].arguments[0], e))
+            numerator = plus(numerator, part)
+        inner, more = self.cleared(numerator)
+        for atom, e in more.items():
+            powers[atom] = powers.get(atom, 0) + e
+        return inner, powers
+
+    # -- angles ----------------------------------------------------------------------------------
+
+    def _circular(self, op: str, argument: Terms) -> Terms:
+        """sin or cos of a sum of terms, every term an angle, multiples of pi taken out where their cosine is known."""
+        vector: dict[int, Number] = {}
+        turn = Fraction(0)
+        for key, c in argument.items():
+            if key == ONE:
+                vector[RADIAN] = c
+            elif key == (((self.graph.pi.index, 1),), ()):
+                turn = Fraction(c)
+            else:
+                vector[self._angle(key)] = c
+        known = self._turn(turn)
+        if known is None:
+            vector[self._angle((((self.graph.pi.index, 1),), ()))] = turn
+            known = (constant(1), {})
+        k = tuple(sorted(vector.items()))
+        cosine, sine = self._wave("cos", k), self._wave("sin", k)
+        cos_turn, sin_turn = known
+        if op == "sin":
+            return plus(times(sine, cos_turn), times(cosine, sin_turn))
+        return plus(times(cosine, cos_turn), times(sine, sin_turn), -1)
+
+    def _angle(self, key: Key) -> int:
+        """The index of the node whose multiples are angles."""
+        monomial, w = key
+        if w == () and len(monomial) == 1 and monomial[0][1] == 1 and monomial[0][0] >= 0:
+            return monomial[0][0]
+        node = self.node({key: 1})
+        assert type(node) is Node
+        self.atoms[node.index] = node
+        return node.index
+
+    def _wave(self, kind: str, k: Vector) -> Terms:
+        w, sign = wave(kind, k)
+        return {((), w): sign} if sign else {}
+
+    def _turn(self, turn: Fraction) -> tuple[Terms, Terms] | None:
+        """(cos, sin) of turn * pi, at multiples of pi/6 and pi/4."""
+        cosine, sine = self._cosine(turn), self._cosine(turn - HALF)
+        return None if cosine is None or sine is None else (cosine, sine)
+
+    def _cosine(self, turn: Fraction) -> Terms | None:
+        turn, sign = turn % 2, 1
+        if turn > 1:
+            turn = 2 - turn
+        if turn > HALF:
+            turn, sign = 1 - turn, -1
+        if turn not in _TURNS:
+            return None
+        c, root = _TURNS[turn]
+        return {(((-root, 1),) if root > 1 else (), ()): tidy(sign * c)} if c else {}
+
+    # -- back to nodes -----------------------------------------------------------------------------
+
+    def node(self, terms: Terms) -> Scalar:
+        """The sum as a node, in an order that depends on the terms only."""
+        total: Scalar = 0
+        for key in sorted(terms):
+            total = self.graph.add(total, self.term(key, terms[key]))
+        return total
+
+    def term(self, key: Key, c: Number) -> Scalar:
+        """c * monomial * wave as a node."""
+        monomial, w = key
+        above: Scalar = self.wave_node(w[0], w[1]) if w else 1
+        above, below = self.monomial_nodes(monomial, above)
+        return self.graph.mul(c, self.graph.div(above, below))
+
+    def monomial_nodes(self, monomial: Monomial, above: Scalar = 1) -> tuple[Scalar, Scalar]:
+        """(numerator, denominator) of a monomial, `above` multiplied into the numerator."""
+        numerator: Scalar = 1
+        below: Scalar = 1
+        for atom, e in monomial:
+            if atom < 0:
+                numerator = self.graph.mul(numerator, self.graph.sqrt(-atom))
+            elif e > 0:
+                numerator = self.graph.mul(numerator, self.graph.pow(self.atoms[atom], e))
+            else:
+                below = self.graph.mul(below, self.graph.pow(self.atoms[atom], -e))
+        return self.graph.mul(numerator, above), below
+
+    def wave_node(self, kind: str, k: Vector) -> Scalar:
+        """cos or sin of k . angles."""
+        return self.graph.call(kind, self.angle_node(k))
+
+    def angle_node(self, k: Vector) -> Scalar:
+        """k . angles"""
+        angle: Scalar = 0
+        for atom, c in k:
+            angle = self.graph.add(angle, c if atom == RADIAN else self.graph.mul(c, self.atoms[atom]))
+        return angle
+
+
+def expanded(outputs: Iterable[Scalar], limit: int) -> tuple[Expansion, list[Terms]]:
+    """The outputs as sums of terms, with the expansion that owns their atoms."""
+    outputs = list(outputs)
+    graph = next((x.graph for x in outputs if type(x) is Node), None) or Graph()
+    expansion = Expansion(graph, limit)
+    return expansion, [expansion.of(x) for x in outputs]

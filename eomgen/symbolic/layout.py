@@ -1,0 +1,183 @@
+"""Node -> the terms of its sum and the factors of its products, in the order in which a textbook writes them.
+
+Text and LaTeX print from here. Sums and products are flattened by multiplicity, each node opened once: an
+expression whose tree is exponentially large costs what its graph costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+
+from eomgen.symbolic.graph import Node, Number, Scalar
+
+SUMS = frozenset(("add", "sub", "neg"))
+
+Term = tuple[Number, "Node | None"]
+Factor = tuple[Node, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """coefficient * (product of base ^ exponent) / (product of base ^ exponent), exponents whole and positive."""
+
+    coefficient: Number
+    numerator: tuple[Factor, ...]
+    denominator: tuple[Factor, ...]
+
+
+def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
+    """x as a sum of number * term, the term None for a plain number.
+
+    The order is the one in which they were added. A positive number leads, a negative one comes last, and
+    the sum begins with a term without a minus where there is one: 1 - cos(theta), theta - pi/2.
+
+    Args:
+        named: nodes with a name of their own, which are not opened.
+    """
+    if not isinstance(x, Node):
+        return [(x, None)]
+    opened, leaves = _opened_sum(x, named)
+    share_opened: dict[Node, Number] = dict.fromkeys(opened, 0)
+    share: dict[Node, Number] = dict.fromkeys(leaves, 0)
+    (share_opened if opened else share)[x] = 1
+    number: Number = 0
+    for node in sorted(opened, key=_newest_first):
+        for factor, child in _summands(node):
+            part = factor * share_opened[node]
+            if not isinstance(child, Node):
+                number += part * child
+            elif node.op != "mul" and child in share_opened:
+                share_opened[child] += part
+            else:
+                share[child] += part
+    return _lead([(_tidy(c), leaf) for leaf, c in share.items() if c != 0], _tidy(number))
+
+
+def _newest_first(node: Node) -> int:
+    return -node.index
+
+
+def _tidy(c: Number) -> Number:
+    return c.numerator if c.denominator == 1 else c
+
+
+def _lead(found: list[Term], number: Number) -> list[Term]:
+    """The terms with the plain number in its place and a positive one in front."""
+    if number > 0:
+        return [(number, None), *found]
+    if number < 0 or not found:
+        found.append((number, None))
+    first = next((i for i, (c, _) in enumerate(found) if c > 0), 0)
+    return [found[first], *found[:first], *found[first + 1 :]]
+
+
+def is_base(node: Node) -> bool:
+    """True for what is no sum, product or whole power: a symbol, pi, a function, a broken power."""
+    return node.op not in SUMS and _parts(node) is None
+
+
+def _opens_as_sum(node: Node, named: Container[Node]) -> bool:
+    if node in named:
+        return False
+    return node.op in SUMS or (node.op == "mul" and type(node.args[0]) is not Node)
+
+
+def _summands(node: Node) -> tuple[tuple[Number, Scalar], ...]:
+    if node.op == "mul":
+        return ((node.args[0], node.args[1]),)
+    signs = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}[node.op]
+    return tuple(zip(signs, node.args, strict=True))
+
+
+def _opened_sum(x: Node, named: Container[Node]) -> tuple[list[Node], list[Node]]:
+    """The nodes of the sum that are opened, and its terms in the order in which they were added."""
+    opened: dict[Node, None] = {}
+    leaves: dict[Node, None] = {}
+    stack: list[tuple[Node, bool]] = [(x, False)]
+    while stack:
+        node, negative = stack.pop()
+        if node in opened:
+            continue
+        if not _opens_as_sum(node, named):
+            leaves.setdefault(node)
+            continue
+        opened[node] = None
+        children = [child for child in node.args if type(child) is Node]
+        if node.op == "mul":  # 2*(a + b) stays a product
+            leaves.setdefault(children[0])
+            continue
+        if _last_added_first(node, negative):
+            children.reverse()
+        stack += [(child, negative is not (node.op == "neg")) for child in reversed(children)]
+    return list(opened), list(leaves)
+
+
+def _last_added_first(node: Node, negative: bool) -> bool:
+    """True for t + S and -(t - S), which the graph made by adding the term t to the sum S or taking it away."""
+    if node.op != "add" and not (node.op == "sub" and negative):
+        return False
+    first, second = node.args
+    return type(first) is Node and first.op not in SUMS and second.op in SUMS
+
+
+def factors(x: Scalar, named: Container[Node] = ()) -> Product:
+    """x as powers over powers: constants, symbols, functions, sums, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
+
+    A base is a symbol, pi, a function, a sum, or a `pow` that is no whole power.
+
+    Args:
+        named: nodes with a name of their own, which are not opened.
+    """
+    if not isinstance(x, Node):
+        return Product(x, (), ())
+    powers: dict[Node, tuple[int, int]] = {x: (1, 0)}  # exponents above and below the line
+    newest = [(-x.index, x)]
+    above: list[Factor] = []
+    below: list[Factor] = []
+    coefficient = Fraction(1)
+    while newest:
+        node = heappop(newest)[1]
+        up, down = powers[node]
+        parts = None if node in named else _parts(node)
+        if parts is None:
+            above += [(node, up)] if up else []
+            below += [(node, down)] if down else []
+            continue
+        for part, exponent in parts:
+            more_up, more_down = (up, down) if exponent > 0 else (down, up)
+            more_up, more_down = more_up * abs(exponent), more_down * abs(exponent)
+            if not isinstance(part, Node):
+                coefficient *= Fraction(part) ** (more_up - more_down)
+                continue
+            if part not in powers:
+                heappush(newest, (-part.index, part))
+            old_up, old_down = powers.get(part, (0, 0))
+            powers[part] = (old_up + more_up, old_down + more_down)
+    return Product(_tidy(coefficient), tuple(sorted(above, key=_rank)), tuple(sorted(below, key=_rank)))
+
+
+def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
+    """(factor, exponent) of a product, quotient, whole power or negation; None for a base."""
+    if node.op == "mul":
+        return ((node.args[0], 1), (node.args[1], 1))
+    if node.op == "div":
+        return ((node.args[0], 1), (node.args[1], -1))
+    if node.op == "neg":
+        return ((-1, 1), (node.args[0], 1))
+    if node.op == "pow" and type(node.args[1]) is int:
+        return ((node.args[0], node.args[1]),)
+    return None
+
+
+def _rank(factor: Factor) -> tuple[int, int]:
+    base = factor[0]
+    if base.op == "symbol":
+        kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 1
+    elif base.op in SUMS:
+        kind = 3
+    else:
+        kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 2
+    return kind, base.index

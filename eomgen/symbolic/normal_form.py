@@ -1,0 +1,212 @@
+"""Expressions -> their normal form: exact equality, and results as a person writes them.
+
+A function that is polynomial in sines, cosines, coordinates, rates and parameters has one form as a sum of monomials
+times cos(k . angles) or sin(k . angles); two of them are equal when the forms are. All work is bounded by `limit`,
+a number of products of terms; where it is not enough, what is readable stays as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.derivative import depends_on, substituted, tangent
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expansion import Expansion, expanded
+from eomgen.symbolic.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.quotient import reduced
+from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, times
+from eomgen.symbolic.writing import Writer, is_rate
+
+LIMIT = 200_000
+
+__all__ = [
+    "LIMIT",
+    "NormalForm",
+    "TooLarge",
+    "cancelled",
+    "collected_in",
+    "common_factor",
+    "equal",
+    "normal_form",
+    "readable",
+    "readable_all",
+]
+
+
+@dataclass(frozen=True)
+class NormalForm:
+    """The sum of coefficient * monomial * wave.
+
+    Args:
+        graph: the graph whose nodes the monomials and waves name by index.
+        terms: ((monomial, wave), coefficient), ascending.
+    """
+
+    graph: Graph
+    terms: tuple[tuple[Key, Number], ...]
+
+    @property
+    def is_zero(self) -> bool:
+        return not self.terms
+
+
+def normal_form(x: Scalar, limit: int = LIMIT) -> NormalForm:
+    """The normal form of x.
+
+    Raises:
+        TooLarge: more than `limit` products of terms.
+    """
+    expansion, (terms,) = expanded((x,), limit)
+    return NormalForm(expansion.graph, tuple(sorted(terms.items())))
+
+
+def equal(a: Scalar, b: Scalar, limit: int = LIMIT) -> bool:
+    """Whether a and b are the same function.
+
+    Decided by the normal form for rational functions of sines, cosines and symbols. Where roots or other functions are
+    left over, or the form is too large, at random states (exact in a prime field where that is possible).
+    """
+    difference = a - b
+    if type(difference) is not Node:
+        return difference == 0
+    try:
+        expansion, (terms,) = expanded((difference,), limit)
+        numerator, _ = expansion.cleared(terms)
+    except TooLarge:
+        return equal_at_random_states([(a, b)]).equal
+    if not numerator or not _has_relations(expansion):
+        return not numerator
+    return equal_at_random_states([(a, b)]).equal
+
+
+def _has_relations(expansion: Expansion) -> bool:
+    """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
+    pi = expansion.graph.pi.index
+    return pi in expansion.atoms or any(opaque.op != "sum" for opaque in expansion.opaque.values())
+
+
+def readable(x: Scalar, limit: int = LIMIT) -> Scalar:
+    """x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2).
+
+    Accelerations come first, then rates, then the rest, each in the order of declaration. x itself where that takes
+    more than `limit` products of terms.
+    """
+    return readable_all((x,), limit)[0]
+
+
+def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT) -> tuple[Scalar, ...]:
+    """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
+    expansion, _ = expanded(outputs[:0], limit) if not outputs else (_expansion(outputs, limit), None)
+    writer = Writer(expansion)
+    written = []
+    for x in outputs:
+        expansion.work = 0
+        try:
+            written.append(writer.sum(expansion.of(x)))
+        except TooLarge:
+            written.append(x)
+    return tuple(written)
+
+
+def _expansion(outputs: Iterable[Scalar], limit: int) -> Expansion:
+    return Expansion(next((x.graph for x in outputs if type(x) is Node), None) or Graph(), limit)
+
+
+def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = LIMIT) -> dict[Node | None, Scalar]:
+    """x = sum of coefficient * symbol + rest, as {symbol: coefficient, None: rest}, readable; zeros are left out.
+
+    Raises:
+        DerivationError: x is not linear in the symbols.
+    """
+    try:
+        expansion, (terms,) = expanded((x,), limit)
+        parts = _linear_parts(expansion, terms, symbols)
+    except TooLarge:
+        return _linear_by_derivative(x, symbols)
+    writer = Writer(expansion)
+    return {symbol: writer.sum(part) for symbol, part in parts.items() if part}
+
+
+def _linear_parts(expansion: Expansion, terms: Terms, symbols: Sequence[Node]) -> dict[Node | None, Terms]:
+    by_index = {symbol.index: symbol for symbol in symbols}
+    inside = [a for opaque in expansion.opaque.values() for a in opaque.arguments]
+    if any(atom in by_index for a in inside for monomial, _ in a for atom, _ in monomial):
+        raise _not_linear(symbols)
+    parts: dict[Node | None, Terms] = {symbol: {} for symbol in (*symbols, None)}
+    for (monomial, w), c in terms.items():
+        held = [(atom, e) for atom, e in monomial if atom in by_index]
+        if len(held) > 1 or (held and held[0][1] != 1) or (w and any(angle in by_index for angle, _ in w[1])):
+            raise _not_linear(symbols)
+        symbol = by_index[held[0][0]] if held else None
+        parts[symbol][tuple(item for item in monomial if item not in held), w] = c
+    return parts
+
+
+def _linear_by_derivative(x: Scalar, symbols: Sequence[Node]) -> dict[Node | None, Scalar]:
+    coefficients = [tangent((x,), {symbol: 1})[0] for symbol in symbols]
+    if any(depends_on(coefficient, symbols) for coefficient in coefficients):
+        raise _not_linear(symbols)
+    rest = substituted((x,), dict.fromkeys(symbols, 0))[0]
+    found: dict[Node | None, Scalar] = {**dict(zip(symbols, coefficients, strict=True)), None: rest}
+    return {symbol: part for symbol, part in found.items() if type(part) is Node or part != 0}
+
+
+def _not_linear(symbols: Sequence[Node]) -> DerivationError:
+    return DerivationError(f"the expression is not linear in {', '.join(symbol.name for symbol in symbols)}")
+
+
+def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT) -> Scalar:
+    """The rational number and the powers of parameters and coordinates that every term of the outputs holds.
+
+    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by it leaves no fractions. 1 where the
+    limit is reached or there is nothing to divide.
+    """
+    try:
+        expansion, forms = expanded(outputs, limit)
+    except TooLarge:
+        return 1
+    together: Terms = {}
+    for i, terms in enumerate(forms):  # the waves keep equal monomials of different outputs apart
+        together |= {(monomial, ("cos", ((i, n),))): c for n, ((monomial, _), c) in enumerate(terms.items())}
+    if not together:
+        return 1
+    common = tuple((atom, e) for atom, e in common_monomial(together) if _is_still(expansion, atom))
+    writer = Writer(expansion)
+    return writer.factored(common, {ONE: writer.content(*forms)})
+
+
+def _is_still(expansion: Expansion, atom: int) -> bool:
+    node = expansion.atoms[atom]
+    return node.op == "symbol" and not is_rate(node)
+
+
+def cancelled(x: Scalar, limit: int = LIMIT) -> Scalar:
+    """x as one readable quotient without common factors; x itself where that takes too much work."""
+    try:
+        expansion, (terms,) = expanded((x,), limit)
+        numerator, denominator = reduced(expansion, terms)
+        writer = Writer(expansion)
+        numerator, denominator = _whole(writer, numerator, denominator)
+        if len(denominator) == 1:
+            return writer.sum(expansion.product(numerator, expansion.reciprocal(denominator)))
+        return expansion.graph.div(_factored(writer, numerator), _factored(writer, denominator))
+    except TooLarge:
+        return x
+
+
+def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
+    """The same quotient with whole coefficients, without common number, the denominator's first term positive."""
+    above, below = writer.content(numerator), writer.content(denominator)
+    ratio = above / below
+    sign = -1 if writer.leads_with_minus(denominator) else 1
+    return scaled(numerator, sign * ratio.numerator / above), scaled(denominator, sign * ratio.denominator / below)
+
+
+def _factored(writer: Writer, terms: Terms) -> Scalar:
+    """The terms with their common monomial outside: l*(M + m*sin(theta)^2)."""
+    common: Monomial = common_monomial(terms)
+    inverted, factor = inverse(common)
+    return writer.factored(common, times(terms, {(inverted, ()): Fraction(factor)}))

@@ -1,0 +1,92 @@
+"""Text -> tokens of the model file's grammar: numbers (exact), names with their primes, signs."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import ExpressionError
+
+LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
+MOST_DIGITS = 320
+
+_DIGITS = r"[0-9](?:_?[0-9])*"
+_NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
+_NAME = r"[^\W\d²³¹⁰⁴-⁹][^\W²³¹⁰⁴-⁹]*"
+_TOKEN = re.compile(rf"(?P<number>{_NUMBER})|(?P<name>{_NAME}'*)|(?P<sign>\*\*|[-+*/^(),=])")
+_SPACE = re.compile(r"\s*")
+_REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w+)*(?:-\w+(?:\.\w+)*)*)\s*[,)]")
+_DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
+
+_MENDS = {
+    "−": "write -", "–": "write -", "·": "write *", "×": "write *", "÷": "write /", "′": "write '", "’": "write '",
+    "″": "write ''", '"': "write ''", "²": "write ^2", "³": "write ^3", "√": "write sqrt(...)",
+    "[": "use round parentheses", "{": "use round parentheses",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A piece of the text: `kind` is "number", "name", "sign" or "end"; `start` counts from 0."""
+
+    kind: str
+    text: str
+    start: int
+
+    @property
+    def end(self) -> int:
+        return self.start + len(self.text)
+
+
+def is_name(text: str) -> bool:
+    """True where text can name a parameter or a coordinate: letters (Greek too), digits, `_`; no prime."""
+    return re.fullmatch(_NAME, text) is not None
+
+
+def skip_space(text: str, position: int) -> int:
+    """The first position from here on that holds no space."""
+    found = _SPACE.match(text, position)
+    return found.end() if found else position
+
+
+def token_at(text: str, position: int) -> Token:
+    """The token that begins at or after this position."""
+    start = skip_space(text, position)
+    if start == len(text):
+        return Token("end", "", start)
+    found = _TOKEN.match(text, start)
+    if found is None or found.lastgroup is None:
+        raise _strange(text, start)
+    return Token(found.lastgroup, found.group(), start)
+
+
+def _strange(text: str, start: int) -> ExpressionError:
+    character = text[start]
+    if character == "." and start > 0 and (dotted := _DOTTED.match(text, _word_start(text, start))):
+        length = dotted.end() - dotted.start()
+        return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), length=length)
+    return ExpressionError(f"unexpected character {character!r}", start, _MENDS.get(character, ""))
+
+
+def _word_start(text: str, end: int) -> int:
+    while end > 0 and (text[end - 1].isalnum() or text[end - 1] == "_"):
+        end -= 1
+    return end
+
+
+def reference_at(text: str, position: int) -> str | None:
+    """The dotted name or member (`arm.end`, `B`, `n1-n2`) that is a whole argument here, else None."""
+    found = _REFERENCE.match(text, position)
+    return found.group("reference") if found else None
+
+
+def number_of(token: Token) -> int | Fraction:
+    """The exact value of a decimal: 0.0825 is 33/400."""
+    mantissa, _, exponent = token.text.replace("_", "").lower().partition("e")
+    if len(mantissa) > MOST_DIGITS or len(exponent) > 6 or abs(int(exponent or 0)) > LARGEST_EXPONENT:
+        shown = token.text if len(token.text) < 30 else f"{token.text[:24]}..."
+        what = f"the number {shown} has too many digits or too large an exponent"
+        raise ExpressionError(what, token.start, f"at most {LARGEST_EXPONENT} in each", len(token.text))
+    value = Fraction(f"{mantissa}e{exponent or 0}")
+    return value.numerator if value.denominator == 1 else value

@@ -1,0 +1,144 @@
+"""The house has rooms: a module imports only from rooms to its left, and nobody imports in a ring."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parent.parent / "eomgen"
+CHAIN = (
+    ("errors",), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
+    ("certificate", "answers"), ("pipeline",), ("cli", "notebook", "__main__"),
+)  # fmt: skip
+RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}
+
+
+def module_names(package: Path) -> dict[str, Path]:
+    """Every module of a package by its dotted name; a package is its __init__."""
+    names = {}
+    for path in sorted(package.rglob("*.py")):
+        parts = (package.name, *path.relative_to(package).with_suffix("").parts)
+        names[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return names
+
+
+def imported(name: str, path: Path, modules: dict[str, Path]) -> set[str]:
+    """The package's modules that a module imports, at its top, inside functions, or for type checking only."""
+    found = set()
+    base = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names if alias.name in modules}
+        elif isinstance(node, ast.ImportFrom):
+            if node.level:
+                above = base.split(".")[: len(base.split(".")) - node.level + 1]
+                source = ".".join([*above, *([node.module] if node.module else [])])
+            else:
+                source = node.module or ""
+            members = {f"{source}.{alias.name}" for alias in node.names}
+            found |= members & modules.keys()
+            if source in modules and not members <= modules.keys():
+                found.add(source)
+    return found - {name}
+
+
+def room(name: str) -> str:
+    """The room of a module: 'eomgen.symbolic.graph' stands in 'symbolic'."""
+    return name.split(".")[1] if "." in name else ""
+
+
+def wrong_ways(imports: dict[str, set[str]]) -> list[str]:
+    """Imports that go to the right, or between two rooms of the same place in the chain."""
+    wrong = []
+    for name, targets in imports.items():
+        for target in sorted(targets):
+            here, there = room(name), room(target)
+            if here == "" or here == there:  # the package's __init__ shows all rooms
+                continue
+            if there == "" or RANK[there] >= RANK[here]:
+                wrong.append(f"{name} imports {target}")
+    return wrong
+
+
+def ring(imports: dict[str, set[str]]) -> list[str]:
+    """A ring of imports, as the names along it, or []."""
+    done: set[str] = set()
+    path: list[str] = []
+
+    def visit(name: str) -> list[str]:
+        if name in path:
+            return [*path[path.index(name) :], name]
+        if name in done:
+            return []
+        path.append(name)
+        for target in sorted(imports.get(name, ())):
+            if found := visit(target):
+                return found
+        done.add(path.pop())
+        return []
+
+    for name in sorted(imports):
+        if found := visit(name):
+            return found
+    return []
+
+
+@pytest.fixture(scope="module")
+def imports() -> dict[str, set[str]]:
+    modules = module_names(PACKAGE)
+    return {name: imported(name, path, modules) for name, path in modules.items()}
+
+
+def test_every_module_stands_in_a_room(imports):
+    """The rooms are those of the chain: a new one is a decision."""
+    assert {room(name) for name in imports} - {""} <= RANK.keys()
+
+
+def test_a_module_imports_only_from_rooms_to_its_left(imports):
+    """errors < symbolic < model < mechanics < codegen < simulation < report < certificate, answers < pipeline < cli."""
+    assert wrong_ways(imports) == []
+
+
+def test_no_modules_import_one_another_in_a_ring(imports):
+    """The graph of imports has no cycle, those inside functions counted."""
+    assert ring(imports) == []
+
+
+def test_an_import_to_the_right_is_seen(tmp_path):
+    """A planted `from eomgen.cli import main` in symbolic, hidden in a function, is a wrong way."""
+    (tmp_path / "eomgen" / "symbolic").mkdir(parents=True)
+    (tmp_path / "eomgen" / "cli.py").write_text("")
+    (tmp_path / "eomgen" / "symbolic" / "graph.py").write_text("def f():\n    from ..cli import main\n")
+    modules = module_names(tmp_path / "eomgen")
+    imports = {name: imported(name, path, modules) for name, path in modules.items()}
+    assert wrong_ways(imports) == ["eomgen.symbolic.graph imports eomgen.cli"]
+
+
+def test_a_ring_is_seen():
+    """a -> b -> c -> a is a ring."""
+    assert ring({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
+
+
+def test_sympy_is_not_imported_at_the_top_of_the_command_line():
+    """`eomgen --help` answers without sympy: nothing that cli imports at its top imports sympy at its own."""
+    modules = module_names(PACKAGE)
+    if "eomgen.cli" not in modules:
+        pytest.skip("no command line yet")
+    seen, waiting = set(), ["eomgen", "eomgen.cli"]
+    while waiting:
+        name = waiting.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        tree = ast.parse(modules[name].read_text())
+        for node in tree.body:
+            if isinstance(node, ast.Import):
+                heads = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                heads = [node.module or ""] + [f"{node.module}.{alias.name}" for alias in node.names]
+            else:
+                heads = []
+            assert not any(head.split(".")[0] == "sympy" for head in heads), f"{name} imports sympy at its top"
+            waiting += [head for head in heads if head in modules]
