@@ -86,7 +86,8 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
         assembly: the equations that a user gets.
         rhs: emitted code to be compared with the symbols.
     """
-    checks = [*_routes(system, assembly), _mass_matrix(assembly), _twists(system), _energy(system, assembly)]
+    checks = [_rates(system, assembly), *_routes(system, assembly), _mass_matrix(assembly), _twists(system)]
+    checks.append(_energy(system, assembly))
     if assembly.J:
         checks.append(_closing_rows(system, assembly))
     checks.append(_free_bodies(system, assembly))
@@ -103,6 +104,17 @@ def _compared(name: str, pairs: Pairs, labels: Sequence[str]) -> Check:
         return Check(name, False, "no state found", error.what)
     detail = "" if verdict.culprit is None else f"{labels[verdict.culprit]} differs"
     return Check(name, verdict.equal, verdict.arithmetic, detail)
+
+
+def _rates(system: System, assembly: Assembly) -> Check:
+    """q' = N u + nu are the rates in which everything else is differentiated."""
+    u = assembly.symbols.u
+    rows = [
+        sum((n * w for n, w in zip(row, u, strict=True)), start=bias)
+        for row, bias in zip(assembly.N, assembly.nu, strict=True)
+    ]
+    names = [q.name for q in assembly.symbols.q]
+    return _compared("N u + nu are the rates of the coordinates", list(zip(rows, system.scope.rates, strict=True)), names)
 
 
 def _routes(system: System, assembly: Assembly) -> Iterable[Check]:
@@ -168,9 +180,11 @@ def _closing_rows(system: System, assembly: Assembly) -> Check:
     pairs, labels = [], []
     for i, phi in enumerate(assembly.phi):
         row = sum((x * u for x, u in zip(assembly.J[i], symbols.u, strict=True)), start=assembly.sigma[i])
+        pairs.append((row, system.ties.closing[i].velocity))
+        labels.append(f"J u + sigma of row {i + 1}")
         if phi is not None:
             pairs.append((row, scope.time_derivative((phi,))[0]))
-            labels.append(f"J u + sigma of row {i + 1}")
+            labels.append(f"the gap of row {i + 1}")
         second = sum((x * a for x, a in zip(assembly.J[i], symbols.a, strict=True)), start=assembly.gamma[i])
         pairs.append((second, scope.with_accelerations((row,))[0]))
         labels.append(f"J a + gamma of row {i + 1}")

@@ -39,7 +39,7 @@ def read(text: str, graph: Graph | None = None):
     "text",
     [
         "6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2",
-        "1/2*m*l^2*sin(theta)^2*phi'^2 - m*g*l*cos(theta)",
+        "1/2*m*l^2*sin(theta)^2*phi'^2 - m*l*g*cos(theta)",
         "1/2*x",
         "3/(2*y)",
         "1/x",
@@ -64,7 +64,7 @@ def read(text: str, graph: Graph | None = None):
         "atan2(a, b)",
         "min(a, 2 + b)",
         "m*l*theta'' + m*g",
-        "abs(v)*v",
+        "v*abs(v)",
         "3",
         "-27/2",
         "0",
@@ -72,8 +72,7 @@ def read(text: str, graph: Graph | None = None):
 )
 def test_what_is_written_as_in_a_textbook_is_printed_as_it_is(text):
     """to_text(read(text)) = text: rational first, symbols, functions, sums, rates; signs in the sum."""
-    canonical = {"abs(v)*v": "v*abs(v)", "min(a, 2 + b)": "min(a, 2 + b)"}.get(text, text)
-    assert to_text(read(text)) == canonical
+    assert to_text(read(text)) == text
 
 
 @pytest.mark.parametrize(
@@ -81,7 +80,7 @@ def test_what_is_written_as_in_a_textbook_is_printed_as_it_is(text):
     [
         ("-(a - b)", "b - a"),
         ("-a + b", "b - a"),
-        ("a - (b - c)", "a - b + c"),
+        ("a - (b + c)", "a - b - c"),
         ("x*x*x*y/x", "x^2*y"),
         ("pi/2*x", "1/2*pi*x"),
         ("x/2/y", "1/2*x/y"),
@@ -100,9 +99,9 @@ def test_terms_come_in_the_order_in_which_they_were_added():
     """((t1 + t2) - t3) + t4, though the graph sorts the two arguments of each sum."""
     graph = Graph()
     x, y, z, w = (graph.symbol(n) for n in "xyzw")
-    t1, t2, t3, t4 = x * y, z * w, x * x, w * w
-    total = t4 + t3 - t2 + t1
-    assert to_text(total) in ("w^2 + x^2 - z*w + x*y", "x^2 + w^2 - z*w + x*y")
+    t1, t2, t3, t4, t5 = x * y, z * w, x * x, w * w, y * y
+    assert to_text(t4 + t5 - t3 - t2 + t1) == "w^2 + y^2 - x^2 - z*w + x*y"
+    assert to_text(t4 + t5 + t3 + t2 - t1) == "w^2 + y^2 + x^2 + z*w - x*y"
 
 
 def scalars(graph: Graph):
@@ -223,10 +222,10 @@ def test_a_sum_that_shares_its_parts_is_flattened_by_multiplicity():
     assert time.perf_counter() - start < 0.05
 
 
-def test_factors_keep_what_stands_below_the_line_there():
-    """x y^2 / (z^3) = coefficient, powers above, powers below."""
+def test_factors_stand_above_or_below_the_line():
+    """-3/2 x y^2 / z^3 = coefficient, powers above, powers below; what is in both cancels."""
     graph = Graph()
-    product = factors(read("-3/2*x*y^2/z^3", graph))
+    product = factors(read("-3/2*x*y^2*w/(z^3*w)", graph))
     x, y, z = (graph.symbol(n) for n in "xyz")
     assert product.coefficient == Fraction(-3, 2)
     assert set(product.numerator) == {(x, 1), (y, 2)} and product.denominator == ((z, 3),)

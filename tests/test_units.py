@@ -38,7 +38,17 @@ def test_a_value_with_a_unit_is_its_value_in_si_exactly(text, value, si):
     assert parse_unit(text).from_si(si, None) == value
 
 
-@pytest.mark.parametrize(("text", "per_pi"), [("deg", Fraction(1, 180)), ("rev", 2), ("rpm", Fraction(1, 30)), ("°", Fraction(1, 180)), ("rev/min", Fraction(1, 30)), ("deg/s", Fraction(1, 180))])
+@pytest.mark.parametrize(
+    ("text", "per_pi"),
+    [
+        ("deg", Fraction(1, 180)),
+        ("rev", 2),
+        ("rpm", Fraction(1, 30)),
+        ("°", Fraction(1, 180)),
+        ("rev/min", Fraction(1, 30)),
+        ("deg/s", Fraction(1, 180)),
+    ],
+)
 def test_an_angle_is_a_multiple_of_pi_exactly(text, per_pi):
     """deg = pi/180, rev = 2 pi, rpm = pi/30 rad/s; on the graph pi stays pi."""
     graph = Graph()
@@ -50,14 +60,27 @@ def test_an_angle_is_a_multiple_of_pi_exactly(text, per_pi):
 
 @pytest.mark.parametrize(
     ("one", "other"),
-    [("N", "kg*m/s^2"), ("J", "N*m"), ("W", "J/s"), ("Pa", "N/m^2"), ("rad/s", "1/s"), ("Hz", "1/s"), ("kg m^2", "N*m*s^2"), ("rpm", "rad/s"), ("deg", "1"), ("N/(m*s)", "N/m/s")],
+    [
+        ("N", "kg*m/s^2"),
+        ("J", "N*m"),
+        ("W", "J/s"),
+        ("Pa", "N/m^2"),
+        ("rad/s", "1/s"),
+        ("Hz", "1/s"),
+        ("kg m^2", "N*m*s^2"),
+        ("rpm", "rad/s"),
+        ("deg", "1"),
+        ("N/(m*s)", "N/m/s"),
+    ],
 )
 def test_units_of_one_dimension_fit(one, other):
     """m, kg, s to the same powers; the radian is a number."""
     assert parse_unit(one).fits(parse_unit(other)) and parse_unit(other).fits(parse_unit(one))
 
 
-@pytest.mark.parametrize(("one", "other"), [("m", "kg"), ("deg", "kg"), ("N", "N*m"), ("m/s", "m/s^2"), ("Hz", "rad/s"), ("1", "m")])
+@pytest.mark.parametrize(
+    ("one", "other"), [("m", "kg"), ("deg", "kg"), ("N", "N*m"), ("m/s", "m/s^2"), ("Hz", "rad/s"), ("1", "m")]
+)
 def test_units_of_different_dimensions_do_not_fit(one, other):
     """Nor do Hz and rad/s: between them lies 2 pi, silently."""
     assert not parse_unit(one).fits(parse_unit(other)) and not parse_unit(other).fits(parse_unit(one))

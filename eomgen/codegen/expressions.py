@@ -60,7 +60,7 @@ class Writer:
         return self._text(x)[0]
 
     def _text(self, x: Scalar) -> Text:
-        if type(x) is not Node:
+        if not isinstance(x, Node):
             return number(x)
         known = self._texts.get(x)
         if known is None:

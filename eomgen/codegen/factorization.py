@@ -7,8 +7,10 @@ Algorithms, 2008, section 6.5): joints on different branches never meet.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar, is_zero
 
 Row = Sequence[Scalar]
@@ -25,14 +27,14 @@ def solved(M: Sequence[Row], F: Row) -> tuple[Scalar, ...]:
     Raises:
         DerivationError: a pivot is the number 0: some coordinate moves no mass.
     """
-    rows = [list(row) for row in M]
-    z = list(F)
+    rows: list[list[Any]] = [list(row) for row in M]
+    z: list[Any] = list(F)
     pivots = elimination_order(M)
     for k in pivots:
         if is_zero(rows[k][k]):
             raise DerivationError(f"the mass matrix is singular: row {k + 1} has no inertia left")
         _eliminate(rows, z, k, _partners(rows, k, pivots))
-    a: list[Scalar] = [0] * len(z)
+    a: list[Any] = [0] * len(z)
     for k in reversed(pivots):
         value = z[k]
         for i in _partners(rows, k, pivots):
@@ -54,10 +56,10 @@ def operation_count(M: Sequence[Row]) -> int:
     return sum(d * (d + 1) + 5 * d + 1 for _, d in _eliminations(M))
 
 
-def _eliminate(rows: list[list[Scalar]], z: list[Scalar], k: int, partners: list[int]) -> None:
+def _eliminate(rows: list[list[Any]], z: list[Any], k: int, partners: list[int]) -> None:
     """One step: row k becomes row k of L, the rest of the matrix its Schur complement, z[k] the k-th of D^-1 z."""
     d = rows[k][k]
-    factors = [rows[k][i] / d if not is_zero(rows[k][i]) else 0 for i in partners]
+    factors = [over(rows[k][i], d) for i in partners]
     for i, factor in zip(partners, factors, strict=True):
         for j in partners:
             if j <= i:
@@ -65,7 +67,7 @@ def _eliminate(rows: list[list[Scalar]], z: list[Scalar], k: int, partners: list
         z[i] = z[i] - factor * z[k]
     for i, factor in zip(partners, factors, strict=True):
         rows[k][i] = factor
-    z[k] = z[k] / d
+    z[k] = over(z[k], d)
 
 
 def _partners(rows: Sequence[Row], k: int, pivots: list[int]) -> list[int]:

@@ -32,21 +32,21 @@ def write_files(name: str, program: Program, description: Description, *, target
         RunFailed: the folder cannot be written; nothing is then left behind.
     """
     texts = target_named(target).files(program, identifier(name), description)
-    texts["test_vectors.json"] = json.dumps(vectors_document(program, description), indent=1, ensure_ascii=False) + "\n"
+    texts["test_vectors.json"] = vectors_text(program, description)
     try:
         return _written(texts, directory)
     except OSError as error:
         raise RunFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
 
 
-def vectors_document(program: Program, description: Description) -> dict[str, object]:
-    """The test vectors as JSON: names in order, then t, x, p, inputs (null: the model's own), dx, tolerance."""
+def vectors_text(program: Program, description: Description) -> str:
+    """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), dx."""
     symbols = program.symbols
-    rows: list[Mapping[str, object]] = [
+    rows = [
         {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, "dx": v.dx, "tolerance": v.tolerance}
         for v in description.vectors
     ]
-    return {
+    head = {
         "schema_version": SCHEMA_VERSION,
         "model": description.title,
         "origin": description.origin,
@@ -55,8 +55,10 @@ def vectors_document(program: Program, description: Description) -> dict[str, ob
         "parameters": list(symbols.parameters),
         "inputs": list(symbols.inputs),
         "tolerance": "of |dx - given| / max(1, largest |dx|)",
-        "vectors": rows,
     }
+    lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
+    listed = ",\n".join(f"  {json.dumps(row)}" for row in rows)
+    return "\n".join(["{", *lines, ' "vectors": [', listed, " ]", "}", ""])
 
 
 def _written(texts: Mapping[str, str], directory: Path) -> list[Path]:

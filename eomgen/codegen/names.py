@@ -20,7 +20,8 @@ MATH_WORDS = frozenset(
 )
 OWN_WORDS = frozenset("t x p c inputs dx given n constants evaluate math float SIZE".split())
 RESERVED = C_WORDS | MATH_WORDS | OWN_WORDS | frozenset(keyword.kwlist) | frozenset(keyword.softkwlist)
-LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_rhs.*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS)|_.*")  # our own variables, functions, and what C keeps for itself
+# our own variables, functions and macros, and what C keeps for itself
+LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_rhs.*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS)|_.*")
 
 
 def identifiers(names: Iterable[str]) -> dict[str, str]:

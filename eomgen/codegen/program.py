@@ -47,7 +47,7 @@ class Solve:
 
     @property
     def kind(self) -> Literal["dense", "kkt"]:
-        """"kkt" with closing rows, "dense" without; a small system without them is written out and is no `Solve`."""
+        """With closing rows "kkt", without "dense"; a small system without them is written out and is no `Solve`."""
         return "kkt" if self.border else "dense"
 
     @property
@@ -73,7 +73,7 @@ class Program:
     """A function of (t, x, p, inputs), its statements in the order in which they are run.
 
     Args:
-        symbols: what the outputs are written in: x = (q, u), p, inputs and t are symbols.q, .u, .parameters, .inputs, .t.
+        symbols: what the outputs are written in: x = (q, u), p, inputs and t are in symbols.
         defaults: the inputs' own expressions in t and parameters, used where the caller gives none.
         preamble: statements that only `defaults` need.
         hoisted: statements that depend on the parameters alone.

@@ -38,8 +38,8 @@ def _augmented(M, J, f, g):
     M, f = [list(row) for row in M], list(f)
     masses = [M[i][i] for i in range(len(f))]
     mean = sum(masses) / len(f) if J and sum(masses) > 0 else 1
-    for row, value in zip(J, g):
-        size = sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses))
+    for row, value in zip(J, g, strict=True):
+        size = sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses, strict=True))
         weight = 1 / size if size > 0 else 0
         for i in range(len(f)):
             for j in range(i + 1):

@@ -6,7 +6,7 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from fractions import Fraction
 from typing import Any
@@ -42,6 +42,7 @@ class Finding:
         mend: the nearest right thing, or "".
         column, length: the culprit within the text of an expression (None: all of it).
         key: the culprit is the key itself, not its value.
+        raw: what could not be read (names in it count as used).
     """
 
     path: Path
@@ -50,6 +51,7 @@ class Finding:
     column: int | None = None
     length: int | None = None
     key: bool = False
+    raw: Any = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -62,9 +64,15 @@ class Leaf:
     part: Any = None
 
 
+LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is offered: a hostile file must not cost minutes
+MOST_OFFERS = 50
+
+
 def nearest(word: str, known) -> str:
     """ "did you mean 'forearm'?", or "" where nothing is near."""
     words = [str(name) for name in known]
+    if len(word) > LONGEST_WORD or len(words) > MOST_WORDS:
+        return ""
     close = get_close_matches(word, words, n=1, cutoff=0.6)
     close = close or [name for name in words if name.lower() == word.lower()]
     return f"did you mean '{close[0]}'?" if close else ""
@@ -97,7 +105,9 @@ def whereabouts(path: Path, what: str = "") -> str:
         return f"[{path[0]}]" if path else what or "the model"
     owner = f"{TABLES[str(path[0])]} '{path[1]}'"
     inner = [str(key) for key in path[2:] if isinstance(key, str)]
-    return f"the {inner[-1]} of {owner}" if inner else owner
+    if inner[:1] == ["points"] and path[0] == "bodies" and len(inner) > 1:
+        return f"point '{inner[1]}' of {owner}"
+    return " of ".join([*(f"the {key}" for key in reversed(inner)), owner])
 
 
 @dataclass(frozen=True)
@@ -134,7 +144,10 @@ class FormulaRule:
         if unit is not None and self.unit is not None and not unit.fits(parse_unit(self.unit)):
             what = f"the unit '{unit.text}' does not fit: this is in {named(self.unit)}"
             found.append(Finding((*path, "unit"), what))
-        return in_si(_expression(raw["value"], (*path, "value"), found), unit, (*path, "value"), found)
+        value = _expression(raw["value"], (*path, "value"), found)
+        if value is not None and unit is not None and is_mixed(value, unit):
+            found.append(mixed(value, unit, (*path, "value")))
+        return in_si(value, unit)
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
@@ -148,17 +161,22 @@ def named(unit: str) -> str:
     return "radians or a pure number" if unit in ("", "1", "rad") else unit
 
 
-def in_si(value: Expression | None, unit: Unit | None, path: Path, found: list[Finding]) -> Expression | None:
-    """A value given in a unit, exactly in SI."""
-    if value is None or unit is None or (unit.factor == 1 and unit.pi_power == 0):
+def in_si(value: Expression | None, unit: Unit | None) -> Expression | None:
+    """A value given in a unit, exactly in SI; with names in it, it is in SI already and stays (`is_mixed`)."""
+    if value is None or unit is None or is_mixed(value, unit):
         return value
-    if value.names - {"pi", "t"}:
-        found.append(Finding(
-            path, f"'{value.text}' has parameters in it, which are in SI already, but the unit '{unit.text}' is not SI",
-            "leave the unit out, or give it to the numbers",
-        ))  # fmt: skip
-        return None
     return unit.expression_in_si(value)
+
+
+def is_mixed(value: Expression, unit: Unit) -> bool:
+    """Whether a value has parameters in it, which are in SI, beside a unit that is not: it may mean two things."""
+    return bool(value.names - {"pi", "t"}) and (unit.factor, unit.pi_power) != (1, 0)
+
+
+def mixed(value: Expression, unit: Unit, path: Path) -> Finding:
+    """What is wrong with a value that is_mixed."""
+    what = f"'{value.text}' has names in it, which are in SI, but the unit '{unit.text}' is not"
+    return Finding(path, what, "leave the unit out, or give it to the numbers")
 
 
 def _expression(raw: Any, path: Path, found: list[Finding], references: bool = False) -> Expression | None:
@@ -168,7 +186,7 @@ def _expression(raw: Any, path: Path, found: list[Finding], references: bool = F
     try:
         return as_expression(raw, references=references)
     except ExpressionError as error:
-        found.append(Finding(path, error.what, error.mend, error.column, error.length))
+        found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
         return None
 
 
@@ -212,7 +230,7 @@ class EquationRule:
         try:
             return Equation(*parse_equation(raw), text=raw)
         except ExpressionError as error:
-            found.append(Finding(path, error.what, error.mend, error.column, error.length))
+            found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
@@ -368,7 +386,7 @@ class UnitRule:
         try:
             return parse_unit(raw)
         except ExpressionError as error:
-            found.append(Finding(path, error.what, error.mend, error.column, error.length))
+            found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
@@ -460,8 +478,8 @@ class EitherRule:
 
 def unknown_keys(raw: Mapping, known, path: Path, found: list[Finding], what: str) -> None:
     """Every key of a table that nobody reads is a finding."""
-    for key in raw:
-        if key not in known:
-            listed = ", ".join(f"'{name}'" for name in known)
-            mend = nearest(str(key), known) or (f"known here: {listed}" if listed else "")
-            found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True))
+    strange = [key for key in raw if key not in known]
+    listed = ", ".join(f"'{name}'" for name in known)
+    for k, key in enumerate(strange):
+        mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
+        found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True, raw=raw[key]))

@@ -6,7 +6,6 @@ from typing import Annotated, ClassVar
 from eomgen.model.fields import FormulaRule
 from eomgen.model.kinds import Friction
 from eomgen.model.part import Part, PartRule
-from eomgen.model.fields import FormulaRule
 from eomgen.symbolic.expressions import Expression
 
 Viscosity = Annotated[Expression, FormulaRule(None, "nonnegative")]  # -c N v: s/m

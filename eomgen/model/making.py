@@ -1,42 +1,76 @@
-"""Declared parts -> a finished Model: fields read, checks made, names of places resolved."""
+"""Declared parts -> a finished Model: fields read, checks made, places on the ground resolved."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
+from eomgen.model.checks.catalog import Catalog
+from eomgen.model.checks.everything import ALL
 from eomgen.model.fields import Finding
-from eomgen.model.part import made, read_part, slots_of
+from eomgen.model.part import altered, read_part, slots_of
 from eomgen.model.table import Table
 
+MOST_FINDINGS = 200  # of one model: more say nothing new
 
-def draft_of(raw: Mapping[str, Any], title: str, found: list[Finding]) -> Any:
+
+def draft_of(cls: type, raw: Mapping[str, Any], title: str, found: list[Finding]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and among the findings."""
-    from eomgen.model.parts import Model
+    return read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
 
-    draft = read_part(Model, raw, (), found, known=("eomgen",))
-    if draft.name is None:
-        object.__setattr__(draft, "name", title)
-    _resolve(draft)
-    return draft
+
+def findings_of(model: Any, found: list[Finding]) -> list[Finding]:
+    """What is wrong with a model that was read, beyond what reading found already."""
+    catalog = Catalog(model, tuple(found))
+    every = (finding for check in ALL for finding in check(catalog))
+    return list(dict.fromkeys(islice(every, MOST_FINDINGS)))
 
 
 def finish(model: Any) -> None:
-    """Reads the fields of a model made in Python and checks it as a whole.
+    """Reads the fields of a model made in Python, checks it as a whole and resolves it, in place (it is being made).
 
     Raises:
         ModelError: every problem at once, by path ("bodies.arm.joint.on").
     """
     found: list[Finding] = []
     for slot in slots_of(type(model)):
-        value = slot.rule.read(getattr(model, slot.name), (slot.key,), found) if _given(model, slot) else slot.default
-        object.__setattr__(model, slot.name, value)
-    _resolve(model)
+        raw = getattr(model, slot.name)
+        if raw is not slot.default:
+            object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
     found += findings_of(model, found)
     if found:
         raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, mend=f.mend) for f in found))
+    for name, value in _resolved_tables(model).items():
+        object.__setattr__(model, name, value)
 
 
-def findings_of(model: Any, found: list[Finding]) -> list[Finding]:
-    """What is wrong with a model that was read, beyond what reading found already."""
-    return []
+def resolved(model: Any) -> Any:
+    """The checked model with the places of its ground joints as coordinates and its own points without their body."""
+    return altered(model, **_resolved_tables(model))
+
+
+def _resolved_tables(model: Any) -> dict[str, Table]:
+    bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
+    forces = Table({
+        name: altered(force, between=tuple(_own(point) for point in force.between)) if force.kind == "distributed" else force
+        for name, force in model.forces.items()
+    })  # fmt: skip
+    return {"bodies": bodies, "forces": forces}
+
+
+def _resolved_body(model: Any, name: str, body: Any) -> Any:
+    changes: dict[str, Any] = {}
+    if body.line is not None:
+        changes["line"] = tuple(_own(point) for point in body.line)
+    joint = body.joint
+    if joint is not None:
+        point = None if joint.point is None else _own(joint.point)
+        at = model.place(joint.at) if isinstance(joint.at, str) else joint.at
+        if point != joint.point or at is not joint.at:
+            changes["joint"] = altered(joint, point=point, at=at)
+    return altered(body, **changes) if changes else body
+
+
+def _own(point: str) -> str:
+    """The name of a body's own point, without the body."""
+    return point.rpartition(".")[2]

@@ -69,7 +69,7 @@ class Part:
         raw = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
         given = [slot for slot in slots_of(type(self)) if raw[slot.name] is not slot.default]
         values = {slot.name: slot.rule.read(raw[slot.name], (slot.key,), found) for slot in given}
-        for name, value in _in_si(type(self), values, raw, (), found).items():
+        for name, value in _in_si(type(self), values, raw).items():
             object.__setattr__(self, name, value)
         if found:
             raise ModelError(tuple(
@@ -77,13 +77,13 @@ class Part:
             ))  # fmt: skip
 
 
-def _in_si(cls: type, values: dict, raw: Mapping, path: Path, found: list[Finding]) -> dict:
+def _in_si(cls: type, values: dict, raw: Mapping) -> dict:
     """The values read, those given in the part's `unit` exactly in SI (an Expression is in SI already)."""
     unit = values.get("unit")
     if unit is None or not cls.in_unit:
         return values
     fresh = [name for name in cls.in_unit if values.get(name) is not None and not isinstance(raw[name], Expression)]
-    return {**values, **{name: in_si(values[name], unit, (*path, name), found) for name in fresh}}
+    return {**values, **{name: in_si(values[name], unit) for name in fresh}}
 
 
 def title_of(cls: type) -> str:
@@ -123,8 +123,6 @@ class PartRule:
         return leaves_of(value, path)
 
     def schema(self, definitions: dict) -> dict:
-        from eomgen.model.schema import part_schema
-
         return part_schema(self.cls, definitions)
 
 
@@ -146,7 +144,12 @@ def read_part(cls: type, raw: Mapping, path: Path, found: list[Finding], known: 
         elif slot.required:
             found.append(Finding(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'"))
             values[slot.name] = None
-    return made(cls, _in_si(cls, values, raw, path, found))
+    return made(cls, _in_si(cls, values, raw))
+
+
+def altered(part: Any, **changes: Any) -> Any:
+    """The part with some fields changed to values that were read already."""
+    return made(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
 
 
 def leaves_of(part: Any, path: Path) -> Iterator[Leaf]:
@@ -178,11 +181,12 @@ class SeamRule:
         kinds = {member.kind: member for member in self.members}
         kind = raw.get("kind")
         if kind is None:
-            found.append(Finding(path, f"{whereabouts(path, self.what)} has no 'kind'", f"one of {', '.join(kinds)}"))
+            what = f"{whereabouts(path, self.what)} has no 'kind'"
+            found.append(Finding(path, what, f"one of {', '.join(kinds)}", raw=raw))
             return None
-        if kind not in kinds:
+        if not isinstance(kind, str) or kind not in kinds:
             mend = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
-            found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend))
+            found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend, raw=raw))
             return None
         return read_part(kinds[kind], raw, path, found, known=("kind",))
 
@@ -190,7 +194,49 @@ class SeamRule:
         return leaves_of(value, path)
 
     def schema(self, definitions: dict) -> dict:
-        from eomgen.model.schema import part_schema
-
         branches = [part_schema(member, definitions) for member in self.members]
-        return {"oneOf": branches, "required": ["kind"], "discriminator": {"propertyName": "kind"}}
+        return {"oneOf": branches, "required": ["kind"]}
+
+
+def part_schema(cls: type, definitions: dict) -> dict:
+    """The JSON Schema of a part, by reference into `definitions` (draft 2020-12)."""
+    name = cls.__name__
+    if name not in definitions:
+        definitions[name] = {}  # stands here while its own parts are written
+        definitions[name] = _table_schema(cls, definitions)
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _table_schema(cls: type, definitions: dict) -> dict:
+    slots = slots_of(cls)
+    properties = {slot.key: slot.rule.schema(definitions) for slot in slots if not slot.inline}
+    required = [slot.key for slot in slots if slot.required and not slot.inline]
+    kind = getattr(cls, "kind", None)
+    if kind is not None:
+        properties, required = {"kind": {"const": kind}, **properties}, ["kind", *required]
+    table: dict = {"title": cls.__name__, "description": _first_line(cls), "type": "object", "properties": properties}
+    if required:
+        table["required"] = required
+    inline = [slot for slot in slots if slot.inline]
+    if inline:
+        return _with_inline(table, inline[0].rule.members, definitions)
+    table["additionalProperties"] = False
+    if cls.shorthand:
+        (bare,) = (slot.rule for slot in slots if slot.name == cls.shorthand)
+        return {"title": cls.__name__, "anyOf": [bare.schema(definitions), table]}
+    return table
+
+
+def _with_inline(table: dict, members: tuple[type, ...], definitions: dict) -> dict:
+    """A table that holds the keys of one of several parts besides its own."""
+    branches = []
+    for member in members:
+        inner = _table_schema(member, definitions)
+        merged = {**inner["properties"], **table["properties"]}
+        required = [*inner.get("required", ()), *table.get("required", ())]
+        branches.append({**inner, "properties": merged, "required": required})
+    return {"title": table["title"], "description": table["description"], "oneOf": branches}
+
+
+def _first_line(cls: type) -> str:
+    return (cls.__doc__ or "").strip().split("\n")[0]

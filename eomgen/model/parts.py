@@ -32,6 +32,7 @@ from eomgen.model.kinds import (
     TimeLaw,
     TwoOwnPoints,
 )
+from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
 from eomgen.model.table import Table
@@ -246,7 +247,7 @@ class Model(Part):
 
     title: ClassVar[str] = "the model"
     name: Text = "model"
-    space: Annotated[str, TextRule(("plane", "space"))] = "plane"
+    space: Annotated[str, TextRule(("plane", "space"))]
     about: Text | None = None
     source: Text | None = None
     parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
@@ -264,8 +265,6 @@ class Model(Part):
     outputs: Annotated[Table[Output], _table(Output, "output")] = Table()
 
     def __post_init__(self) -> None:
-        from eomgen.model.making import finish
-
         finish(self)
 
     def body_points(self, body: str) -> tuple[str, ...]:

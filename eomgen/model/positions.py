@@ -2,6 +2,7 @@
 
 import re
 from bisect import bisect_right
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 Path = tuple[str | int, ...]
@@ -34,13 +35,13 @@ class Index:
     Args:
         text: the text.
         keys, values: the span of each key, and of each value (a table's header stands for its value), by path.
-        twice: (path, span) of every key that was given before.
+        twice: path, span, and whole statement (None: a header or a key within a line) of every key given before.
     """
 
     text: str
     keys: dict[Path, Span] = field(default_factory=dict)
     values: dict[Path, Span] = field(default_factory=dict)
-    twice: list[tuple[Path, Span]] = field(default_factory=list)
+    twice: list[tuple[Path, Span, Span | None]] = field(default_factory=list)
     _lines: list[int] = field(default_factory=list)
 
     def line_and_column(self, offset: int) -> tuple[int, int]:
@@ -54,7 +55,8 @@ class Index:
         """The text of a line, from 1."""
         self.line_and_column(0)
         start = self._lines[number - 1]
-        return self.text[start:].split("\n", 1)[0].rstrip("\r")
+        end = self.text.find("\n", start)
+        return self.text[start : end if end >= 0 else len(self.text)]
 
     def nearest(self, path: Path, key: bool = False) -> Span:
         """The span of the value at a path (or of its key), else of what it is in."""
@@ -80,10 +82,8 @@ class Index:
 def index_of(text: str) -> Index:
     """The places of all keys and values of a TOML text; of a text that is none, those up to where that shows."""
     scanner = _Scanner(text)
-    try:
+    with suppress(_Lost, RecursionError):
         scanner.document()
-    except _Lost:
-        pass
     return scanner.index
 
 
@@ -97,6 +97,7 @@ class _Scanner:
     def __init__(self, text: str) -> None:
         self.text, self.at, self.index = text, 0, Index(text)
         self.counts: dict[Path, int] = {}
+        self.headers: set[Path] = set()
 
     def document(self) -> None:
         table: Path = ()
@@ -105,7 +106,7 @@ class _Scanner:
             if self.text.startswith("[", self.at):
                 table = self.header()
             else:
-                self.pair(table)
+                self.pair(table, whole_line=True)
             self.match(_BLANK)
 
     def match(self, pattern: re.Pattern[str]) -> str:
@@ -133,18 +134,14 @@ class _Scanner:
             if path in self.counts:
                 path = (*path, self.counts[path])
         span = keys[-1][1]
-        if path in self.index.values and not many and self.index.values[path] in self.headers:
-            self.index.twice.append((path, span))
+        if path in self.headers:
+            self.index.twice.append((path, span, None))
+        self.headers.add(path)
         self.index.keys.setdefault(path, span)
         self.index.values.setdefault(path, Span(start, self.at))
-        self.headers.append(self.index.values[path])
         for k in range(1, len(keys)):
             self.index.values.setdefault(tuple(name for name, _ in keys[:k]), Span(start, self.at))
         return path
-
-    @property
-    def headers(self) -> list[Span]:
-        return self.__dict__.setdefault("_headers", [])
 
     def dotted(self) -> list[tuple[str, Span]]:
         """A key, dotted or not: its pieces and where they stand."""
@@ -159,8 +156,8 @@ class _Scanner:
                 return pieces
             self.at += 1
 
-    def pair(self, table: Path) -> None:
-        keys = self.dotted()
+    def pair(self, table: Path, whole_line: bool = False) -> None:
+        start, keys = self.at, self.dotted()
         self.take("=")
         self.match(_SPACE)
         path = table
@@ -170,10 +167,11 @@ class _Scanner:
             self.index.values.setdefault(path, span)
         name, span = keys[-1]
         path = (*path, name)
-        if path in self.index.keys:
-            self.index.twice.append((path, span))
+        again = path in self.index.keys
         self.index.keys.setdefault(path, span)
         self.value(path)
+        if again:
+            self.index.twice.append((path, span, Span(start, self.at) if whole_line else None))
 
     def value(self, path: Path) -> None:
         start = self.at
@@ -185,7 +183,8 @@ class _Scanner:
         elif sign in ("'", '"'):
             self.match(_STRING)
         else:
-            self.at -= len(word := self.match(_BARE)) - len(word.rstrip())
+            word = self.match(_BARE)
+            self.at -= len(word) - len(word.rstrip())
         self.index.values.setdefault(path, Span(start, self.at))
 
     def inline_table(self, path: Path) -> None:

@@ -6,8 +6,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.fields import Decimal, Finding
-from eomgen.model.making import draft_of, findings_of
+from eomgen.model.fields import Decimal, Finding, shown
+from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import Index, Span, index_of
 
@@ -47,12 +47,12 @@ def _loads(data: bytes, name: str, title: str) -> Model:
     text = _text(data, name)
     index = index_of(text)
     raw, twice = _table(text, index, name)
-    found = [*twice, *_version(raw)]
-    draft = draft_of(raw, title, found)
+    found = _version(raw)
+    draft = draft_of(Model, raw, title, found)
     found += findings_of(draft, found)
-    if found:
-        raise ModelError(_problems(found, index, name))
-    return draft
+    if found or twice:
+        raise ModelError((*twice, *_problems(found, index, name)))
+    return resolved(draft)
 
 
 def _text(data: bytes, name: str) -> str:
@@ -63,28 +63,36 @@ def _text(data: bytes, name: str) -> str:
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8-sig", "replace")
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        raise ModelError(f"not UTF-8: byte 0x{data[error.start]:02x}", f"{name}:{line}:{column}", "save it as UTF-8") from error
+        what = f"not UTF-8: byte 0x{data[error.start]:02x}"
+        raise ModelError(what, f"{name}:{line}:{column}", "save it as UTF-8") from error
 
 
-def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Finding]]:
+def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Problem]]:
     """The values of a text, and its keys that are there twice (of which the first one counts)."""
     try:
         return tomllib.loads(text, parse_float=_decimal), []
-    except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         failure = error
-    twice = [
-        Finding(path, f"'{path[-1]}' is given twice", f"first given in line {_line(index, path)}", key=True)
-        for path, _ in index.twice
-    ]
-    if twice:
-        raise ModelError(tuple(
-            _problem(finding, span, index, name) for finding, (_, span) in zip(twice, index.twice, strict=True)
-        ))  # fmt: skip
-    raise ModelError((_not_toml(failure, index, name),)) from failure
+    twice = [_problem(_again(path, index), span, index, name) for path, span, _ in index.twice]
+    if not twice:
+        raise ModelError((_not_toml(failure, index, name),)) from failure
+    try:
+        return tomllib.loads(_without(text, [s for _, _, s in index.twice if s]), parse_float=_decimal), twice
+    except (ValueError, RecursionError):
+        raise ModelError(tuple(twice)) from failure
 
 
-def _line(index: Index, path: tuple) -> int:
-    return index.line_and_column(index.keys[path].start)[0]
+def _without(text: str, spans: list[Span]) -> str:
+    """The text with blanks in place of some statements."""
+    for span in spans:
+        blank = "".join("\n" if c == "\n" else " " for c in text[span.start : span.end])
+        text = text[: span.start] + blank + text[span.end :]
+    return text
+
+
+def _again(path: tuple, index: Index) -> Finding:
+    line = index.line_and_column(index.keys[path].start)[0]
+    return Finding(path, f"'{path[-1]}' is given twice", f"first given in line {line}")
 
 
 def _decimal(word: str) -> Decimal:
@@ -120,15 +128,17 @@ def _version(raw: dict[str, Any]) -> list[Finding]:
         return [Finding((), "the file does not say that it is a model", "begin it with the line: eomgen = 1")]
     version = raw["eomgen"]
     if type(version) is not int or version != VERSION:
-        return [Finding(("eomgen",), f"this is version {VERSION} of the model file, not {version!r}", "write eomgen = 1")]
+        what = f"version {shown(version)} of the model file is not known here, only version {VERSION}"
+        return [Finding(("eomgen",), what, "write eomgen = 1")]
     return []
 
 
 def _problems(found: list[Finding], index: Index, name: str) -> tuple[Problem, ...]:
     """Each finding at its place, in the order of the file."""
     placed = sorted(((_span(finding, index), finding) for finding in found), key=lambda pair: pair[0].start)
-    problems = [_problem(finding, span, index, name) for span, finding in placed]
-    return tuple(dict.fromkeys(problems))
+    problems = tuple(dict.fromkeys(_problem(finding, span, index, name) for span, finding in placed[:MOST_FINDINGS]))
+    more = len(placed) - MOST_FINDINGS
+    return (*problems, Problem(name, f"and {more} more problems")) if more > 0 else problems
 
 
 def _span(finding: Finding, index: Index) -> Span:

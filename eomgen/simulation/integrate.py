@@ -83,14 +83,14 @@ def integrate(
         return rhs(t, x, p) if inputs is None else rhs(t, x, p, inputs(t))
 
     run = _run(f, start, end, x0, instants, method, rtol, atol, most_steps)
-    T, V = (None, None) if energy is None else (np.broadcast_to(v, run.t.shape) for v in energy(run.t, run.x))
+    T, V = (None, None) if energy is None else _rows(energy(run.t, run.x), run.t)
     return Trajectory(
         t=run.t,
         x=run.x,
         coordinates=rhs.coordinates,
         speeds=rhs.speeds,
-        energy=None if T is None else T + V,
-        drift=None if T is None or not conservative else drift_of(T, V),
+        energy=None if T is None or V is None else T + V,
+        drift=None if T is None or V is None or not conservative else drift_of(T, V),
         gap=None if gaps is None else float(np.max(np.abs(gaps(run.t, run.x)), initial=0.0)),
         phases=(Phase(start, run.end, run.message),),
         status=run.status,
@@ -107,22 +107,30 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
     return float(np.max(np.abs(E - E[:1]), initial=0.0) / (moving if moving > 0 else 1.0))
 
 
+def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    T, V = values
+    return np.broadcast_to(T, t.shape), np.broadcast_to(V, t.shape)
+
+
 def _run(f, start, end, x0, instants, method, rtol, atol, most_steps) -> _Run:
     """Step until the end, or until it goes no further."""
-    t, x = [np.array([start])], [x0[None, :]]
     if not np.all(np.isfinite(f(start, x0))):
-        return _Run(t[0], x[0], start, "not finite", _no_value(start), 0, 1)
+        return _Run(np.array([start]), x0[None, :], start, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
-        times = instants if instants is not None else np.array([start, end])
-        return _Run(times, np.repeat(x[0], len(times), axis=0), end, "finished", _reached(end), 0, 1)
+        times = instants if instants is not None and end > start else np.unique([start, end])
+        return _Run(times, np.tile(x0, (len(times), 1)), end, "finished", _reached(end), 0, 1)
+    asked = 1 if instants is None or instants[0] == start else 0
+    t, x = [np.array([start])[:asked]], [x0[None, :][:asked]]
     solver = _solver(f, start, end, x0, method, rtol, atol)
-    status, message, steps = "finished", "", 0
+    status: Status = "finished"
+    message, steps = "", 0
     while solver.status == "running":
         if steps == most_steps:
             status, message = "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s."
             break
         try:
-            solver.step()
+            with np.errstate(all="ignore"):
+                solver.step()
         except (_NotFinite, KeyboardInterrupt) as stop:
             status, message = _stopped(stop, solver.t)
             break
@@ -131,9 +139,10 @@ def _run(f, start, end, x0, instants, method, rtol, atol, most_steps) -> _Run:
             break
         steps += 1
         _record(solver, instants, t, x)
-    return _Run(
-        np.concatenate(t), np.concatenate(x), solver.t, status, message or _reached(end), steps, solver.nfev
-    )
+    if status != "finished" and instants is not None and solver.t not in t[-1]:
+        t, x = [*t, np.array([solver.t])], [*x, solver.y[None, :]]
+    times, states = np.concatenate(t), np.concatenate(x)
+    return _Run(times, states, float(solver.t), status, message or _reached(end), steps, solver.nfev)
 
 
 def _record(solver: Any, instants: np.ndarray | None, t: list[np.ndarray], x: list[np.ndarray]) -> None:
@@ -168,7 +177,7 @@ def _failed(f: Callable[..., np.ndarray], solver: Any) -> tuple[Status, str]:
     ahead = solver.t + 1e-9 * max(1.0, abs(solver.t))
     if not np.all(np.isfinite(f(ahead, solver.y + (ahead - solver.t) * f(solver.t, solver.y)))):
         return "not finite", _no_value(solver.t)
-    return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero (a singularity, or too stiff)."
+    return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero."
 
 
 def _stopped(stop: BaseException, t: float) -> tuple[Status, str]:

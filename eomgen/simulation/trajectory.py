@@ -133,7 +133,7 @@ class Trajectory:
         return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
 
     def _repr_html_(self) -> str:
-        shown = np.unique(np.linspace(0, max(len(self.t) - 1, 0), 6).astype(int)) if len(self.t) else []
+        shown: list[int] = sorted({round(i * (len(self.t) - 1) / 5) for i in range(6)}) if len(self.t) else []
         columns = self.columns()
         head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
         rows = ("".join(f"<td>{column[i]:.6g}</td>" for column in columns.values()) for i in shown)

@@ -233,18 +233,20 @@ def _quotient_modulo(a: int, b: int) -> int:
     return a * pow(b, -1, PRIME) % PRIME  # ValueError where b is 0
 
 
+_MODULAR: dict[str, Callable[..., Any]] = {
+    "neg": lambda a: -a % PRIME,
+    "add": lambda a, b: (a + b) % PRIME,
+    "sub": lambda a, b: (a - b) % PRIME,
+    "mul": lambda a, b: a * b % PRIME,
+    "div": _quotient_modulo,
+    "sqrt": _root_modulo,
+    "pow": _power_modulo,
+}
+
 PRIME_FIELD = Arithmetic(
     "prime field",
     _residue,
-    {
-        "neg": lambda a: -a % PRIME,
-        "add": lambda a, b: (a + b) % PRIME,
-        "sub": lambda a, b: (a - b) % PRIME,
-        "mul": lambda a, b: a * b % PRIME,
-        "div": _quotient_modulo,
-        "sqrt": _root_modulo,
-        "pow": _power_modulo,
-    }
+    _MODULAR
     | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "a prime field")
     | _refusing("abs sign min max less less_equal select", "a prime field"),
     _no_value,

@@ -93,34 +93,27 @@ def _summands(node: Node) -> tuple[tuple[Number, Scalar], ...]:
 
 
 def _opened_sum(x: Node, named: Container[Node]) -> tuple[list[Node], list[Node]]:
-    """The nodes of the sum that are opened, and its terms in the order in which they were added."""
+    """The nodes of the sum that are opened, and its terms in the order in which they were added.
+
+    The graph sorts the arguments of a sum, but a longer sum is always younger than the shorter one that it
+    was made from: a term's place is the age of the sum that brought it in.
+    """
     opened: dict[Node, None] = {}
-    leaves: dict[Node, None] = {}
-    stack: list[tuple[Node, bool]] = [(x, False)]
+    leaves: dict[Node, int] = {}
+    stack: list[tuple[Node, int]] = [(x, x.index)]
     while stack:
-        node, negative = stack.pop()
-        if node in opened:
-            continue
+        node, brought_by = stack.pop()
         if not _opens_as_sum(node, named):
-            leaves.setdefault(node)
-            continue
-        opened[node] = None
-        children = [child for child in node.args if type(child) is Node]
-        if node.op == "mul":  # 2*(a + b) stays a product
-            leaves.setdefault(children[0])
-            continue
-        if _last_added_first(node, negative):
-            children.reverse()
-        stack += [(child, negative is not (node.op == "neg")) for child in reversed(children)]
-    return list(opened), list(leaves)
-
-
-def _last_added_first(node: Node, negative: bool) -> bool:
-    """True for t + S and -(t - S), which the graph made by adding the term t to the sum S or taking it away."""
-    if node.op != "add" and not (node.op == "sub" and negative):
-        return False
-    first, second = node.args
-    return type(first) is Node and first.op not in SUMS and second.op in SUMS
+            leaves[node] = min(brought_by, leaves.get(node, brought_by))
+        elif node not in opened:
+            opened[node] = None
+            by = node.index if node.op in ("add", "sub") else brought_by
+            children = [(child, by) for child in reversed(node.args) if type(child) is Node]
+            if node.op == "mul":  # 2*(a + b) stays a product
+                leaves[children[0][0]] = min(by, leaves.get(children[0][0], by))
+            else:
+                stack += children
+    return list(opened), sorted(leaves, key=leaves.__getitem__)
 
 
 def factors(x: Scalar, named: Container[Node] = ()) -> Product:
@@ -133,30 +126,27 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
     """
     if not isinstance(x, Node):
         return Product(x, (), ())
-    powers: dict[Node, tuple[int, int]] = {x: (1, 0)}  # exponents above and below the line
+    powers: dict[Node, int] = {x: 1}
     newest = [(-x.index, x)]
-    above: list[Factor] = []
-    below: list[Factor] = []
+    bases: list[Factor] = []
     coefficient = Fraction(1)
     while newest:
         node = heappop(newest)[1]
-        up, down = powers[node]
+        power = powers[node]
         parts = None if node in named else _parts(node)
         if parts is None:
-            above += [(node, up)] if up else []
-            below += [(node, down)] if down else []
+            bases += [(node, power)] if power else []
             continue
         for part, exponent in parts:
-            more_up, more_down = (up, down) if exponent > 0 else (down, up)
-            more_up, more_down = more_up * abs(exponent), more_down * abs(exponent)
             if not isinstance(part, Node):
-                coefficient *= Fraction(part) ** (more_up - more_down)
+                coefficient *= Fraction(part) ** (power * exponent)
                 continue
             if part not in powers:
                 heappush(newest, (-part.index, part))
-            old_up, old_down = powers.get(part, (0, 0))
-            powers[part] = (old_up + more_up, old_down + more_down)
-    return Product(_tidy(coefficient), tuple(sorted(above, key=_rank)), tuple(sorted(below, key=_rank)))
+            powers[part] = powers.get(part, 0) + power * exponent
+    bases.sort(key=_rank)
+    above = tuple((base, power) for base, power in bases if power > 0)
+    return Product(_tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
 
 def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:

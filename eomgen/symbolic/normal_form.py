@@ -161,8 +161,8 @@ def _not_linear(symbols: Sequence[Node]) -> DerivationError:
 def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT) -> Scalar:
     """The rational number and the powers of parameters and coordinates that every term of the outputs holds.
 
-    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by it leaves no fractions. 1 where the
-    limit is reached or there is nothing to divide.
+    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by it leaves no fractions.
+    1 where the limit is reached or there is nothing to divide.
     """
     try:
         expansion, forms = expanded(outputs, limit)

@@ -122,8 +122,9 @@ def _by_support(waves: Waves) -> Sum:
         parts.setdefault(tuple(angle for angle, _ in w[1]) if w else (), {})[w] = c
     terms: list[tuple[Number, Factors]] = []
     for part in parts.values():
-        candidates = [_as_waves(part), _by_directions(part), _in_powers(part) or _as_waves(part)]
-        terms += min(candidates, key=_length)
+        candidates: list[Sum] = [_as_waves(part), _by_directions(part), _in_powers(part) or _as_waves(part)]
+        best: Sum = min(candidates, key=_length)
+        terms += best
     return _merged(terms)
 
 
@@ -173,9 +174,9 @@ def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[Vector, ...]] | None:
 
 
 def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
-    """Angles of which those of all waves are whole combinations; angles that always come in one proportion are one axis.
+    """Angles of which those of all waves are whole combinations.
 
-    sin(a) cos(b + c) has the axes a and b + c, cos(a/2) has a/2.
+    Angles that always come in one proportion are one axis: sin(a) cos(b + c) has the axes a and b + c.
     """
     rows = [dict(w[1]) for w in waves if w]
     groups: dict[tuple[Fraction, ...], list[tuple[int, Fraction]]] = {}

@@ -1,8 +1,8 @@
 """Sums of monomials times one sine or cosine: the arithmetic of the normal form.
 
-A term is coefficient * monomial * wave. The monomial is a product of powers of atoms (symbols, roots, other functions),
-negative powers too; the wave is 1, cos(k . angles) or sin(k . angles) with a vector k of rational numbers whose first entry
-is positive. Products of waves become sums,
+A term is coefficient * monomial * wave. The monomial is a product of powers of atoms (symbols, roots, other
+functions), negative powers too; the wave is 1, cos(k . angles) or sin(k . angles) with a vector k of rational numbers
+whose first entry is positive. Products of waves become sums,
 
     cos a cos b = (cos(a - b) + cos(a + b)) / 2,   and so on,
 
@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.graph import Number
 
 Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
-Vector = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1: the number 1 as an angle
+Vector = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian
 Wave = tuple[str, Vector] | tuple[()]  # ("cos", k), ("sin", k), or () for 1
 Key = tuple[Monomial, Wave]
 Terms = dict[Key, Number]
@@ -103,7 +103,7 @@ def wave_product(w: Wave, v: Wave) -> tuple[tuple[Wave, Number], ...]:
     """The product of two waves as a sum: ((wave, coefficient), ...)."""
     if not w or not v:
         return ((w or v, 1),)
-    (f, k), (g, l) = w, v  # noqa: E741 - the standard letter
+    (f, k), (g, l) = w, v
     kind = "cos" if f == g else "sin"
     difference, total = wave(kind, vector_sum(k, l, -1)), wave(kind, vector_sum(k, l, 1))
     sign_difference = -1 if (f, g) == ("cos", "sin") else 1
@@ -112,7 +112,7 @@ def wave_product(w: Wave, v: Wave) -> tuple[tuple[Wave, Number], ...]:
     return tuple((x, c) for x, c in pairs if c != 0)
 
 
-def vector_sum(k: Vector, l: Vector, factor: Number) -> Vector:  # noqa: E741
+def vector_sum(k: Vector, l: Vector, factor: Number) -> Vector:
     """k + factor l"""
     entries = dict(k)
     for angle, c in l:

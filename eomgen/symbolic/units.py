@@ -1,6 +1,6 @@
 """Text -> Unit: an exact factor to SI and the dimension (m, kg, s); the radian is one, and remembered.
 
-    deg = pi/180 rad,  rev = 2 pi rad,  kN = 1000 kg m/s^2
+deg = pi/180 rad,  rev = 2 pi rad,  kN = 1000 kg m/s^2
 """
 
 from __future__ import annotations

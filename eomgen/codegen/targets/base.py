@@ -116,7 +116,8 @@ def layout(program: Program) -> Layout:
     preamble, hoisted = _nodes(program.preamble), _nodes(program.hoisted)
     read = _read([*before, *after, *preamble], [*written, *program.defaults])
     kept = tuple(x for x in hoisted if x in read)
-    once = used_once([(hoisted, kept), (before + after, written), (preamble, program.defaults)])
+    once = used_once([(hoisted, ()), (before + after, written), (preamble, program.defaults)])
+    once |= frozenset(kept) - _read(hoisted, ())  # stored where they are computed
     return Layout(program, names, kept, once, before, solve, after)
 
 

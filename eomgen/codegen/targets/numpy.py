@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.codegen import solving
 from eomgen.codegen.expressions import Writer
-from eomgen.codegen.program import Program, Solve
+from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.codegen.targets.base import Description, Functions, Layout, Target, header, layout, used_symbols
 from eomgen.symbolic.graph import Node
 
@@ -229,8 +229,8 @@ def _function(head: str, lines: Sequence[str]) -> list[str]:
 
 def _functions(program: Program) -> set[str]:
     """The functions that the text calls."""
-    nodes = [s.node for s in (*program.hoisted, *program.preamble, *program.statements) if type(s) is not Solve]
-    solves = {"solve"} if any(type(s) is Solve for s in program.statements) else set()
+    nodes = [s.node for s in (*program.hoisted, *program.preamble, *program.statements) if isinstance(s, Assign)]
+    solves = {"solve"} if any(isinstance(s, Solve) for s in program.statements) else set()
     return {node.op for node in nodes if node.op in SCALARS} | solves
 
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
-from eomgen.model.kinds import BodyName, Pull, TwoPoints
+from eomgen.model.kinds import Pull, TwoPoints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,14 +14,12 @@ class Between(Force):
     """Two points pull each other with f(r, r'), r their distance; attraction positive [N].
 
     Args:
-        points: the two points (beside `body`, bare names are that body's points).
-        body: whose points bare names are.
+        points: the two points.
         pull: the law; `r` and `r'` mean the distance and its rate here.
     """
 
     kind: ClassVar[str] = "between"
     points: TwoPoints
-    body: BodyName | None = None
     pull: Pull
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:

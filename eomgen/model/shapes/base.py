@@ -19,7 +19,7 @@ class MassProperties:
 
     m: Any
     com: Vector
-    I: Matrix  # noqa: E741 - the standard letter
+    I: Matrix
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,6 +24,6 @@ class Cylinder(Shape):
         return {"origin": ZERO, "center": ZERO}
 
     def mass_properties(self, value: Value) -> MassProperties:
-        m, r, l = self.mass_of(value), value(self.radius), value(self.length)
-        across = Fraction(1, 4) * m * r * r + Fraction(1, 12) * m * l * l
+        m, r, length = self.mass_of(value), value(self.radius), value(self.length)
+        across = Fraction(1, 4) * m * r * r + Fraction(1, 12) * m * length * length
         return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))

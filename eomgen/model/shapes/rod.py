@@ -17,13 +17,13 @@ class Rod(Shape):
     length: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
-        l = value(self.length)
-        return {"origin": ZERO, "start": ZERO, "end": (l, 0, 0), "center": (Fraction(1, 2) * l, 0, 0)}
+        length = value(self.length)
+        return {"origin": ZERO, "start": ZERO, "end": (length, 0, 0), "center": (Fraction(1, 2) * length, 0, 0)}
 
     def mass_properties(self, value: Value) -> MassProperties:
-        m, l = self.mass_of(value), value(self.length)
-        across = Fraction(1, 12) * m * l * l
-        return MassProperties(m, (Fraction(1, 2) * l, 0, 0), diagonal(0, across, across))
+        m, length = self.mass_of(value), value(self.length)
+        across = Fraction(1, 12) * m * length * length
+        return MassProperties(m, (Fraction(1, 2) * length, 0, 0), diagonal(0, across, across))
 
     @property
     def point_names(self) -> tuple[str, ...]:

@@ -1,0 +1,155 @@
+"""System -> Quantities: the functions that outputs may call, as graph scalars.
+
+Positions are read off the poses; velocities and accelerations are their time derivatives, and the
+accelerations hold the symbols a, in which they are linear. Seen from a body: in that body's frame
+and axes, r = R^T (p - p_body), v = dr/dt, a = dv/dt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
+from eomgen.mechanics.inertia import kinetic_energy
+from eomgen.mechanics.system import System
+from eomgen.mechanics.work import generalized_forces
+from eomgen.model.forces.load import Place
+from eomgen.symbolic.derivative import derivative
+from eomgen.symbolic.expressions import Call, Reference
+from eomgen.symbolic.functions import sqrt
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import Vector, apply, dot, minus, transposed
+
+_ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
+_AXES = {"x": 0, "y": 1, "z": 2}
+COMPONENTS = {kind + axis: (n, i) for kind, n in _ORDERS.items() for axis, i in _AXES.items()}
+"""Functions of a point: (time derivatives, component)."""
+
+MAGNITUDES = {"speed": 1, "acceleration": 2}
+TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)) for axis, i in _AXES.items()}
+"""Functions of a body: (time derivatives, component)."""
+
+LATER = {
+    "reactions": ("reaction", "tension", "multiplier", "drive"),
+    "linearization": ("mass", "damping", "stiffness", "frequency"),
+    "centres of rotation": ("rotation_center",),
+    "moments of inertia": ("inertia",),
+}
+"""What later versions bring, and how their functions begin."""
+
+
+def later(function: str) -> str:
+    """What a function of the outputs waits for, in words; "" where it works."""
+    for what, heads in LATER.items():
+        if any(function == head or function.startswith(head + "_") for head in heads):
+            return f"{what} come with a later version" if what.endswith("s") else f"{what} comes with a later version"
+    return ""
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """What the functions of the outputs are worth in one system."""
+
+    system: System
+
+    def value(self, call: Call) -> Scalar:
+        """One function at its arguments, in q, u, a, t and the parameters.
+
+        Raises:
+            NotYet: a function that comes later.
+            DerivationError: it has no meaning here.
+        """
+        if waits := later(call.name):
+            raise NotYet(f"'{call}': {waits}")
+        names = [_name(call, argument) for argument in call.args]
+        if call.name in COMPONENTS:
+            n, i = COMPONENTS[call.name]
+            return self.of_point(n, *names)[i]
+        if call.name in MAGNITUDES:
+            vector = self.of_point(MAGNITUDES[call.name], *names)
+            return sqrt(dot(vector, vector))
+        if call.name in TURNING:
+            n, i = TURNING[call.name]
+            return self.of_body(n, *names)[i]
+        if call.name not in _OTHERS:
+            raise DerivationError(f"'{call}': there is no function '{call.name}'")
+        return _OTHERS[call.name](self, *names)
+
+    def of_point(self, order: int, point: str, frame: str | None = None) -> Vector:
+        """Position (order 0), velocity (1) or acceleration (2) of a point, ground axes or those of `frame` [m, s]."""
+        motion = self.system.motion
+        place = motion.position(self._place(point))
+        if frame is not None:
+            pose = motion.link(frame).pose
+            place = apply(transposed(pose.R), minus(place, pose.p))
+        return self._rate(place, order)
+
+    def of_body(self, order: int, body: str, frame: str | None = None) -> Vector:
+        """Angular velocity (order 1) or acceleration (2) of a body, ground axes or those of `frame` [rad, s]."""
+        motion = self.system.motion
+        link = motion.link(body)
+        w = apply(link.pose.R, link.twist.w) if link.angle is None else link.twist.w
+        if frame is not None:
+            other = motion.link(frame)
+            w = minus(apply(transposed(other.pose.R), w) if other.angle is None else w, other.twist.w)
+        return self._rate(w, order - 1)
+
+    def angle(self, body: str, frame: str | None = None) -> Scalar:
+        """Angle of a body in the plane, against the ground or another body [rad]."""
+        angles = [self.system.motion.link(name).angle for name in (body, frame) if name is not None]
+        if None in angles:
+            raise DerivationError(f"body '{body}' has no single angle in space")
+        return angles[0] if frame is None else angles[0] - angles[1]
+
+    def turning(self, order: int, body: str, frame: str | None = None) -> Scalar:
+        """In the plane omega or epsilon, counter-clockwise positive; in space its magnitude."""
+        vector = self.of_body(order, body, frame)
+        return vector[2] if self.system.scope.model.space == "plane" else sqrt(dot(vector, vector))
+
+    def generalized_force(self, coordinate: str) -> Scalar:
+        """Q_k of everything applied."""
+        return generalized_forces(self.system.loads)[self._speed(coordinate, "generalized_force")]
+
+    def momentum(self, coordinate: str) -> Scalar:
+        """p_k = dT/dq_k'."""
+        k = self._speed(coordinate, "momentum")
+        return derivative(kinetic_energy(self.system.motion), self.system.symbols.u[k])
+
+    def _rate(self, vector: Vector, order: int) -> Vector:
+        scope = self.system.scope
+        if order == 0:
+            return vector
+        rate = scope.time_derivative(vector)
+        return rate if order == 1 else scope.with_accelerations(rate)  # type: ignore[return-value]
+
+    def _place(self, point: str) -> Place:
+        owner, _ = self.system.scope.model.resolve_point(point)
+        if owner in self.system.scope.model.trusses:
+            raise NotYet(f"'{point}': trusses come with a later version")
+        return self.system.motion.place(point)
+
+    def _speed(self, coordinate: str, function: str) -> int:
+        names = [u.name for u in self.system.symbols.u]
+        if coordinate + "'" not in names:
+            raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
+        return names.index(coordinate + "'")
+
+
+def _name(call: Call, argument: object) -> str:
+    if not isinstance(argument, Reference):
+        raise DerivationError(f"'{call}': names are needed as arguments")
+    return argument.name
+
+
+_OTHERS: dict[str, Callable[..., Scalar]] = {
+    "angle": Quantities.angle,
+    "omega": lambda quantities, *names: quantities.turning(1, *names),
+    "epsilon": lambda quantities, *names: quantities.turning(2, *names),
+    "generalized_force": Quantities.generalized_force,
+    "momentum": Quantities.momentum,
+    "kinetic_energy": lambda quantities, *names: energy_of_motion(quantities.system, *names),
+    "potential_energy": lambda quantities, *names: energy_of_force(quantities.system, *names),
+    "power": lambda quantities, *names: power(quantities.system, *names),
+}

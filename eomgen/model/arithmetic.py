@@ -1,0 +1,47 @@
+"""Expressions of parameters -> numbers: the order in which parameters follow from one another, and what one is worth."""
+
+import math
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+
+from eomgen.errors import ExpressionError
+from eomgen.symbolic.expressions import Expression
+
+Number = int | Fraction | float
+
+
+def in_order(parameters: Mapping[str, Expression | None]) -> tuple[list[str], list[list[str]]]:
+    """The parameters, each after those in its expression; and the rings of those that need one another."""
+    ordered: dict[str, None] = {}
+    rings: list[list[str]] = []
+    for first in parameters:
+        trail = {} if first in ordered else {first: _needed(parameters, first)}
+        while trail:
+            name, needed = next(reversed(trail.items()))
+            other = next((n for n in needed if n not in ordered), None)
+            if other is None:
+                ordered[name] = None
+                del trail[name]
+            elif other in trail:
+                names = list(trail)
+                rings.append(names[names.index(other) :])
+                ordered |= dict.fromkeys(names)
+                break
+            else:
+                trail[other] = _needed(parameters, other)
+    return list(ordered), rings
+
+
+def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[str]:
+    value = parameters[name]
+    return iter(sorted(value.names & parameters.keys())) if value is not None else iter(())
+
+
+def number_of(expression: Expression, values: Mapping[str, Number]) -> Number | None:
+    """What an expression is worth with these values, or None where it has names besides or no value."""
+    if not expression.names <= values.keys() | {"pi"}:
+        return None
+    try:
+        return expression.evaluate({**values, "pi": math.pi})
+    except ExpressionError:
+        return None

@@ -1,0 +1,1 @@
+"""What can be wrong with a model as a whole: one file a concern, each a function Catalog -> findings."""

@@ -1,0 +1,144 @@
+"""Bodies and joints: where mass comes from, what a joint needs, and that the bodies hang in a tree."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from eomgen.model.checks.catalog import Catalog
+from eomgen.model.fields import Finding, Path
+from eomgen.model.joints.orientation import SEQUENCES
+
+SPACE_ONLY = ("cylindrical", "screw", "universal", "spherical")
+
+
+def bodies(catalog: Catalog) -> Iterator[Finding]:
+    """Mass given in two ways or in none, an inertia that is missing, joints that lack something, rings of bodies."""
+    for name, body in catalog.table("bodies").items():
+        if body is not None:
+            yield from _mass(catalog, name, body)
+            if body.joint is not None:
+                yield from _joint(catalog, name, body.joint)
+    yield from _rings(catalog)
+
+
+def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
+    path: Path = ("bodies", name)
+    alone = "shape" if body.shape is not None else "parts" if body.parts is not None else ""
+    others = {"shape": ("mass", "center", "inertia", "parts"), "parts": ("center", "inertia"), "": ()}[alone]
+    for other in others:
+        if getattr(body, other) is not None:
+            what = f"body '{name}' has both '{alone}' and '{other}'"
+            yield Finding((*path, other), what, f"'{alone}' gives the mass already: leave out '{other}'", key=True)
+    if body.shape is not None and body.shape.mass is None and (*path, "shape", "mass") not in catalog.broken:
+        what = f"the shape of body '{name}' has no 'mass'"
+        yield Finding((*path, "shape"), what, "give 'mass' (0 for a massless body)")
+    if body.parts is not None and body.mass is None and any(piece.shape.mass is None for piece in body.parts):
+        what = f"body '{name}' has parts but no 'mass'"
+        yield Finding(path, what, "give the net mass, or a mass to each part", key=True)
+    if body.mass is not None and body.parts is None and body.shape is None and body.inertia is None:
+        if (*path, "inertia") not in catalog.broken and body.mass.literal != 0 and _turns(catalog, name):
+            what = f"body '{name}' can turn but has no 'inertia'"
+            yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
+
+
+def _turns(catalog: Catalog, name: str) -> bool:
+    """Whether a body can turn against the ground: its joint or one below it turns with something."""
+    seen: set[str] = set()
+    constant = frozenset(["pi", *catalog.table("parameters"), *catalog.table("unknowns")])
+    while name not in seen and catalog.table("bodies").get(name) is not None:
+        seen.add(name)
+        joint = catalog.table("bodies")[name].joint
+        if joint is None:
+            return False
+        if any(e is not None and not e.names <= constant for e in joint.turns()):
+            return True
+        name = joint.parent or ""
+    return False
+
+
+def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Finding]:
+    path: Path = ("bodies", name, "joint")
+    space = catalog.model.space
+    if joint.on is not None and joint.at is not None:
+        if "." in joint.on:
+            what = f"the joint of body '{name}' sits at the point '{joint.on}' and has an 'at' too"
+            yield Finding((*path, "at"), what, "leave out one of them", key=True)
+        elif isinstance(joint.at, str):
+            what = f"'{joint.at}' is a point of the ground, but the joint of body '{name}' hangs on '{joint.on}'"
+            yield Finding((*path, "at"), what, f'write on = "{joint.on}.point", or give coordinates in its axes')
+    if space == "plane" and joint.kind in SPACE_ONLY:
+        yield Finding((*path, "kind"), f"a {joint.kind} joint needs space, but the model is in the plane",
+                      'use "revolute", "prismatic" or "free"')  # fmt: skip
+    elif joint.kind in ("placed", "spherical", "free"):
+        yield from _free(catalog, name, joint, path, space)
+    elif joint.kind == "path":
+        yield from _path(name, joint, path)
+
+
+def _free(catalog: Catalog, name: str, joint: Any, path: Path, space: str) -> Iterator[Finding]:
+    in_plane = ("x", "y", "angle") if joint.kind == "free" else ()
+    in_space = ("orientation", "angles", "quaternion", "omega", *(("position",) if joint.kind == "free" else ()))
+    wrong = in_space if space == "plane" else in_plane
+    for key in wrong:
+        if getattr(joint, key) is not None:
+            what = f"'{key}' of a {joint.kind} joint is for {'space' if space == 'plane' else 'the plane'}"
+            yield Finding((*path, key), what, "leave it out", key=True)
+    if joint.kind == "free":
+        needed = in_plane if space == "plane" else ("position", "orientation")
+        for key in needed:
+            if getattr(joint, key) is None and (*path, key) not in catalog.broken:
+                yield Finding(path, f"the joint of body '{name}' has no '{key}'", f"give '{key}'")
+    if space == "space":
+        yield from _orientation(catalog, name, joint, path)
+
+
+def _orientation(catalog: Catalog, name: str, joint: Any, path: Path) -> Iterator[Finding]:
+    """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
+    orientation = joint.orientation
+    if orientation is None:
+        for key in ("angles", "quaternion"):
+            if getattr(joint, key) is not None and (*path, "orientation") not in catalog.broken:
+                yield Finding(path, f"the joint of body '{name}' has '{key}' but no 'orientation'",
+                              f'orientation = "{"zxz" if key == "angles" else key}"')  # fmt: skip
+        return
+    needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
+    if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:
+        yield Finding((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
+    also = [other] + (["angle"] if joint.kind == "placed" else [])
+    for key in also:
+        if getattr(joint, key) is not None:
+            what = f"'{key}' does not go with orientation \"{orientation}\""
+            yield Finding((*path, key), what, "leave it out", key=True)
+    if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
+        yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
+
+
+def _path(name: str, joint: Any, path: Path) -> Iterator[Finding]:
+    for k, piece in enumerate(joint.pieces or ()):
+        where = (*path, "pieces", k)
+        if (piece.line is None) == (piece.arc is None):
+            yield Finding(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
+        elif piece.arc is not None and (piece.turn is None or piece.angle is None):
+            what = f"an arc of the path of body '{name}' needs 'turn' and 'angle'"
+            yield Finding(where, what, 'turn = "ccw", angle = "pi/2"')
+        elif piece.line is not None and (piece.turn is not None or piece.angle is not None):
+            yield Finding(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
+
+
+def _rings(catalog: Catalog) -> Iterator[Finding]:
+    """A body that hangs on itself, at once or by way of others (each ring told once, at its first body)."""
+    table = catalog.table("bodies")
+    parents = {n: body.joint.parent for n, body in table.items() if body is not None and body.joint is not None}
+    done: set[str] = set()
+    for first in parents:
+        trail: list[str] = []
+        name: str | None = first
+        while name in parents and name not in done and name not in trail:
+            trail.append(name)
+            name = parents[name]
+        if name in trail:
+            ring = trail[trail.index(name) :]
+            told = " -> ".join([*ring, ring[0]])
+            what = f"body '{name}' hangs on itself"
+            what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {told}"
+            yield Finding(("bodies", ring[0], "joint", "on"), what, "one of them must hang on the ground")
+        done.update(trail)

@@ -1,0 +1,86 @@
+"""Model -> Catalog: the names that it declares, and every value with the rule that it was read by."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, TIME, Equation, Finding, Leaf, Path
+from eomgen.model.part import leaves_of
+from eomgen.symbolic.expressions import Expression
+
+SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
+OBJECT_TABLES = ("bodies", "trusses", "constraints")
+
+
+@dataclass(frozen=True)
+class Catalog:
+    """A model in the making. Parts that could not be read are None; what reading found is in `found`."""
+
+    model: Any
+    found: tuple[Finding, ...]
+
+    @cached_property
+    def leaves(self) -> tuple[Leaf, ...]:
+        """Every value of the model, with its path and rule."""
+        return tuple(leaves_of(self.model, ()))
+
+    @cached_property
+    def broken(self) -> frozenset[Path]:
+        """The paths of what could not be read, and of all that it stands in."""
+        return frozenset(f.path[:k] for f in self.found for k in range(1, len(f.path) + 1))
+
+    @cached_property
+    def symbols(self) -> dict[str, str]:
+        """What each name of an expression is: {"m": "parameter", ...}."""
+        kinds = {"parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input",
+                 "unknowns": "unknown"}  # fmt: skip
+        named = {name: kinds[table] for table in reversed(SYMBOL_TABLES) for name in self.table(table)}
+        return {**named, "t": "time", "pi": "constant"}
+
+    def table(self, name: str) -> Any:
+        """One of the model's tables (empty where it could not be read)."""
+        return getattr(self.model, name) or {}
+
+    @cached_property
+    def allowed(self) -> dict[str, frozenset[str]]:
+        """The names that may stand in an expression of each scope."""
+        constant = frozenset(["pi", *self.table("parameters"), *self.table("unknowns")])
+        q = frozenset(self.table("coordinates"))
+        rates = frozenset(name + "'" for name in q)
+        speeds = frozenset(self.table("speeds"))
+        accelerations = frozenset([name + "''" for name in q] + [name + "'" for name in speeds])
+        time = constant | {"t"}
+        motion = time | q | rates | speeds | frozenset(self.table("inputs"))
+        return {
+            PARAMETERS: constant, TIME: time, CONFIGURATION: time | q, RATES: time | q | rates, MOTION: motion,
+            "": motion | accelerations,
+        }  # fmt: skip
+
+    @cached_property
+    def expressions(self) -> tuple[tuple[Leaf, Expression], ...]:
+        """Every expression of the model, with the leaf that holds it."""
+        return tuple(
+            (leaf, expression)
+            for leaf in self.leaves
+            for expression in _expressions_in(leaf.value)
+            if not isinstance(leaf.value, tuple)  # a vector's components are leaves of their own
+        )
+
+    def body_points(self, body: str) -> tuple[str, ...]:
+        """The names of a body's points (none where the body could not be read)."""
+        return self.model.body_points(body) if self.model.bodies.get(body) is not None else ()
+
+    def point_names(self) -> list[str]:
+        """Every point that a tie or a force may name."""
+        names = list(self.table("points"))
+        names += [f"{body}.{point}" for body in self.table("bodies") for point in self.body_points(body)]
+        return names + [f"{t}.{n}" for t, part in self.table("trusses").items() if part for n in part.nodes or {}]
+
+
+def _expressions_in(value: Any) -> Iterator[Expression]:
+    if isinstance(value, Expression):
+        yield value
+    elif isinstance(value, Equation):
+        yield value.left
+        yield value.right

@@ -1,0 +1,11 @@
+"""All checks, in the order in which they are told of one place."""
+
+from eomgen.model.checks.bodies import bodies
+from eomgen.model.checks.formulas import formulas
+from eomgen.model.checks.names import names
+from eomgen.model.checks.numbers import numbers
+from eomgen.model.checks.outputs import outputs
+from eomgen.model.checks.references import references
+from eomgen.model.checks.ties import coordinates, idle, ties
+
+ALL = (names, references, formulas, outputs, numbers, bodies, ties, coordinates, idle)

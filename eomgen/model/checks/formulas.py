@@ -1,0 +1,99 @@
+"""Expressions: every name in them is known, may stand there, and has the unit that the field needs."""
+
+from collections.abc import Iterator
+from functools import cache
+
+from eomgen.model.arithmetic import in_order
+from eomgen.model.checks.catalog import Catalog
+from eomgen.model.fields import EVERYTHING, Finding, Leaf, Path, is_mixed, mixed, named, nearest, whereabouts
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.units import Unit, parse_unit
+
+
+def formulas(catalog: Catalog) -> Iterator[Finding]:
+    """Names that are unknown or may not stand where they do, units that do not fit, parameters in a ring."""
+    for leaf, expression in catalog.expressions:
+        scope = "" if leaf.rule.scope == EVERYTHING else leaf.rule.scope
+        allowed = catalog.allowed[scope] | frozenset(getattr(leaf.rule, "also", ()))
+        if not expression.names <= allowed:
+            for name, column in dict.fromkeys(expression.occurrences):
+                if name not in allowed:
+                    yield _misplaced(catalog, leaf, name, column, allowed)
+        elif leaf.part is not None and leaf.path[-1] in leaf.part.in_unit and leaf.part.unit is not None:
+            if is_mixed(expression, leaf.part.unit):
+                yield mixed(expression, leaf.part.unit, leaf.path)
+        yield from _unit(catalog, leaf, expression)
+    yield from _rings(catalog)
+
+
+def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: frozenset[str]) -> Finding:
+    base = name.rstrip("'")
+    kind = catalog.symbols.get(base)
+    where = whereabouts(leaf.path)
+    if kind is None:
+        what, mend = f"unknown name '{name}' in {where}", nearest(name, sorted(allowed)) or _declare(catalog, name)
+    elif name != base and kind not in ("coordinate", "speed"):
+        what, mend = f"a prime on what does not move: {name} ('{base}' is a {kind})", f"write {base}"
+    elif name != base and f"{name}" not in catalog.allowed[""]:
+        what, mend = f"'{name}' means nothing: '{base}' is a {kind}", "a coordinate has '' and ', a speed '"
+    else:
+        kind = {"": kind, "'": "rate", "''": "acceleration"}[name[len(base) :]] if kind == "coordinate" else kind
+        what, mend = f"'{name}' ({_a(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
+    return Finding(leaf.path, what, mend, column, len(name))
+
+
+def _a(kind: str) -> str:
+    if kind in ("time", "constant"):
+        return kind
+    return f"an {kind}" if kind[0] in "aiu" else f"a {kind}"
+
+
+def _declare(catalog: Catalog, name: str) -> str:
+    if name in catalog.table("outputs"):
+        return "outputs do not refer to outputs: write its expression here"
+    if name in catalog.table("bodies"):
+        return "this is a body: ask for one of its quantities, like angle(...)"
+    return f"declare '{name.rstrip(chr(39))}' in [parameters]"
+
+
+@cache
+def _si(text: str) -> Unit:
+    return parse_unit(text)
+
+
+def _unit(catalog: Catalog, leaf: Leaf, expression: Expression) -> Iterator[Finding]:
+    """A field whose value is one parameter has that parameter's unit."""
+    name = next(iter(expression.names), "")
+    if len(expression.code) != 1 or expression.code[0][0] != "name":
+        return
+    unit = _unit_of(catalog, name)
+    needed = _needed(leaf)
+    if unit is not None and needed is not None and not unit.fits(needed):
+        kind = catalog.symbols[name]
+        what = f"{kind} '{name}' is in {unit.text}, but {whereabouts(leaf.path)} is in {named(needed.text)}"
+        yield Finding(leaf.path, what, f"give another {kind}, or mend its unit", 0, len(name))
+
+
+def _unit_of(catalog: Catalog, name: str) -> Unit | None:
+    for table in ("parameters", "coordinates", "inputs", "unknowns"):
+        part = catalog.table(table).get(name)
+        if part is not None:
+            return part.unit
+    return None
+
+
+def _needed(leaf: Leaf) -> Unit | None:
+    """The unit of a field, from its rule or from the part whose own unit its numbers are in."""
+    if leaf.path[0] == "coordinates" and leaf.path[-1] in ("start", "near", "motion"):
+        return leaf.part.unit
+    unit = getattr(leaf.rule, "unit", None)
+    return None if unit is None else _si(unit)
+
+
+def _rings(catalog: Catalog) -> Iterator[Finding]:
+    values = {name: part.value if part else None for name, part in catalog.table("parameters").items()}
+    for ring in in_order(values)[1]:
+        path: Path = ("parameters", ring[0], "value")
+        trail = " -> ".join([*ring, ring[0]])
+        what = f"parameter '{ring[0]}' needs itself: {trail}" if len(ring) == 1 else f"parameters in a ring: {trail}"
+        yield Finding(path, what, "give one of them a number")

@@ -1,0 +1,80 @@
+"""Numbers: a mass, length, radius or inertia has its sign; an inertia obeys the triangle inequality."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from eomgen.errors import ExpressionError
+from eomgen.model.arithmetic import Number, in_order, number_of
+from eomgen.model.checks.catalog import Catalog
+from eomgen.model.fields import Finding, Leaf, shown, whereabouts
+from eomgen.symbolic.expressions import Expression
+
+ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
+
+
+def numbers(catalog: Catalog) -> Iterator[Finding]:
+    """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
+    values: dict[str, Number] = {}
+    for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
+        yield from _parameter(catalog, name, values)
+    for leaf, expression in catalog.expressions:
+        sign = getattr(leaf.rule, "sign", "")
+        if sign:
+            yield from _sign(leaf, expression, number_of(expression, values))
+    yield from _positive(catalog, values)
+    yield from _inertias(catalog, values)
+
+
+def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterator[Finding]:
+    """Adds the value of a parameter to the values, or tells why it has none."""
+    part = catalog.table("parameters")[name]
+    if part is None or part.value is None or not part.value.names <= values.keys() | {"pi"}:
+        return
+    try:
+        values[name] = part.value.evaluate({**values, "pi": math.pi})
+    except ExpressionError as error:
+        yield Finding(("parameters", name, "value"), f"parameter '{name}': {error.what}", error.mend, error.column, error.length)
+
+
+def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
+    if number is None or number > 0 or (number == 0 and leaf.rule.sign == "nonnegative"):
+        return
+    what = "negative" if number < 0 else "zero"
+    key = next((str(k) for k in reversed(leaf.path) if isinstance(k, str)), "")
+    told = shown(expression.text) if expression.literal is None else expression.text
+    worth = f"{told} = {float(number):g}" if expression.literal is None else told
+    where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
+    yield Finding(leaf.path, f"'{key}' in {where} is {what}: {worth}")
+
+
+def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:
+    for name, part in catalog.table("parameters").items():
+        if part is not None and part.positive and name in values and values[name] <= 0:
+            what = f"parameter '{name}' is declared positive but is {float(values[name]):g}"
+            yield Finding(("parameters", name, "value"), what)
+
+
+def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
+    for name, body in catalog.table("bodies").items():
+        if catalog.model.space == "plane" or body is None or body.measured or body.inertia is None or len(body.inertia) not in (3, 6):
+            continue
+        moments = [number_of(e, values) for e in body.inertia]
+        if None not in moments and not _possible([float(x) for x in moments if x is not None]):
+            told = ", ".join(f"{float(x):g}" for x in moments if x is not None)
+            what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
+            mend = "a principal moment is at most the sum of the others; measured = true waives this for published data"
+            yield Finding(("bodies", name, "inertia"), what, mend)
+
+
+def _possible(moments: list[float]) -> bool:
+    """J = tr(I)/2 - I has no negative eigenvalue (its principal minors are not negative)."""
+    xx, yy, zz, xy, yz, zx = moments if len(moments) == 6 else (*moments, 0.0, 0.0, 0.0)
+    half = (xx + yy + zz) / 2
+    a, b, c = half - xx, half - yy, half - zz
+    size = max(abs(x) for x in (xx, yy, zz, xy, yz, zx)) or 1.0
+    determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
+    second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
+    return (
+        min(a, b, c) >= -ROUNDING * size and min(second) >= -ROUNDING * size**2 and determinant >= -ROUNDING * size**3
+    )

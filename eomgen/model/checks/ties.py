@@ -1,0 +1,136 @@
+"""Ties, forces and coordinates: what goes together, what excludes what, and that nothing is idle."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from eomgen.model.checks.catalog import Catalog
+from eomgen.model.fields import Finding, NameRule, Path
+
+ONE_OF = {
+    "clamp": ("point", "points"),
+    "equation": ("gap", "rate"),
+    "torsion_spring": ("bodies", "body"),
+    "torsion_damper": ("bodies", "body"),
+    "distributed": ("intensity", "intensities"),
+}
+"""Of these fields of a kind exactly one is given."""
+
+_WORD = re.compile(r"[^\W\d]\w*")
+
+
+def ties(catalog: Catalog) -> Iterator[Finding]:
+    """Fields of ties and forces that exclude one another, or of which one is missing."""
+    for table in ("constraints", "forces"):
+        for name, part in catalog.table(table).items():
+            if part is None:
+                continue
+            path: Path = (table, name)
+            if part.kind in ONE_OF:
+                yield from one_of(catalog, path, part, ONE_OF[part.kind])
+            if part.kind == "rolling":
+                yield from _rolling(catalog, path, part)
+            elif part.kind == "string":
+                yield from _string(catalog, path, part)
+            elif part.kind == "slider" and _lacks_line(catalog, part.on):
+                what = f"'{name}' slides on the line of body '{part.on}', which has none"
+                yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
+            friction = getattr(part, "friction", None)
+            if friction is not None:
+                yield from one_of(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
+
+
+def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+    """Exactly one of these fields is given."""
+    given = [key for key in keys if getattr(part, key) is not None]
+    listed = " and ".join(f"'{key}'" for key in keys)
+    if len(given) > 1:
+        yield Finding((*path, given[1]), f"only one of {listed} can be given ({'.'.join(map(str, path))})", key=True)
+    elif not given and not any((*path, key) in catalog.broken for key in keys):
+        yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
+
+
+def _lacks_line(catalog: Catalog, body: Any) -> bool:
+    part = catalog.table("bodies").get(body)
+    return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken
+
+
+def _round(catalog: Catalog, body: Any) -> bool:
+    """Whether a body's shape has a radius (or could not be read)."""
+    part = catalog.table("bodies").get(body)
+    return part is None or ("bodies", body, "shape") in catalog.broken or hasattr(part.shape, "radius")
+
+
+def _rolling(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
+    tracks = ("line", "plane", "circle") if part.on is None or part.line or part.plane else ("on",)
+    yield from one_of(catalog, path, part, tracks if part.on else (*tracks, "on"))
+    if part.radius is None and part.ellipsoid is None and not _round(catalog, part.body):
+        what = f"the radius of '{part.body}', which rolls, is not known"
+        yield Finding(path, what, "give 'radius', or the body a round shape")
+    if part.plane is not None and catalog.model.space == "plane":
+        yield Finding((*path, "plane"), "in the plane a body rolls on a 'line'", "write 'line'", key=True)
+    if part.on is not None and part.on == part.body:
+        yield Finding((*path, "on"), f"'{part.body}' cannot roll on itself")
+    if part.friction is not None and not part.slip:
+        yield Finding((*path, "friction"), "friction needs sliding", "slip = true, or leave 'friction' out", key=True)
+
+
+def _string(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
+    for k, wrap in enumerate(part.path or ()):
+        where = (*path, "path", k)
+        if isinstance(wrap, str):
+            continue
+        yield from one_of(catalog, where, wrap, ("body", "at"))
+        if wrap.radius is None and (wrap.at is not None or not _round(catalog, wrap.body)):
+            yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
+        if wrap.turn is None and (*where, "turn") not in catalog.broken:
+            yield Finding(where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"')
+    pieces = len(part.path or ()) - 1
+    if part.strands is not None and part.path is not None and len(part.strands) != pieces:
+        what = f"the string has {pieces} strands, but {len(part.strands)} directions are given"
+        yield Finding((*path, "strands"), what)
+
+
+def coordinates(catalog: Catalog) -> Iterator[Finding]:
+    """Coordinates that are driven in two ways, or driven and dependent; starts that a given motion fixes already."""
+    for name, part in catalog.table("coordinates").items():
+        if part is None:
+            continue
+        path: Path = ("coordinates", name)
+        laws = [law for law in ("motion", "rate", "acceleration") if getattr(part, law) is not None]
+        if len(laws) > 1:
+            yield Finding((*path, laws[1]), f"coordinate '{name}' is driven twice: {', '.join(laws)}", "keep one", key=True)
+        if laws and part.dependent:
+            what = f"coordinate '{name}' is driven and dependent"
+            yield Finding((*path, "dependent"), what, "it is one or the other", key=True)
+        fixed = {"motion": ("start", "speed", "near"), "rate": ("speed", "near"), "acceleration": ("near",)}
+        for key in fixed[laws[0]] if laws else ():
+            if getattr(part, key) is not None:
+                what = f"'{key}' of coordinate '{name}' is given by its '{laws[0]}' already"
+                yield Finding((*path, key), what, "leave it out", key=True)
+
+
+def idle(catalog: Catalog) -> Iterator[Finding]:
+    """A coordinate, a speed or an input that nothing uses."""
+    used = _used(catalog)
+    for table, kind in (("coordinates", "coordinate"), ("inputs", "input")):
+        for name in catalog.table(table):
+            if name not in used:
+                yield Finding((table, name), f"{kind} '{name}' is used by nothing", "use it, or leave it out", key=True)
+    for name, part in catalog.table("speeds").items():
+        if part is not None and part.rate is None and name not in used and ("speeds", name, "rate") not in catalog.broken:
+            what = f"speed '{name}' has no 'rate' and no joint names it in 'omega'"
+            yield Finding(("speeds", name), what, "give its 'rate', an expression in the rates", key=True)
+
+
+def _used(catalog: Catalog) -> set[str]:
+    """The names that something uses; a table of its own is no use, and what could not be read counts as one."""
+    used: set[str] = set()
+    for leaf, expression in catalog.expressions:
+        if leaf.path[0] not in ("parameters", "coordinates", "speeds", "inputs"):
+            used.update(name.rstrip("'") for name in expression.names)
+            used.update(a.name for call in expression.calls for a in call.args if not hasattr(a, "code"))
+    used.update(leaf.value for leaf in catalog.leaves if isinstance(leaf.rule, NameRule))
+    for finding in catalog.found:
+        used.update(_WORD.findall(str(finding.raw)))
+    return used

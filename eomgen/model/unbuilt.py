@@ -1,0 +1,29 @@
+"""Model -> the kinds in it that are read and checked but that this version does not derive yet."""
+
+from eomgen.model.parts import Model
+
+
+def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
+    """(where, kind) of every joint, tie, force and table that waits for a later version, in the model's order."""
+    return (*unbuilt_bodies(model), *unbuilt_ties(model), *_unbuilt_forces(model))
+
+
+def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
+    """Joints and composite bodies among them."""
+    waiting = []
+    for name, body in model.bodies.items():
+        if body.joint is not None and not body.joint.works_in(model.space):
+            waiting.append((f"bodies.{name}.joint", f"{body.joint.kind} joint"))
+        if body.parts is not None:
+            waiting.append((f"bodies.{name}.parts", "parts"))
+    return tuple(waiting)
+
+
+def unbuilt_ties(model: Model) -> tuple[tuple[str, str], ...]:
+    """Constraints and trusses among them: what cannot be counted in the degrees of freedom."""
+    waiting = [(f"constraints.{name}", tie.kind) for name, tie in model.constraints.items() if not tie.works]
+    return (*waiting, *((f"trusses.{name}", "truss") for name in model.trusses))
+
+
+def _unbuilt_forces(model: Model) -> tuple[tuple[str, str], ...]:
+    return tuple((f"forces.{name}", force.kind) for name, force in model.forces.items() if not force.works)

@@ -1,0 +1,116 @@
+"""Model -> numbers: the values of its parameters and where its coordinates start."""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from eomgen.errors import ExpressionError, MissingValues, ModelError
+from eomgen.model.arithmetic import Number, in_order
+from eomgen.model.fields import nearest
+from eomgen.model.parts import Model
+from eomgen.symbolic.expressions import Expression, as_expression
+
+
+def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, Number]:
+    """The parameters that have values: exact where they can be, a float where pi or a root comes in.
+
+    Raises:
+        ModelError: an expression without a value (1/0), an override that names no parameter or is no number.
+    """
+    given = {name: part.value for name, part in model.parameters.items() if part is not None}
+    given |= _overridden(model, overrides or {})
+    values: dict[str, Number] = {}
+    for name in in_order(given)[0]:
+        expression = given[name]
+        if expression is not None and expression.names <= values.keys() | {"pi"}:
+            values[name] = _value(expression, values, f"parameters.{name}")
+    return values
+
+
+def numeric_parameters(
+    model: Model, overrides: Mapping[str, Any] | None = None, *, needed: Iterable[str] | None = None
+) -> dict[str, float]:
+    """The value of each parameter, in the model's order, as floats.
+
+    Args:
+        overrides: values in place of the model's own: numbers or expressions.
+        needed: the parameters that must have one (None: all).
+    Raises:
+        MissingValues: some have none; names them all.
+        ModelError: as of `exact_parameters`.
+    """
+    values = exact_parameters(model, overrides)
+    wanted = set(model.parameters) if needed is None else set(needed)
+    missing = tuple(name for name in model.parameters if name in wanted and name not in values)
+    if missing:
+        raise MissingValues(missing)
+    return {name: float(values[name]) for name in model.parameters if name in values}
+
+
+def start_values(model: Model, parameters: Mapping[str, Any] | None = None) -> tuple[dict[str, float], dict[str, float]]:
+    """Coordinates, rates and declared speeds at the start; what is not given is 0.
+
+    A dependent coordinate without `start` begins at `near`. A driven one begins where its law says: f(0) for
+    `motion`, f(0) as rate for `rate`.
+
+    Args:
+        parameters: values in place of the model's own (None: those).
+    Returns:
+        {"theta": value} of the coordinates and {"theta'": rate, "w1": value} of their rates and the declared speeds.
+    Raises:
+        MissingValues: a start needs parameters without values.
+    """
+    lookup = {**exact_parameters(model, parameters), "t": 0}
+    q: dict[str, float] = {}
+    u: dict[str, float] = {}
+    for name, part in model.coordinates.items():
+        where = f"coordinates.{name}"
+        at = part.motion if part.motion is not None else part.start if part.start is not None else part.near
+        q[name] = _float(at, lookup, where)
+        rate = part.rate if part.rate is not None else part.speed
+        u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
+    for name, part in model.speeds.items():
+        u[name] = _float(part.start, lookup, f"speeds.{name}")
+    return q, u
+
+
+def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Expression]:
+    read = {}
+    for name, value in overrides.items():
+        if name not in model.parameters:
+            raise ModelError(f"there is no parameter '{name}'", "parameters", nearest(name, model.parameters))
+        try:
+            read[name] = as_expression(value.item() if hasattr(value, "item") else value)
+        except ExpressionError as error:
+            raise ModelError(error.what, f"parameters.{name}", error.mend) from error
+    return read
+
+
+def _value(expression: Expression, values: Mapping[str, Any], where: str) -> Number:
+    try:
+        return expression.evaluate({**values, "pi": math.pi})
+    except ExpressionError as error:
+        raise ModelError(f"'{expression.text}': {error.what}", where, error.mend) from error
+
+
+def _float(expression: Expression | None, values: Mapping[str, Any], where: str) -> float:
+    if expression is None:
+        return 0.0
+    missing = tuple(sorted(expression.names - values.keys() - {"pi"}))
+    if missing:
+        raise MissingValues(missing, where)
+    return float(_value(expression, values, where))
+
+
+def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
+    """f'(0) of a given motion, by the exact derivative."""
+    from eomgen.symbolic.derivative import derivative
+    from eomgen.symbolic.evaluation import FLOAT, evaluate
+    from eomgen.symbolic.graph import Graph
+
+    _float(motion, values, where)
+    graph = Graph()
+    symbols = {name: graph.symbol(name) for name in motion.names if name != "pi"}
+    rate = derivative(motion.evaluate({**symbols, "pi": graph.pi}), graph.symbol("t"))
+    numbers = {node: float(values[name]) for name, node in symbols.items()}
+    return float(evaluate((rate,), numbers, FLOAT)[0])

@@ -1,0 +1,142 @@
+"""Trajectory -> a picture of it: the coordinates over time, one panel a unit, and how well the energy was kept."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import RunFailed, UsageError
+from eomgen.simulation.trajectory import Trajectory
+
+FORMATS = (".png", ".svg", ".pdf")
+GREEK = frozenset(
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
+)
+MOST_IN_LEGEND = 12
+STYLE: dict[Any, Any] = {
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.8,
+    "axes.edgecolor": "#808080",
+    "xtick.color": "#505050",
+    "ytick.color": "#505050",
+    "font.size": 10,
+    "mathtext.fontset": "cm",
+    "legend.frameon": False,
+    "svg.hashsalt": "eomgen",
+}
+
+
+def plot_trajectory(
+    trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, str] | None = None
+) -> None:
+    """Draw a trajectory into a PNG, SVG or PDF file.
+
+    Args:
+        trajectory: what is drawn.
+        path: where to; the ending says which.
+        title: above the picture, the model's name.
+        units: of the coordinates by name; absent: none is printed.
+    Raises:
+        UsageError: another ending.
+        RunFailed: the file cannot be written; what was there before is then still there.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in FORMATS:
+        raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    groups = _by_unit(trajectory, units or {})
+    count = len(groups) + (trajectory.energy is not None)
+    with rc_context(STYLE):
+        figure = Figure(figsize=(8, 1.0 + 2.1 * max(count, 1)), layout="constrained")
+        FigureCanvasAgg(figure)
+        panels = figure.subplots(max(count, 1), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, (unit, names) in zip(panels, groups.items(), strict=False):
+            _coordinates(panel, trajectory, names, unit)
+        if trajectory.energy is not None:
+            _energy(panels[-1], trajectory)
+        panels[-1].set_xlabel("$t$ [s]")
+        panels[-1].margins(x=0.01)
+        figure.align_ylabels(panels)
+        if title:
+            figure.suptitle(title.replace("$", r"\$"), fontsize=12, fontweight="bold", x=0.01, ha="left")
+        _save(figure, path)
+
+
+def mathtext(name: str) -> str:
+    r"""A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}."""
+    base, dots = name.rstrip("'"), len(name) - len(name.rstrip("'"))
+    head, tail = re.fullmatch(r"([^\W\d_]+|.)_?(.*)", base, re.DOTALL).groups()  # type: ignore[union-attr]
+    letter = f"\\{head}" if head in GREEK else head if len(head) == 1 else f"\\mathrm{{{head}}}"
+    dotted = {0: letter, 1: f"\\dot{{{letter}}}", 2: f"\\ddot{{{letter}}}"}.get(dots, letter + "'" * dots)
+    below = tail.replace("_", r"\,")
+    if len(below) > 1 and not below.isdigit():
+        below = f"\\mathrm{{{below}}}"
+    return f"{dotted}_{{{below}}}" if below else dotted
+
+
+def _by_unit(trajectory: Trajectory, units: Mapping[str, str]) -> dict[str, list[str]]:
+    groups: dict[str, list[str]] = {}
+    for name in trajectory.coordinates:
+        groups.setdefault(units.get(name, ""), []).append(name)
+    return groups
+
+
+def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
+    from matplotlib import colormaps
+
+    few = len(names) <= MOST_IN_LEGEND
+    colors = (
+        colormaps["tab10"](np.arange(10))
+        if len(names) <= 10
+        else colormaps["viridis"](np.linspace(0, 0.92, len(names)))
+    )
+    labels = [f"${mathtext(name)}$" for name in names]
+    for name, label, color in zip(names, labels, colors, strict=False):
+        panel.plot(trajectory.t, trajectory[name], label=label, color=color, linewidth=1.6 if few else 1.0)
+    shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"
+    panel.set_ylabel(f"{shown} [{unit}]" if unit else shown)
+    if len(names) > 1 and few:
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def _energy(panel: Any, trajectory: Trajectory) -> None:
+    """E - E(0) where energy should stay, else E."""
+    energy = trajectory.energy
+    assert energy is not None
+    if trajectory.drift is None:
+        panel.plot(trajectory.t, energy, color="#444444", linewidth=1.4)
+        panel.set_ylabel("$E$ [J]")
+        return
+    panel.plot(trajectory.t, energy - energy[:1], color="#b03a2e", linewidth=1.2)
+    panel.axhline(0, color="#808080", linewidth=0.8)
+    panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
+    panel.set_ylabel("$E - E(0)$ [J]")
+    panel.annotate(
+        f"relative drift {trajectory.drift:.1e}", (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom",
+        fontsize=9, color="#505050",
+    )  # fmt: skip
+
+
+def _save(figure: Any, path: Path) -> None:
+    """Draw aside and move into place."""
+    metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower(), {})
+    try:
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".eomgen-") as aside:
+            made = Path(aside) / path.name
+            figure.savefig(made, dpi=150, metadata=metadata)
+            os.replace(made, path)
+    except OSError as error:
+        raise RunFailed(f"the picture cannot be written: {error.strerror or error}", str(path)) from None

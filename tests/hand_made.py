@@ -1,0 +1,104 @@
+"""Small systems written by hand, for tests that need equations of motion and no model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from eomgen.mechanics.assembly import Assembly
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import Graph, Scalar
+from eomgen.symbolic.symbols import Symbols
+
+
+def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int = 0) -> Symbols:
+    """Symbols of coordinates whose speeds are their rates."""
+    graph = Graph()
+    q = coordinates.split()
+    return Symbols(
+        graph,
+        graph.symbol("t"),
+        {name: graph.symbol(name) for name in parameters.split()},
+        {name: graph.symbol(name) for name in inputs.split()},
+        tuple(graph.symbol(name) for name in q),
+        tuple(graph.symbol(f"{name}'") for name in q),
+        tuple(graph.symbol(f"{name}''") for name in q),
+        tuple(graph.symbol(f"lam(tie, {row + 1})") for row in range(ties)),
+    )
+
+
+def assembly(
+    symbols: Symbols,
+    M: Sequence[Sequence[Scalar]],
+    c: Sequence[Scalar],
+    Q: Sequence[Scalar],
+    *,
+    T: Scalar = 0,
+    V: Scalar = 0,
+    J: Sequence[Sequence[Scalar]] = (),
+    gamma: Sequence[Scalar] = (),
+    phi: Sequence[Scalar] = (),
+    accelerations: Sequence[Scalar] | None = None,
+) -> Assembly:
+    """Equations with q' = u."""
+    n = len(symbols.q)
+    return Assembly(
+        symbols,
+        N=tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
+        nu=(0,) * n,
+        M=tuple(map(tuple, M)),
+        c=tuple(c),
+        Q=tuple(Q),
+        forcing=tuple(a - b for a, b in zip(Q, c, strict=True)),
+        J=tuple(map(tuple, J)),
+        sigma=(0,) * len(J),
+        gamma=tuple(gamma),
+        phi=tuple(phi),
+        T=T,
+        V=V,
+        accelerations=None if accelerations is None else tuple(accelerations),
+    )
+
+
+def pendulum() -> Assembly:
+    """A point mass on a massless rod: theta'' = -g/l sin(theta)."""
+    s = symbols("theta", "m l g")
+    m, l, g = s.parameters.values()
+    theta, rate = s.q[0], s.u[0]
+    T, V = Fraction(1, 2) * m * l**2 * rate**2, -m * g * l * cos(theta)
+    return assembly(s, [[m * l**2]], [0], [-m * g * l * sin(theta)], T=T, V=V)
+
+
+def cart_pole() -> Assembly:
+    """A cart M pushed by F, a point mass m on a rod l below it, theta from the vertical."""
+    s = symbols("x theta", "M m l g", "F")
+    M, m, l, g = s.parameters.values()
+    (_, theta), (v, w) = s.q, s.u
+    T = Fraction(1, 2) * (M * v**2 + m * (v**2 + 2 * l * cos(theta) * v * w + l**2 * w**2))
+    inertia = [[M + m, m * l * cos(theta)], [m * l * cos(theta), m * l**2]]
+    Q = [s.inputs["F"], -m * g * l * sin(theta)]
+    return assembly(s, inertia, [-m * l * sin(theta) * w**2, 0], Q, T=T, V=-m * g * l * cos(theta))
+
+
+def tied_pendulum(copies: int = 1) -> Assembly:
+    """The pendulum in x, y with its rod as a closing tie, said `copies` times: phi = (x^2 + y^2 - l^2)/2."""
+    s = symbols("x y", "m l g", ties=copies)
+    m, l, g = s.parameters.values()
+    (x, y), (vx, vy) = s.q, s.u
+    T, V = Fraction(1, 2) * m * (vx**2 + vy**2), m * g * y
+    rows = [(k * x, k * y) for k in range(1, copies + 1)]
+    gamma = [k * (vx**2 + vy**2) for k in range(1, copies + 1)]
+    phi = [k * (x**2 + y**2 - l**2) / 2 for k in range(1, copies + 1)]
+    return assembly(s, [[m, 0], [0, m]], [0, 0], [0, -m * g], T=T, V=V, J=rows, gamma=gamma, phi=phi)
+
+
+def spring_row(n: int) -> Assembly:
+    """n unit masses in a row between n + 1 unit springs, with a mass matrix made full: M = 1 + e e^T, K = M K0."""
+    s = symbols(" ".join(f"q{i}" for i in range(n)))
+    q = s.q
+    force = [(q[i - 1] if i else 0) - 2 * q[i] + (q[i + 1] if i + 1 < n else 0) for i in range(n)]
+    total: Scalar = 0
+    for f in force:
+        total = total + f
+    M = [[2 if i == j else 1 for j in range(n)] for i in range(n)]
+    return assembly(s, M, [0] * n, [f + total for f in force])

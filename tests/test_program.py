@@ -1,0 +1,216 @@
+"""Factorization and Program: what is computed, in which order, and how much it costs."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+
+from eomgen.codegen.factorization import operation_count, solved
+from eomgen.codegen.names import RESERVED, identifier, identifiers
+from eomgen.codegen.program import Assign, Solve, program_of, right_hand_side
+from eomgen.codegen.solving import solve_bordered
+from eomgen.errors import DerivationError
+from eomgen.symbolic.evaluation import FLOAT, evaluate, operations
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import Graph, is_zero
+
+
+def tree_mass_matrix(parents: list[int]):
+    """A symbolic M with the zeros of a tree: M[i][j] is not 0 where one body carries the other."""
+    g, n = Graph(), len(parents)
+    ancestors = [{i} for i in range(n)]
+    for i, parent in enumerate(parents):
+        if parent >= 0:
+            ancestors[i] |= ancestors[parent]
+    M = [[g.symbol(f"m{max(i, j)}{min(i, j)}") if i in ancestors[j] or j in ancestors[i] else 0 for j in range(n)]
+         for i in range(n)]  # fmt: skip
+    return M, [g.symbol(f"f{i}") for i in range(n)]
+
+
+TREES = {
+    "chain": [-1, 0, 1, 2, 3],
+    "two arms": [-1, 0, 1, 0, 3, 0],
+    "apart": [-1, -1, -1],
+    "leaves first": [2, 2, 3, -1],
+}
+
+
+@pytest.mark.parametrize("parents", TREES.values(), ids=TREES.keys())
+def test_the_written_out_factorization_solves_the_system(parents):
+    """M a = F at random positive definite M with the zeros of a tree, against numpy."""
+    rng = np.random.default_rng(3)
+    M, F = tree_mass_matrix(parents)
+    a = solved(M, F)
+    n = len(F)
+    mask = np.array([[not is_zero(entry) for entry in row] for row in M])
+    for _ in range(5):
+        B = np.tril(rng.normal(size=(n, n))) * mask
+        numbers = B.T @ B + 0.1 * np.eye(n)
+        f = rng.normal(size=n)
+        values = {M[i][j]: numbers[i, j] for i in range(n) for j in range(n) if mask[i, j]}
+        found = evaluate(a, values | dict(zip(F, f, strict=True)), FLOAT)
+        assert np.allclose(np.where(mask, numbers, 0) @ found, f, rtol=1e-9, atol=1e-9)
+
+
+def test_a_dense_factorization_of_seven_takes_224_operations():
+    """Sum of d^2 + 6 d + 1 over d < 7: one quotient a partner, no repeated divisions."""
+    M, F = tree_mass_matrix([-1, 0, 1, 2, 3, 4, 5])
+    assert operations(solved(M, F)).total == operation_count(M) == 224
+
+
+def test_zeros_of_a_tree_stay_zeros():
+    """Elimination from the leaves has no fill: a star of n costs O(n), whatever the order of its coordinates."""
+    star, turned = [-1, 0, 0, 0, 0, 0], [5, 5, 5, 5, 5, -1]
+    for parents in (star, turned):
+        M, F = tree_mass_matrix(parents)
+        assert operations(solved(M, F)).total == operation_count(M) == 5 * (1 * 2 + 5 + 1) + 1
+
+
+def test_a_row_without_inertia_is_refused():
+    """M = [[m, 0], [0, 0]] has no inverse at any state."""
+    g = Graph()
+    with pytest.raises(DerivationError, match="row 2"):
+        solved([[g.symbol("m"), 0], [0, 0]], [1, 1])
+
+
+def random_system(rng, n, k):
+    B = rng.normal(size=(n, n))
+    return B @ B.T + 0.1 * np.eye(n), rng.normal(size=(k, n)), rng.normal(size=n)
+
+
+def solved_by_rows(M, J, f, g):
+    n = len(f)
+    found = solve_bordered([M[i, : i + 1].tolist() for i in range(n)], J.tolist(), f.tolist(), g.tolist())
+    return np.array(found[:n]), np.array(found[n:])
+
+
+@pytest.mark.parametrize("k", [0, 1, 3])
+def test_the_bordered_solve_satisfies_both_its_rows(k):
+    """M a - J^T lam = f and J a = g."""
+    rng = np.random.default_rng(k)
+    M, J, f = random_system(rng, 4, k)
+    g = rng.normal(size=k)
+    a, lam = solved_by_rows(M, J, f, g)
+    assert np.allclose(M @ a - J.T @ lam, f) and np.allclose(J @ a, g)
+
+
+def test_accelerations_do_not_feel_that_a_tie_is_said_twice():
+    """rank J < k: a is that of the independent rows, and J^T lam is the same force."""
+    rng = np.random.default_rng(5)
+    M, J, f = random_system(rng, 4, 2)
+    g = rng.normal(size=2)
+    a, lam = solved_by_rows(M, J, f, g)
+    twice, gg = np.vstack([J, J[0] + 3 * J[1]]), np.append(g, g[0] + 3 * g[1])
+    again, more = solved_by_rows(M, twice, f, gg)
+    assert np.allclose(a, again) and np.allclose(J.T @ lam, twice.T @ more)
+
+
+def test_a_massless_coordinate_that_a_tie_moves_has_an_acceleration():
+    """M = diag(m, 0), J = [1, -1]: both move as one."""
+    a, _ = solved_by_rows(np.diag([2.0, 0.0]), np.array([[1.0, -1.0]]), np.array([4.0, 0.0]), np.zeros(1))
+    assert np.allclose(a, [2, 2])
+
+
+def test_what_moves_no_mass_and_is_not_tied_has_no_acceleration():
+    """M singular on J a = 0: nan, never a made-up number."""
+    a, lam = solved_by_rows(np.diag([2.0, 0.0]), np.array([[1.0, 0.0]]), np.array([4.0, 1.0]), np.zeros(1))
+    assert np.isnan(a).all() and np.isnan(lam).all()
+
+
+def test_statements_come_after_what_they_need():
+    """Every argument of a statement is an argument of the program, hoisted, or assigned before."""
+    program = right_hand_side(cart_pole(), {"F": 0})
+    known = {program.symbols.t, *program.states, *program.symbols.parameters.values()}
+    known |= set(program.symbols.inputs.values()) | {s.node for s in program.hoisted}
+    for statement in program.statements:
+        assert isinstance(statement, Assign)
+        arguments = {a for a in statement.node.args if hasattr(a, "op")}
+        assert {a.args[0] if a.op == "neg" else a for a in arguments} <= known
+        known.add(statement.node)
+
+
+def test_what_parameters_alone_determine_is_hoisted():
+    """theta'' = -(m g l) sin(theta) / (m l^2): the products of parameters are computed once for given p."""
+    program = right_hand_side(pendulum())
+    parameters = set(program.symbols.parameters.values())
+    assert program.count.hoisted == len(program.hoisted) > 0
+    assert program.count.total == 3  # sine, product, quotient
+    for statement in program.hoisted:
+        assert all(not hasattr(a, "op") or a.op != "symbol" or a in parameters for a in statement.node.args)
+
+
+def test_the_cheaper_of_two_ways_is_taken():
+    """Explicit accelerations are used where they cost less than the factorization, and only there."""
+    given = cart_pole()
+    s = given.symbols
+    cheap, dear = (s.q[0], s.q[1]), tuple(sin(cos(sin(q + 1) + 1) * q) / (q + 2) for q in s.q + s.u)[:2]
+    without = right_hand_side(given, {"F": 0}).count.total
+    shorter = right_hand_side(type(given)(**{**vars(given), "accelerations": cheap}), {"F": 0})
+    assert shorter.outputs[2:] == cheap and shorter.count.total < without
+    longer = tuple(dear[0] ** 7 * dear[1] ** 5 + sin(x * dear[0]) * cos(x + dear[1]) for x in s.q)
+    assert right_hand_side(type(given)(**{**vars(given), "accelerations": longer}), {"F": 0}).count.total == without
+
+
+def test_a_large_system_is_solved_in_a_loop_and_a_small_one_written_out():
+    """Never unroll an O(n^3) solve: n = 12 is written out, n = 20 is one Solve statement."""
+    kinds = {n: [s.kind for s in right_hand_side(spring_row(n)).statements if isinstance(s, Solve)] for n in (12, 20)}
+    assert kinds == {12: [], 20: ["dense"]}
+    ties = [s.kind for s in right_hand_side(tied_pendulum()).statements if isinstance(s, Solve)]
+    assert ties == ["kkt"]
+
+
+def test_a_symbol_that_is_no_argument_is_refused_by_name():
+    """A program depends on t, x, p and inputs only."""
+    s = symbols("x")
+    with pytest.raises(DerivationError, match="'mass'"):
+        program_of([s.graph.symbol("mass") * s.q[0]], s)
+
+
+def test_an_input_without_an_expression_is_refused_where_it_is_needed():
+    """A number that nobody gave is never made up."""
+    with pytest.raises(DerivationError, match="'F'"):
+        right_hand_side(cart_pole())
+    s = cart_pole().symbols
+    assert program_of([s.q[0]], s).outputs == (s.q[0],)
+
+
+def test_every_name_becomes_an_identifier_of_its_own():
+    """No keyword, no function of math.h, no two alike; Greek letters spelled."""
+    names = [
+        "theta",
+        "theta'",
+        "theta_dot",
+        "θ",
+        "I",
+        "int",
+        "lambda",
+        "x",
+        "t",
+        "v1",
+        "sin",
+        "solve_M",
+        "ω₁",
+        "m-1",
+        "é",
+    ]
+    words = identifiers(names)
+    assert words["theta"] == "theta" and words["ω₁"] == "omega1" and words["m-1"] == "m_1" and words["é"] == "e"
+    assert len(set(words.values())) == len(names)
+    assert all(word.isidentifier() and word.isascii() and word not in RESERVED for word in words.values())
+    assert not {"v1", "solve_M"} & set(words.values())
+    assert identifier("7-axis arm") == "n7_axis_arm"
+
+
+def random_name(rng: random.Random) -> str:
+    return "".join(rng.choice("aIθω'_1x²ß漢") for _ in range(rng.randint(1, 6)))
+
+
+def test_any_names_become_different_identifiers():
+    """Whatever letters a name has."""
+    rng = random.Random(2)
+    names = {random_name(rng) for _ in range(300)}
+    words = identifiers(names)
+    assert len(set(words.values())) == len(names) and all(word.isidentifier() for word in words.values())

@@ -1,0 +1,428 @@
+"""The contract of every target: emitted code, built and run, gives the symbols' numbers; and the files stand alone."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+import re
+import shutil
+import subprocess
+import sys
+import threading
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+
+from eomgen.codegen import build, rhs
+from eomgen.codegen.files import write_files
+from eomgen.codegen.program import program_of, right_hand_side
+from eomgen.codegen.rhs import compiled
+from eomgen.codegen.targets import ALL
+from eomgen.codegen.targets.base import Description
+from eomgen.codegen.vectors import outputs_at, vectors
+from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Graph, Node
+
+GOLDEN = Path(__file__).parent / "golden"
+TARGETS = [target.name for target in ALL]
+needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
+each_target = pytest.mark.parametrize(
+    "target", [pytest.param(name, marks=needs_cc if name == "c" else ()) for name in TARGETS]
+)
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"]
+
+
+@pytest.fixture
+def own_cache(tmp_path, monkeypatch):
+    """A cache folder of this test's own."""
+    monkeypatch.setattr(build.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    return tmp_path / "cache" / "eomgen"
+
+
+# -- values ---------------------------------------------------------------------------------------
+
+UNARY = "neg sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs sign".split()
+BINARY = "add sub mul div pow atan2 min max less less_equal".split()
+
+
+def one_of_each(g: Graph, a: Node, b: Node, positive: Node, unit: Node) -> dict[str, object]:
+    """Every operation of the graph, at arguments in its domain."""
+    within = {"sqrt": positive, "log": positive, "asin": unit, "acos": unit}
+    by_op = {op: g.call(op, within.get(op, a)) for op in UNARY}
+    by_op |= {"add": a + b, "sub": a - b, "mul": a * b, "div": a / positive, "pow": positive**b}
+    by_op |= {op: g.call(op, a, b) for op in ("atan2", "min", "max", "less", "less_equal")}
+    by_op |= {"power": a**11, "root": positive ** Fraction(2, 3), "minus power": positive**-3, "pi": g.pi * a}
+    by_op |= {"select": g.select(g.call("less", a, b), a * 2, b / 3), "constant": g.sqrt(2) * a + g.sqrt(3) * g.pi}
+    by_op |= {"thirds": Fraction(1, 3) * a - Fraction(22, 7) * b, "tiny": a * Fraction(1, 10**30), "number": 5}
+    by_op |= {"sign by sign": g.call("sign", a) / (g.call("sign", b) * 2), "signs": -(a + b) * -(a - b)}
+    return by_op | {"nested": g.call("min", g.call("max", a + b, a * b), g.call("abs", a - b) + 1)}
+
+
+@each_target
+def test_every_operation_of_the_graph_has_its_value(target):
+    """|emitted(x) - symbols(x)| <= 1e-12, one output an operation, in one state and in many at once."""
+    s = symbols("a b positive unit")
+    formulas = one_of_each(s.graph, *s.q)
+    assert {x.op for x in formulas.values() if isinstance(x, Node)} >= {*BINARY, *UNARY, "select"} - {"tan"}
+    program = program_of(list(formulas.values()), s)
+    function = compiled(program, target)
+    rng = random.Random(1)
+    states = [[rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(0.1, 3), rng.uniform(-1, 1)] for _ in range(25)]
+    many = function.many(0, np.hstack([states, np.zeros((25, 4))]), [])
+    for state, row in zip(states, many, strict=True):
+        right = evaluate(program.outputs, dict(zip(s.q, state, strict=True)), FLOAT)
+        found = function(0, [*state, 0, 0, 0, 0], [])
+        for name, a, b, c in zip(formulas, right, found, row, strict=True):
+            assert b == pytest.approx(float(a), rel=1e-12, abs=1e-12), name
+            assert c == pytest.approx(float(a), rel=1e-12, abs=1e-12), name
+
+
+def random_expression(rng: random.Random, g: Graph, leaves: list[Node], size: int):
+    """A random expression of every op that has a value everywhere."""
+    pool: list = [*leaves, 2, Fraction(1, 3), g.pi]
+    for _ in range(size):
+        a, b, c = rng.choices(pool[-12:] + leaves, k=3)
+        kind = rng.randrange(12)
+        if kind < 3:
+            pool.append((a + b, a - b, a * b)[kind])
+        elif kind == 3:
+            pool.append(a / (1 + b * b))
+        elif kind == 4:
+            pool.append(g.select(g.call("less", a, b), b, c))
+        elif kind == 5:
+            pool.append(g.call("sqrt", 1 + a * a))
+        elif kind == 6:
+            pool.append(g.call("atan2", a, 1 + b * b))
+        else:
+            pool.append(g.call(rng.choice("sin cos tanh abs atan".split()), a))
+    return pool[-4:]
+
+
+@each_target
+@pytest.mark.parametrize("seed", range(8))
+def test_random_expressions_have_the_symbols_value(target, seed):
+    """Inlining, hoisting, signs and parentheses change nothing: 1e-12 at random states and parameters."""
+    rng = random.Random(seed)
+    s = symbols("x y", "k m", "F")
+    leaves = [*s.q, *s.parameters.values(), *s.inputs.values(), s.t]
+    outputs = random_expression(rng, s.graph, leaves, 40)
+    (own,) = random_expression(rng, s.graph, [s.t, *s.parameters.values()], 8)[-1:]
+    program = program_of(outputs, s, inputs={"F": own})
+    function = compiled(program, target)
+    for given in (None, 0.7):
+        t, x, p = rng.uniform(0, 1), [rng.uniform(-1, 1) for _ in range(4)], [rng.uniform(0.5, 2) for _ in range(2)]
+        values = dict(zip([s.t, *s.q, *s.u, *s.parameters.values()], [t, *x, *p], strict=True))
+        if given is not None:
+            values[s.inputs["F"]] = given
+        right = outputs_at(program, values, FLOAT)
+        inputs = () if given is None else (given,)
+        assert function(t, x, p, inputs) == pytest.approx(right, rel=1e-12, abs=1e-12)
+        assert function.many([t], [x], p, inputs)[0] == pytest.approx(right, rel=1e-12, abs=1e-12)
+
+
+SYSTEMS = {
+    "pendulum": (pendulum, {}),
+    "cart-pole": (cart_pole, {"F": 0}),
+    "row of springs, in a loop": (lambda: spring_row(20), {}),
+    "tie": (tied_pendulum, {}),
+    "tie said three times": (lambda: tied_pendulum(3), {}),
+}
+
+
+@each_target
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_right_hand_side_agrees_with_fifty_digits(target, name):
+    """dx of every way of solving: written out, looped, bordered, and bordered with dependent rows."""
+    made, inputs = SYSTEMS[name]
+    program = right_hand_side(made(), inputs)
+    function = compiled(program, target)
+    for v in vectors(program):
+        found = function(v.t, v.x, v.p, v.inputs or ())
+        assert np.abs(found - v.dx).max() <= v.tolerance * max(1, *map(abs, v.dx))
+
+
+@each_target
+def test_a_tie_said_three_times_moves_the_pendulum_as_one_does(target):
+    """The accelerations are those of the independent rows."""
+    x, p = [0.6, -0.8, 0.4, 0.3], [1.2, 1.0, 9.81]
+    once, thrice = (compiled(right_hand_side(tied_pendulum(n)), target)(0, x, p) for n in (1, 3))
+    assert thrice == pytest.approx(once, rel=1e-12)
+
+
+@each_target
+def test_the_pendulum_falls_as_it_should(target):
+    """theta'' = -g/l sin(theta)."""
+    found = compiled(right_hand_side(pendulum()), target)(0, [0.5, 2.0], [3.0, 0.5, 9.81])
+    assert found == pytest.approx([2.0, -9.81 / 0.5 * math.sin(0.5)])
+
+
+@each_target
+def test_a_model_without_coordinates_runs(target):
+    """nq = nu = 0: dx is empty."""
+    function = compiled(program_of((), symbols("", "m")), target)
+    assert function(0, [], [1.0]).shape == (0,) and function.many([0.0, 1.0], np.empty((2, 0)), [1]).shape == (2, 0)
+
+
+@each_target
+def test_outside_a_domain_the_value_is_not_a_number(target):
+    """sqrt(-1) and 1/0 are no exceptions: nan and inf, as in C; the other outputs keep their values."""
+    s = symbols("x", "k")
+    x, k = s.q[0], s.parameters["k"]
+    function = compiled(program_of([s.graph.sqrt(x), 1 / (x + 1), x * 2, 1 / k], s), target)
+    with np.errstate(all="raise"):
+        found = function(0, [-1.0, 0], [0.0])
+    assert np.isnan(found[0]) and np.isinf(found[1]) and found[2] == -2 and np.isinf(found[3])
+
+
+@each_target
+def test_names_of_the_language_are_harmless(target):
+    """Keywords, functions, our own variables and Greek letters as names of coordinates and parameters."""
+    s = symbols("int double t_ v1 solve_M M sin θ", "lambda I E x p c dx NULL printf é", "for inputs")
+    arguments = [*s.q, *s.parameters.values(), *s.inputs.values()]
+    outputs = [a + i * b for i, (a, b) in enumerate(zip(arguments, reversed(arguments), strict=True), start=2)]
+    program = program_of(outputs, s, inputs={"for": s.t, "inputs": 2 * s.t})
+    values = [float(i) for i in range(len(s.q) * 2)], [0.5 + i for i in range(len(s.parameters))]
+    function = compiled(program, target)
+    right = outputs_at(
+        program,
+        dict(zip([s.t, *s.q, *s.u, *s.parameters.values()], [0.25, *values[0], *values[1]], strict=True)),
+        FLOAT,
+    )
+    assert function(0.25, *values) == pytest.approx(right)
+
+
+@each_target
+def test_threads_do_not_disturb_one_another(target):
+    """The same function from several threads with different parameters."""
+    function = compiled(right_hand_side(pendulum()), target)
+    wrong = []
+
+    def work(l: float) -> None:
+        for i in range(300):
+            found = function(0, [0.1 * i, 1.0], [1.0, l, 9.81])
+            if abs(found[1] + 9.81 / l * math.sin(0.1 * i)) > 1e-12:
+                wrong.append((l, i))
+
+    threads = [threading.Thread(target=work, args=(1.0 + n,)) for n in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+@each_target
+def test_results_are_the_callers_own(target):
+    """A second call leaves the first one's array as it was; changed parameters are seen."""
+    function = compiled(right_hand_side(pendulum()), target)
+    p = np.array([1.0, 1.0, 9.81])
+    first = function(0, [0.5, 2.0], p)
+    kept = first.copy()
+    p[2] = 1.0
+    second = function(0, [0.5, 2.0], p)
+    assert (first == kept).all() and second[1] == pytest.approx(-math.sin(0.5))
+
+
+@each_target
+def test_arguments_of_the_wrong_length_are_named(target):
+    """What is wrong, how many there are, and which there should be."""
+    function = compiled(right_hand_side(cart_pole(), {"F": 0}), target)
+    right = [0.0] * 4, [1.0] * 4
+    with pytest.raises(UsageError, match="x has 3 entries, not 4: x, theta, x', theta'"):
+        function(0, [0.0] * 3, right[1])
+    with pytest.raises(UsageError, match="p has 1 entries, not 4: M, m, l, g"):
+        function(0, right[0], [1.0])
+    with pytest.raises(UsageError, match="inputs has 2 entries, not 1: F"):
+        function(0, *right, [1.0, 2.0])
+    with pytest.raises(UsageError, match="not n x 4"):
+        function.many(0, [[1.0, 2.0]], right[1])
+
+
+def test_a_number_too_large_for_a_double_is_refused():
+    """10^400 has no double."""
+    s = symbols("x")
+    with pytest.raises(DerivationError, match="too large"):
+        compiled(program_of([s.q[0] * 10**400], s), "numpy")
+
+
+# -- text and files -------------------------------------------------------------------------------
+
+
+def described(program) -> Description:
+    remarks = {"x": "[m] place of the cart */ /* ??/", "l": "[m]"}
+    return Description("Cart-pole", "made by eomgen from models/cart_pole.toml", remarks, vectors(program))
+
+
+def written(tmp_path, target, assembly=None, inputs=None):
+    program = right_hand_side(assembly or cart_pole(), {"F": 0} if inputs is None else inputs)
+    return write_files("cart-pole", program, described(program), target=target, directory=tmp_path / "new" / "folder")
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_text_is_what_was_agreed(target, tmp_path):
+    """Golden files: a change of the emitted text is a decision, not an accident."""
+    for path in written(tmp_path, target):
+        golden = GOLDEN / path.name
+        if path.name != "test_vectors.json":
+            assert path.read_text() == golden.read_text(), f"look at the difference, then copy to {golden}"
+
+
+@needs_cc
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_c_files_compile_without_a_warning_and_pass_their_own_test(name, tmp_path):
+    """-std=c99 -Wall -Wextra -pedantic -Werror; the self-test returns 0."""
+    made, inputs = SYSTEMS[name]
+    paths = written(tmp_path, "c", made(), inputs)
+    done = self_test(paths[0])
+    assert done.returncode == 0, done.stderr
+
+
+@needs_cc
+def test_the_self_test_notices_a_wrong_sign(tmp_path):
+    """The sign of one product in the file turned: the self-test returns 1 and names the entry."""
+    path = written(tmp_path, "c")[0]
+    text = path.read_text()
+    changed = re.sub(r"(const double v\d+ = .*)\+", r"\1-", text[text.index("_evaluate(") :], count=1)
+    path.write_text(text[: text.index("_evaluate(")] + changed)
+    done = self_test(path)
+    assert done.returncode == 1 and "dx[2]" in done.stderr
+
+
+def self_test(path: Path) -> subprocess.CompletedProcess:
+    run = path.parent / "self_test"
+    command = [build.compiler(), *STRICT, "-DEOMGEN_SELFTEST", str(path), "-o", str(run), "-lm"]
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    return subprocess.run([str(run)], capture_output=True, text=True, check=False)
+
+
+def test_the_python_file_needs_nothing_of_ours(tmp_path):
+    """Imported where eomgen is not, it gives the numbers of its test vectors."""
+    for made, inputs in SYSTEMS.values():
+        folder = written(tmp_path, "numpy", made(), inputs)[0].parent
+        check = (
+            "import json, sys; import cart_pole_rhs as f; assert 'eomgen' not in sys.modules\n"
+            "for v in json.load(open('test_vectors.json'))['vectors']:\n"
+            "    dx = f.cart_pole_rhs(v['t'], v['x'], v['p'], v['inputs'])\n"
+            "    many = f.cart_pole_many([v['t']], [v['x']], v['p'], v['inputs'] and [v['inputs']])[0]\n"
+            "    scale = max(1, *map(abs, v['dx']))\n"
+            "    assert all(abs(a - b) <= v['tolerance']*scale for a, b in zip(dx, v['dx'], strict=True))\n"
+            "    assert all(abs(a - b) <= v['tolerance']*scale for a, b in zip(many, v['dx'], strict=True))\n"
+        )
+        subprocess.run([sys.executable, "-W", "error", "-c", check], cwd=folder, check=True)
+
+
+def test_test_vectors_say_what_they_are(tmp_path):
+    """Names in order; half of the vectors with inputs of their own."""
+    document = json.loads(written(tmp_path, "c")[-1].read_text())
+    assert document["coordinates"] == ["x", "theta"] and document["speeds"] == ["x'", "theta'"]
+    assert document["parameters"] == ["M", "m", "l", "g"] and document["inputs"] == ["F"]
+    assert [row["inputs"] is None for row in document["vectors"]] == [True, False] * 3
+    assert all(row["tolerance"] == 1e-12 for row in document["vectors"])
+
+
+def test_nothing_half_written_is_left(tmp_path, monkeypatch):
+    """The disk is full at the second file: none of them is there, and the error names the folder."""
+    real, count = Path.write_text, []
+
+    def full(self, *arguments, **options):
+        count.append(self)
+        if len(count) == 2:
+            raise OSError(28, "No space left on device")
+        return real(self, *arguments, **options)
+
+    program = right_hand_side(pendulum())
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(RunFailed, match="No space left"):
+        write_files("a", program, described(program), target="c", directory=tmp_path / "out")
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_an_unknown_target_is_refused_with_those_that_there_are():
+    """mend: the names of ALL."""
+    with pytest.raises(UsageError, match="numpy, c"):
+        compiled(right_hand_side(pendulum()), "fortran")
+
+
+# -- compiler and cache ---------------------------------------------------------------------------
+
+
+@needs_cc
+def test_a_program_is_compiled_once(own_cache, monkeypatch):
+    """The same text is found in the cache; another text is compiled."""
+    compiled(right_hand_side(pendulum()), "c")
+    monkeypatch.setattr(build.subprocess, "run", lambda *a, **k: pytest.fail("compiled again"))
+    assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
+    assert [path.suffix for path in own_cache.iterdir()] == [".so"]
+
+
+@needs_cc
+def test_a_damaged_library_is_made_anew(own_cache):
+    """Half a file in the cache is no reason to fail."""
+    text = "double f(double x);\ndouble f(double x) { return 2*x; }\n"
+    own_cache.mkdir(parents=True)
+    compiled(right_hand_side(pendulum()), "c")
+    (path,) = own_cache.iterdir()
+    broken = own_cache / "broken"
+    shutil.copy(path, broken)
+    path.unlink()
+    path.write_bytes(b"half")
+    broken.unlink()
+    assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
+    assert build.library(text) is not None
+
+
+@needs_cc
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
+    """A file in the folder's place: the library goes to a folder of this process."""
+    (tmp_path / "taken").write_text("")
+    monkeypatch.setattr(build.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
+    assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
+
+
+@needs_cc
+def test_several_at_once_compile_into_one_cache(own_cache):
+    """Renaming is atomic: everyone gets a whole library."""
+    results: list = []
+    program = right_hand_side(cart_pole(), {"F": 0})
+    threads = [threading.Thread(target=lambda: results.append(compiled(program, "c"))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(results) == 4 and len(list(own_cache.iterdir())) == 1
+
+
+def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
+    """No compiler: one line on stderr in a process; an explicit "c" is an error with its mend."""
+    monkeypatch.setattr(build.shutil, "which", lambda name: None)
+    monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(rhs, "_said", set())
+    program = right_hand_side(pendulum())
+    assert build.compiler() is None
+    assert compiled(program).target == compiled(program).target == "numpy"
+    assert capsys.readouterr().err.count("no C compiler") == 1
+    with pytest.raises(ToolMissing, match="no C compiler"):
+        compiled(program, "c")
+
+
+@needs_cc
+def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):
+    """CC is obeyed, with its options; one that fails is an error for "c", and said on stderr otherwise."""
+    monkeypatch.setenv("CC", f"{build.compiler()} -DNOTHING")
+    assert compiled(right_hand_side(pendulum())).target == "c"
+    fails = tmp_path / "fails"
+    fails.write_text("#!/bin/sh\necho broken >&2\nexit 1\n")
+    fails.chmod(0o755)
+    monkeypatch.setenv("CC", str(fails))
+    monkeypatch.setattr(rhs, "_said", set())
+    with pytest.raises(RunFailed, match="broken"):
+        compiled(right_hand_side(pendulum()), "c")
+    assert compiled(right_hand_side(pendulum())).target == "numpy"
+    monkeypatch.setenv("CC", "no-such-compiler")
+    assert build.compiler() is None
