@@ -21,6 +21,7 @@ from eomgen.mechanics.formulations import ALL
 from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.maximal import free_body_accelerations
 from eomgen.mechanics.system import System
+from eomgen.mechanics.work import powered_forces
 from eomgen.symbolic.derivative import derivative, gradient, tangent
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
@@ -153,20 +154,13 @@ def _energy(system: System, assembly: Assembly) -> Check:
     scope, symbols = system.scope, assembly.symbols
     momenta = gradient(assembly.T, symbols.u)
     H = sum((p * u for p, u in zip(momenta, symbols.u, strict=True)), start=assembly.V - assembly.T)
-    elastic = _by_itself_or_not(scope, assembly.V)
-    explicit = tangent((assembly.V - assembly.T,), _own_motion(scope))[0]
-    power: Scalar = explicit
+    powered = powered_forces(system.loads)
+    power: Scalar = tangent((assembly.V - assembly.T,), _own_motion(scope))[0]
     for k, u in enumerate(symbols.u):
         inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
-        power = power + u * (inertia + elastic[k])
+        power = power + u * (inertia - assembly.Q[k] + powered[k])
     left = scope.with_accelerations((H,))[0]
     return _compared("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
-
-
-def _by_itself_or_not(scope: Any, V: Scalar) -> tuple[Scalar, ...]:
-    """N^T dV/dq."""
-    row = gradient(V, scope.symbols.q)
-    return tuple(sum((scope.N[i][k] * x for i, x in enumerate(row)), start=0) for k in range(len(scope.symbols.u)))
 
 
 def _own_motion(scope: Any) -> dict[Node, Scalar]:

@@ -267,7 +267,7 @@ def written(tmp_path, target, assembly=None, inputs=None):
 def test_the_text_is_what_was_agreed(target, tmp_path):
     """Golden files: a change of the emitted text is a decision, not an accident."""
     for path in written(tmp_path, target):
-        golden = GOLDEN / path.name
+        golden = GOLDEN / (f"{path.name}.txt" if path.suffix == ".py" else path.name)
         if path.name != "test_vectors.json":
             assert path.read_text() == golden.read_text(), f"look at the difference, then copy to {golden}"
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.inertia import armature_energy, body_energies, kinetic_energy, mass_properties
+from eomgen.mechanics.inertia import armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.kinematics import velocity_of
-from eomgen.mechanics.loads import Applied, JointEffort, in_body_axes, in_ground_axes, joint_wrenches
+from eomgen.mechanics.loads import Applied, JointEffort, SystemScene, in_body_axes, in_ground_axes, joint_wrenches
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.symbolic.derivative import depends_on, tangent
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import dot
+from eomgen.symbolic.spatial import dot, times
 
 
 def energy_of_motion(system: System, body: str | None = None) -> Scalar:
@@ -77,11 +77,8 @@ def _point_loads(system: System, force: Applied) -> list[Load]:
 
 
 def _weights(system: System, field: UniformField) -> list[PointForce]:
-    found = []
-    for link in system.motion.links:
-        body = mass_properties(system.scope, link.name)
-        found.append(PointForce((link.name, body.com), tuple(body.m * g for g in field.acceleration)))  # type: ignore[arg-type]
-    return found
+    masses = SystemScene(system.motion).masses(None)
+    return [PointForce(place, times(m, field.acceleration)) for place, m in masses]
 
 
 def _acts_on(load: Load, body: str | None) -> bool:

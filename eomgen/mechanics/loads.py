@@ -27,11 +27,13 @@ class Applied:
         name: its name.
         loads: forces and couples, whether or not they have a potential.
         potential: V [J], or None where it has none.
+        placeless: it is an energy of coordinates alone, which acts at no place.
     """
 
     name: str
     loads: tuple[Load, ...]
     potential: Scalar | None
+    placeless: bool
 
 
 @dataclass(frozen=True)
@@ -168,7 +170,7 @@ def loads_of(motion: Motion) -> Loads:
     for name, force in motion.scope.model.forces.items():
         if not force.works:
             raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
-        applied.append(Applied(name, tuple(force.loads(scene)), force.potential(scene)))
+        applied.append(Applied(name, tuple(force.loads(scene)), force.potential(scene), force.placeless))
     efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
     _refuse_accelerations(motion, applied, efforts)
     return Loads(motion, tuple(applied), tuple(efforts))

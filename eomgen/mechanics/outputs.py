@@ -20,13 +20,14 @@ from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.expressions import Call, Reference
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import Vector, apply, dot, minus, transposed
+from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed
 
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
 _AXES = {"x": 0, "y": 1, "z": 2}
 COMPONENTS = {kind + axis: (n, i) for kind, n in _ORDERS.items() for axis, i in _AXES.items()}
 """Functions of a point: (time derivatives, component)."""
 
+GROUND = "ground"
 MAGNITUDES = {"speed": 1, "acceleration": 2}
 TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)) for axis, i in _AXES.items()}
 """Functions of a body: (time derivatives, component)."""
@@ -77,33 +78,39 @@ class Quantities:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
         return _OTHERS[call.name](self, *names)
 
-    def of_point(self, order: int, point: str, frame: str | None = None) -> Vector:
+    def of_point(self, order: int, point: str, frame: str = GROUND) -> Vector:
         """Position (order 0), velocity (1) or acceleration (2) of a point, ground axes or those of `frame` [m, s]."""
         motion = self.system.motion
         place = motion.position(self._place(point))
-        if frame is not None:
+        if frame in motion.index:
             pose = motion.link(frame).pose
             place = apply(transposed(pose.R), minus(place, pose.p))
         return self._rate(place, order)
 
-    def of_body(self, order: int, body: str, frame: str | None = None) -> Vector:
+    def of_body(self, order: int, body: str, frame: str = GROUND) -> Vector:
         """Angular velocity (order 1) or acceleration (2) of a body, ground axes or those of `frame` [rad, s]."""
-        motion = self.system.motion
-        link = motion.link(body)
-        w = apply(link.pose.R, link.twist.w) if link.angle is None else link.twist.w
-        if frame is not None:
-            other = motion.link(frame)
-            w = minus(apply(transposed(other.pose.R), w) if other.angle is None else w, other.twist.w)
+        w = self._spin(body)
+        if frame in self.system.motion.index:
+            R = self.system.motion.link(frame).pose.R
+            w = apply(transposed(R), minus(w, self._spin(frame)))
         return self._rate(w, order - 1)
 
-    def angle(self, body: str, frame: str | None = None) -> Scalar:
-        """Angle of a body in the plane, against the ground or another body [rad]."""
-        angles = [self.system.motion.link(name).angle for name in (body, frame) if name is not None]
-        if None in angles:
-            raise DerivationError(f"body '{body}' has no single angle in space")
-        return angles[0] if frame is None else angles[0] - angles[1]
+    def _spin(self, body: str) -> Vector:
+        """Angular velocity in ground axes, from the twist; of the ground 0 [rad/s]."""
+        if body not in self.system.motion.index:
+            return ZERO
+        link = self.system.motion.link(body)
+        return link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
 
-    def turning(self, order: int, body: str, frame: str | None = None) -> Scalar:
+    def angle(self, body: str, frame: str = GROUND) -> Scalar:
+        """Angle of a body in the plane, against the ground or another body [rad]."""
+        if self.system.scope.model.space != "plane":
+            raise DerivationError(f"body '{body}' has no single angle in space")
+        links = self.system.motion.index
+        angles = [self.system.motion.link(name).angle if name in links else 0 for name in (body, frame)]
+        return angles[0] - angles[1]
+
+    def turning(self, order: int, body: str, frame: str = GROUND) -> Scalar:
         """In the plane omega or epsilon, counter-clockwise positive; in space its magnitude."""
         vector = self.of_body(order, body, frame)
         return vector[2] if self.system.scope.model.space == "plane" else sqrt(dot(vector, vector))

@@ -19,6 +19,14 @@ def generalized_forces(loads: Loads) -> Row:
     return total(rows, len(loads.motion.scope.symbols.u))
 
 
+def powered_forces(loads: Loads) -> Row:
+    """Q_nc: the part of Q that comes from no potential, by virtual work."""
+    motion = loads.motion
+    rows = [force_row(loads, force) for force in loads.applied if force.potential is None]
+    rows += [drive_row(motion, effort) for effort in loads.efforts]
+    return total(rows, len(motion.scope.symbols.u))
+
+
 def total(rows: list[Row], size: int) -> Row:
     """The sum of rows, entry by entry."""
     sums: list[Scalar] = [0] * size
@@ -37,10 +45,14 @@ def force_row(loads: Loads, force: Applied) -> Row:
 
 def effort_row(motion: Motion, effort: JointEffort) -> Row:
     """Q of a joint's drive, spring and damper: drive ds/dq - dV/dq."""
-    s = motion.link(effort.body).s[effort.variable]
-    drive = per_speed(motion, gradient(s, motion.scope.symbols.q))
     elastic = from_potential(motion, effort.potential)
-    return tuple(effort.drive * d + e for d, e in zip(drive, elastic, strict=True))
+    return tuple(d + e for d, e in zip(drive_row(motion, effort), elastic, strict=True))
+
+
+def drive_row(motion: Motion, effort: JointEffort) -> Row:
+    """Q of what a joint's drive and damper do: drive ds/dq."""
+    s = motion.link(effort.body).s[effort.variable]
+    return tuple(effort.drive * d for d in per_speed(motion, gradient(s, motion.scope.symbols.q)))
 
 
 def from_potential(motion: Motion, V: Scalar) -> Row:
@@ -82,7 +94,7 @@ def placeless_forces(loads: Loads) -> Row:
     """Q of what acts at no place: generalized forces and potentials of coordinates."""
     size = len(loads.motion.scope.symbols.u)
     rows = [load_row(loads, load) for load in loads.generalized]
-    rows += [from_potential(loads.motion, f.potential) for f in loads.applied if not f.loads and f.potential is not None]
+    rows += [from_potential(loads.motion, f.potential) for f in loads.applied if f.placeless]
     return total(rows, size)
 
 

@@ -1,4 +1,4 @@
-"""Expressions of parameters -> numbers: the order in which parameters follow from one another, and what one is worth."""
+"""Expressions of parameters -> numbers: in which order parameters follow from one another, what one is worth."""
 
 import math
 from collections.abc import Iterator, Mapping

@@ -6,17 +6,14 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from difflib import get_close_matches
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.table import Table
+from eomgen.model.findings import Decimal, Finding, Path, nearest, shown, unknown_keys
 from eomgen.symbolic.expressions import Expression, as_expression, parse_equation
 from eomgen.symbolic.units import Unit, parse_unit
-
-Path = tuple[str | int, ...]
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"
@@ -24,34 +21,6 @@ CONFIGURATION = "parameters, coordinates and time"
 RATES = "parameters, coordinates, their rates and time"
 MOTION = "parameters, coordinates, rates, speeds, inputs and time"
 EVERYTHING = "all names, accelerations and functions of the motion"
-
-
-class Decimal(str):
-    """A decimal of the file as it was written (tomllib's `parse_float`): a number, exact."""
-
-    __slots__ = ()
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing wrong, at a path into the model.
-
-    Args:
-        path: keys and indices that lead to the culprit.
-        what: what is wrong, the culprit printed.
-        mend: the nearest right thing, or "".
-        column, length: the culprit within the text of an expression (None: all of it).
-        key: the culprit is the key itself, not its value.
-        raw: what could not be read (names in it count as used).
-    """
-
-    path: Path
-    what: str
-    mend: str = ""
-    column: int | None = None
-    length: int | None = None
-    key: bool = False
-    raw: Any = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -62,52 +31,6 @@ class Leaf:
     rule: Any
     value: Any
     part: Any = None
-
-
-LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is offered: a hostile file must not cost minutes
-MOST_OFFERS = 50
-
-
-def nearest(word: str, known) -> str:
-    """ "did you mean 'forearm'?", or "" where nothing is near."""
-    words = [str(name) for name in known]
-    if len(word) > LONGEST_WORD or len(words) > MOST_WORDS:
-        return ""
-    close = get_close_matches(word, words, n=1, cutoff=0.6)
-    close = close or [name for name in words if name.lower() == word.lower()]
-    return f"did you mean '{close[0]}'?" if close else ""
-
-
-def shown(raw: Any) -> str:
-    """A value of the file in a message."""
-    if isinstance(raw, Mapping):
-        return "a table"
-    if isinstance(raw, (list, tuple)):
-        return "a list"
-    if isinstance(raw, bool):
-        return str(raw).lower()
-    text = str(raw)
-    text = text if len(text) <= 60 else text[:57] + "..."
-    return f"'{text}'" if isinstance(raw, str) and not isinstance(raw, Decimal) else text
-
-
-TABLES = {
-    "parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input", "points": "point",
-    "bodies": "body", "constraints": "constraint", "trusses": "truss", "forces": "force", "outputs": "output",
-    "unknowns": "unknown",
-}  # fmt: skip
-"""The tables of a model that name things, and what one of those is called."""
-
-
-def whereabouts(path: Path, what: str = "") -> str:
-    """A part in words: "the joint of body 'hand'", "parameter 'm'"."""
-    if len(path) < 2 or path[0] not in TABLES:
-        return f"[{path[0]}]" if path else what or "the model"
-    owner = f"{TABLES[str(path[0])]} '{path[1]}'"
-    inner = [str(key) for key in path[2:] if isinstance(key, str)]
-    if inner[:1] == ["points"] and path[0] == "bodies" and len(inner) > 1:
-        return f"point '{inner[1]}' of {owner}"
-    return " of ".join([*(f"the {key}" for key in reversed(inner)), owner])
 
 
 @dataclass(frozen=True)
@@ -397,89 +320,3 @@ class UnitRule:
 
 
 UNIT = UnitRule()
-
-
-@dataclass(frozen=True)
-class ListRule:
-    """A list of things of one rule (`single`: one of them may stand for itself)."""
-
-    item: Any
-    least: int = 1
-    most: int | None = None
-    single: bool = False
-
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> tuple | None:
-        if self.single and not isinstance(raw, (list, tuple)):
-            one = self.item.read(raw, path, found)
-            return None if one is None else (one,)
-        if not isinstance(raw, (list, tuple)):
-            found.append(Finding(path, f"a list is needed here, not {shown(raw)}"))
-            return None
-        if len(raw) < self.least or (self.most is not None and len(raw) > self.most):
-            count = str(self.least) if self.least == self.most else f"at least {self.least}"
-            count = f"at most {self.most}" if self.most is not None and len(raw) > self.most > self.least else count
-            found.append(Finding(path, f"{count} entries are needed here, not {len(raw)}"))
-            return None
-        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return None if None in items else tuple(items)
-
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
-        for i, x in enumerate(value):
-            yield from self.item.leaves(x, path if self.single and len(value) == 1 else (*path, i), part)
-
-    def schema(self, definitions: dict) -> dict:
-        many: dict = {"type": "array", "items": self.item.schema(definitions), "minItems": self.least}
-        if self.most is not None:
-            many["maxItems"] = self.most
-        return {"anyOf": [self.item.schema(definitions), many]} if self.single else many
-
-
-@dataclass(frozen=True)
-class TableRule:
-    """A table of named things of one rule; `what` names one of them in messages."""
-
-    item: Any
-    what: str
-
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Table | None:
-        if not isinstance(raw, Mapping):
-            found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
-            return None
-        return Table({str(name): self.item.read(x, (*path, name), found) for name, x in raw.items()})
-
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
-        for name, x in value.items():
-            if x is not None:
-                yield from self.item.leaves(x, (*path, name), part)
-
-    def schema(self, definitions: dict) -> dict:
-        return {"type": "object", "additionalProperties": self.item.schema(definitions)}
-
-
-@dataclass(frozen=True)
-class EitherRule:
-    """A text is read by one rule, anything else by another."""
-
-    text: Any
-    other: Any
-
-    def _rule(self, value: Any) -> Any:
-        return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
-
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
-        return self._rule(raw).read(raw, path, found)
-
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
-        yield from self._rule(value).leaves(value, path, part)
-
-    def schema(self, definitions: dict) -> dict:
-        return {"anyOf": [self.text.schema(definitions), self.other.schema(definitions)]}
-
-
-def unknown_keys(raw: Mapping, known, path: Path, found: list[Finding], what: str) -> None:
-    """Every key of a table that nobody reads is a finding."""
-    strange = [key for key in raw if key not in known]
-    listed = ", ".join(f"'{name}'" for name in known)
-    for k, key in enumerate(strange):
-        mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
-        found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True, raw=raw[key]))

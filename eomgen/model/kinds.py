@@ -2,6 +2,7 @@
 
 from typing import Annotated
 
+from eomgen.model.containers import ListRule
 from eomgen.model.fields import (
     CONFIGURATION,
     MOTION,
@@ -10,7 +11,6 @@ from eomgen.model.fields import (
     AxialRule,
     FlagRule,
     FormulaRule,
-    ListRule,
     NameRule,
     TextRule,
     VectorRule,

@@ -7,14 +7,14 @@ from typing import Any
 from eomgen.errors import ModelError, Problem
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.checks.everything import ALL
-from eomgen.model.fields import Finding
+from eomgen.model.findings import Finding
 from eomgen.model.part import altered, read_part, slots_of
 from eomgen.model.table import Table
 
 MOST_FINDINGS = 200  # of one model: more say nothing new
 
 
-def draft_of(cls: type, raw: Mapping[str, Any], title: str, found: list[Finding]) -> Any:
+def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Finding]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and among the findings."""
     return read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
 
@@ -51,11 +51,12 @@ def resolved(model: Any) -> Any:
 
 def _resolved_tables(model: Any) -> dict[str, Table]:
     bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
-    forces = Table({
-        name: altered(force, between=tuple(_own(point) for point in force.between)) if force.kind == "distributed" else force
-        for name, force in model.forces.items()
-    })  # fmt: skip
-    return {"bodies": bodies, "forces": forces}
+    return {"bodies": bodies, "forces": Table({name: _resolved_force(force) for name, force in model.forces.items()})}
+
+
+def _resolved_force(force: Any) -> Any:
+    between = getattr(force, "between", None)
+    return force if between is None else altered(force, between=tuple(_own(point) for point in between))
 
 
 def _resolved_body(model: Any, name: str, body: Any) -> Any:

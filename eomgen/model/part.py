@@ -7,7 +7,8 @@ from types import NoneType, UnionType
 from typing import Any, ClassVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.fields import Finding, Leaf, Path, in_si, nearest, shown, unknown_keys, whereabouts
+from eomgen.model.fields import Leaf, in_si
+from eomgen.model.findings import Finding, Path, nearest, shown, unknown_keys, whereabouts
 from eomgen.symbolic.expressions import Expression
 
 
@@ -33,7 +34,7 @@ class Slot:
 
 
 @cache
-def slots_of(cls: type) -> tuple[Slot, ...]:
+def slots_of(cls: Any) -> tuple[Slot, ...]:
     """The fields of a part, in order."""
     slots = []
     for field in fields(cls):
@@ -77,7 +78,7 @@ class Part:
             ))  # fmt: skip
 
 
-def _in_si(cls: type, values: dict, raw: Mapping) -> dict:
+def _in_si(cls: Any, values: dict, raw: Mapping) -> dict:
     """The values read, those given in the part's `unit` exactly in SI (an Expression is in SI already)."""
     unit = values.get("unit")
     if unit is None or not cls.in_unit:
@@ -86,14 +87,14 @@ def _in_si(cls: type, values: dict, raw: Mapping) -> dict:
     return {**values, **{name: in_si(values[name], unit) for name in fresh}}
 
 
-def title_of(cls: type) -> str:
+def title_of(cls: Any) -> str:
     """What messages call a part of this class."""
     return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
 
 
-def made(cls: type, values: Mapping[str, Any]) -> Any:
+def made(cls: Any, values: Mapping[str, Any]) -> Any:
     """A part from values that were read already."""
-    part = object.__new__(cls)
+    part: Any = object.__new__(cls)
     for slot in slots_of(cls):
         object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
     return part
@@ -103,7 +104,7 @@ def made(cls: type, values: Mapping[str, Any]) -> Any:
 class PartRule:
     """A table that is a part of this class (or a part made in Python)."""
 
-    cls: type
+    cls: Any
 
     def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
         if isinstance(raw, self.cls):
@@ -126,7 +127,7 @@ class PartRule:
         return part_schema(self.cls, definitions)
 
 
-def read_part(cls: type, raw: Mapping, path: Path, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
+def read_part(cls: Any, raw: Mapping, path: Path, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
     """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
     slots = slots_of(cls)
     inline = next((slot for slot in slots if slot.inline), None)
@@ -170,7 +171,7 @@ class SeamRule:
     """
 
     what: str
-    members: tuple[type, ...]
+    members: tuple[Any, ...]
 
     def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
         if isinstance(raw, self.members):
@@ -198,7 +199,7 @@ class SeamRule:
         return {"oneOf": branches, "required": ["kind"]}
 
 
-def part_schema(cls: type, definitions: dict) -> dict:
+def part_schema(cls: Any, definitions: dict) -> dict:
     """The JSON Schema of a part, by reference into `definitions` (draft 2020-12)."""
     name = cls.__name__
     if name not in definitions:
@@ -207,7 +208,7 @@ def part_schema(cls: type, definitions: dict) -> dict:
     return {"$ref": f"#/$defs/{name}"}
 
 
-def _table_schema(cls: type, definitions: dict) -> dict:
+def _table_schema(cls: Any, definitions: dict) -> dict:
     slots = slots_of(cls)
     properties = {slot.key: slot.rule.schema(definitions) for slot in slots if not slot.inline}
     required = [slot.key for slot in slots if slot.required and not slot.inline]
@@ -227,7 +228,7 @@ def _table_schema(cls: type, definitions: dict) -> dict:
     return table
 
 
-def _with_inline(table: dict, members: tuple[type, ...], definitions: dict) -> dict:
+def _with_inline(table: dict, members: tuple[Any, ...], definitions: dict) -> dict:
     """A table that holds the keys of one of several parts besides its own."""
     branches = []
     for member in members:
@@ -238,5 +239,5 @@ def _with_inline(table: dict, members: tuple[type, ...], definitions: dict) -> d
     return {"title": table["title"], "description": table["description"], "oneOf": branches}
 
 
-def _first_line(cls: type) -> str:
+def _first_line(cls: Any) -> str:
     return (cls.__doc__ or "").strip().split("\n")[0]

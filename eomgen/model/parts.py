@@ -5,16 +5,8 @@ from typing import Annotated, ClassVar
 
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
-from eomgen.model.fields import (
-    UNIT,
-    Equation,
-    EquationRule,
-    ListRule,
-    NameRule,
-    OutputRule,
-    TableRule,
-    TextRule,
-)
+from eomgen.model.containers import ListRule, TableRule
+from eomgen.model.fields import UNIT, Equation, EquationRule, NameRule, OutputRule, TextRule
 from eomgen.model.forces import Force
 from eomgen.model.joints import Joint
 from eomgen.model.kinds import (

@@ -6,7 +6,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.fields import Decimal, Finding, shown
+from eomgen.model.findings import Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import Index, Span, index_of

@@ -6,7 +6,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, MissingValues, ModelError
 from eomgen.model.arithmetic import Number, in_order
-from eomgen.model.fields import nearest
+from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.symbolic.expressions import Expression, as_expression
 
@@ -47,7 +47,9 @@ def numeric_parameters(
     return {name: float(values[name]) for name in model.parameters if name in values}
 
 
-def start_values(model: Model, parameters: Mapping[str, Any] | None = None) -> tuple[dict[str, float], dict[str, float]]:
+def start_values(
+    model: Model, parameters: Mapping[str, Any] | None = None
+) -> tuple[dict[str, float], dict[str, float]]:
     """Coordinates, rates and declared speeds at the start; what is not given is 0.
 
     A dependent coordinate without `start` begins at `near`. A driven one begins where its law says: f(0) for
@@ -69,8 +71,8 @@ def start_values(model: Model, parameters: Mapping[str, Any] | None = None) -> t
         q[name] = _float(at, lookup, where)
         rate = part.rate if part.rate is not None else part.speed
         u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
-    for name, part in model.speeds.items():
-        u[name] = _float(part.start, lookup, f"speeds.{name}")
+    for name, speed in model.speeds.items():
+        u[name] = _float(speed.start, lookup, f"speeds.{name}")
     return q, u
 
 

@@ -72,7 +72,7 @@ def test_a_wrong_sign_in_any_term_turns_it_red(name):
     for what, assembly in mutants(equations.graph):
         planted += 1
         assert not certify(equations.system, assembly).ok, f"a wrong sign in {what} was not seen"
-    assert planted > 10
+    assert planted >= 8
 
 
 def turned_rate_matrix(w, wd):
@@ -106,7 +106,7 @@ ENGINE_ERRORS = [
     ("double_pendulum", kinematics, "_twist", backwards),
     ("arm3", inertia, "spin_between", lambda R, rate: swapped(spin_between(R, rate))),
     ("simple_pendulum", Gravity, "potential", lambda self, scene: 0),
-    ("elastic_pendulum", Reach, "pulled", lambda self, tension: ()),
+    ("two_mass_oscillator", Reach, "pulled", lambda self, tension: ()),
 ]
 
 

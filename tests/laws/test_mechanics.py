@@ -100,6 +100,7 @@ def test_the_emitted_code_gives_the_accelerations_of_the_symbols(equations):
 
 HANGING_MASS = """
 eomgen = 1
+space = "plane"
 name = "A mass on a slide, held up by a tie"
 [parameters]
 m = 2.0
@@ -142,6 +143,7 @@ def test_redundant_rows_do_not_stop_the_motion():
 
 PENDULUM = """
 eomgen = 1
+space = "plane"
 name = "Pendulum with a driven pivot"
 [parameters]
 m = 1.3

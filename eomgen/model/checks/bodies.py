@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
-from eomgen.model.fields import Finding, Path
+from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.orientation import SEQUENCES
 
 SPACE_ONLY = ("cylindrical", "screw", "universal", "spherical")
@@ -34,10 +34,15 @@ def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
     if body.parts is not None and body.mass is None and any(piece.shape.mass is None for piece in body.parts):
         what = f"body '{name}' has parts but no 'mass'"
         yield Finding(path, what, "give the net mass, or a mass to each part", key=True)
-    if body.mass is not None and body.parts is None and body.shape is None and body.inertia is None:
-        if (*path, "inertia") not in catalog.broken and body.mass.literal != 0 and _turns(catalog, name):
-            what = f"body '{name}' can turn but has no 'inertia'"
-            yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
+    if _needs_inertia(body) and (*path, "inertia") not in catalog.broken and _turns(catalog, name):
+        what = f"body '{name}' can turn but has no 'inertia'"
+        yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
+
+
+def _needs_inertia(body: Any) -> bool:
+    """Whether it has a mass, is no shape and not composed, and says nothing of its inertia."""
+    without = body.parts is None and body.shape is None and body.inertia is None
+    return without and body.mass is not None and body.mass.literal != 0
 
 
 def _turns(catalog: Catalog, name: str) -> bool:
@@ -132,7 +137,7 @@ def _rings(catalog: Catalog) -> Iterator[Finding]:
     for first in parents:
         trail: list[str] = []
         name: str | None = first
-        while name in parents and name not in done and name not in trail:
+        while name is not None and name in parents and name not in done and name not in trail:
             trail.append(name)
             name = parents[name]
         if name in trail:

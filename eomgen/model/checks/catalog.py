@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, TIME, Equation, Finding, Leaf, Path
+from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, TIME, Equation, Leaf
+from eomgen.model.findings import Finding, Path
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expressions import Expression
 

@@ -5,7 +5,8 @@ from functools import cache
 
 from eomgen.model.arithmetic import in_order
 from eomgen.model.checks.catalog import Catalog
-from eomgen.model.fields import EVERYTHING, Finding, Leaf, Path, is_mixed, mixed, named, nearest, whereabouts
+from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
+from eomgen.model.findings import Finding, Path, nearest, whereabouts
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.units import Unit, parse_unit
 
@@ -19,9 +20,9 @@ def formulas(catalog: Catalog) -> Iterator[Finding]:
             for name, column in dict.fromkeys(expression.occurrences):
                 if name not in allowed:
                     yield _misplaced(catalog, leaf, name, column, allowed)
-        elif leaf.part is not None and leaf.path[-1] in leaf.part.in_unit and leaf.part.unit is not None:
-            if is_mixed(expression, leaf.part.unit):
-                yield mixed(expression, leaf.part.unit, leaf.path)
+        unit = leaf.part.unit if leaf.part is not None and leaf.path[-1] in leaf.part.in_unit else None
+        if unit is not None and expression.names <= allowed and is_mixed(expression, unit):
+            yield mixed(expression, unit, leaf.path)
         yield from _unit(catalog, leaf, expression)
     yield from _rings(catalog)
 

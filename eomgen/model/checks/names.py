@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from eomgen.model.checks.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
-from eomgen.model.fields import TABLES, Finding
+from eomgen.model.findings import TABLES, Finding
 from eomgen.symbolic.expressions import is_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}

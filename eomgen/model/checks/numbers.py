@@ -7,7 +7,8 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, in_order, number_of
 from eomgen.model.checks.catalog import Catalog
-from eomgen.model.fields import Finding, Leaf, shown, whereabouts
+from eomgen.model.fields import Leaf
+from eomgen.model.findings import Finding, shown, whereabouts
 from eomgen.symbolic.expressions import Expression
 
 ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
@@ -34,7 +35,8 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterat
     try:
         values[name] = part.value.evaluate({**values, "pi": math.pi})
     except ExpressionError as error:
-        yield Finding(("parameters", name, "value"), f"parameter '{name}': {error.what}", error.mend, error.column, error.length)
+        path, what = ("parameters", name, "value"), f"parameter '{name}': {error.what}"
+        yield Finding(path, what, error.mend, error.column, error.length)
 
 
 def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
@@ -56,8 +58,10 @@ def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:
 
 
 def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
+    if catalog.model.space == "plane":
+        return
     for name, body in catalog.table("bodies").items():
-        if catalog.model.space == "plane" or body is None or body.measured or body.inertia is None or len(body.inertia) not in (3, 6):
+        if body is None or body.measured or body.inertia is None or len(body.inertia) not in (3, 6):
             continue
         moments = [number_of(e, values) for e in body.inertia]
         if None not in moments and not _possible([float(x) for x in moments if x is not None]):

@@ -6,7 +6,8 @@ from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.checks.references import missing_point
-from eomgen.model.fields import Finding, Leaf, nearest
+from eomgen.model.fields import Leaf
+from eomgen.model.findings import Finding, nearest
 from eomgen.symbolic.expressions import Call, Expression, Reference
 from eomgen.symbolic.functions import NAMES
 
@@ -94,8 +95,8 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
         start = min((c for c in argument.columns if c >= 0), default=0)
         return f"a {kind} is needed, not '{argument.text}'", "", start, len(argument.text)
     if kind == "number":
-        known = catalog.allowed[""]
-        return None if argument.name in known else _unknown(argument, kind, known)
+        symbols = catalog.allowed[""]
+        return None if argument.name in symbols else _unknown(argument, kind, symbols)
     if kind == "point":
         wrong = missing_point(catalog, argument.name)
         return None if wrong is None else (wrong[0], wrong[1], argument.column + wrong[2], wrong[3])

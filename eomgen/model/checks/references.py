@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
-from eomgen.model.fields import AxialRule, Finding, Leaf, NameRule, VectorRule, nearest, whereabouts
+from eomgen.model.fields import AxialRule, Leaf, NameRule, VectorRule
+from eomgen.model.findings import Finding, nearest, whereabouts
 
 
 def references(catalog: Catalog) -> Iterator[Finding]:

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
-from eomgen.model.fields import Finding, NameRule, Path
+from eomgen.model.fields import NameRule
+from eomgen.model.findings import Finding, Path
 
 ONE_OF = {
     "clamp": ("point", "points"),
@@ -99,7 +100,8 @@ def coordinates(catalog: Catalog) -> Iterator[Finding]:
         path: Path = ("coordinates", name)
         laws = [law for law in ("motion", "rate", "acceleration") if getattr(part, law) is not None]
         if len(laws) > 1:
-            yield Finding((*path, laws[1]), f"coordinate '{name}' is driven twice: {', '.join(laws)}", "keep one", key=True)
+            what = f"coordinate '{name}' is driven twice: {', '.join(laws)}"
+            yield Finding((*path, laws[1]), what, "keep one", key=True)
         if laws and part.dependent:
             what = f"coordinate '{name}' is driven and dependent"
             yield Finding((*path, "dependent"), what, "it is one or the other", key=True)
@@ -118,7 +120,8 @@ def idle(catalog: Catalog) -> Iterator[Finding]:
             if name not in used:
                 yield Finding((table, name), f"{kind} '{name}' is used by nothing", "use it, or leave it out", key=True)
     for name, part in catalog.table("speeds").items():
-        if part is not None and part.rate is None and name not in used and ("speeds", name, "rate") not in catalog.broken:
+        broken = ("speeds", name, "rate") in catalog.broken
+        if part is not None and part.rate is None and name not in used and not broken:
             what = f"speed '{name}' has no 'rate' and no joint names it in 'omega'"
             yield Finding(("speeds", name), what, "give its 'rate', an expression in the rates", key=True)
 

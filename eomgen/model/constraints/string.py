@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
+from eomgen.model.containers import EitherRule, ListRule
+from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression

@@ -17,6 +17,7 @@ class Force(Part):
 
     kind: ClassVar[str]
     works: ClassVar[bool] = True
+    placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """Forces and couples on bodies, and forces along coordinates."""

@@ -13,6 +13,7 @@ class Potential(Force):
     """A potential energy given as an expression of coordinates, parameters and time [J]."""
 
     kind: ClassVar[str] = "potential"
+    placeless: ClassVar[bool] = True
     energy: Energy
 
     def potential(self, scene: Scene) -> Scalar | None:

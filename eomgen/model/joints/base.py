@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from eomgen.model.fields import ListRule
+from eomgen.model.containers import ListRule
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression
@@ -115,7 +115,7 @@ def vector(components: tuple[Expression, ...] | None, value: Value, default: Vec
     if components is None:
         return default
     values = [value(c) for c in components]
-    return tuple(values + [0] * (3 - len(values)))  # type: ignore[return-value]
+    return tuple(values + [0] * (3 - len(values)))
 
 
 def unit(axis: Vector) -> Vector:
@@ -124,7 +124,7 @@ def unit(axis: Vector) -> Vector:
     if square == 1:
         return axis
     length = sqrt(square)
-    return tuple(over(a, length) for a in axis)  # type: ignore[return-value]
+    return tuple(over(a, length) for a in axis)
 
 
 def across(n: Vector) -> tuple[Vector, Vector]:

@@ -6,7 +6,8 @@ For the sequence "zxz" with angles psi, theta, phi: R = Rz(psi) Rx(theta) Rz(phi
 from itertools import product as combinations
 from typing import Annotated, Any
 
-from eomgen.model.fields import CONFIGURATION, FormulaRule, ListRule, NameRule, TextRule
+from eomgen.model.containers import ListRule
+from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
 from eomgen.model.joints.base import Column, X, Y, Z, angular
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import cos, sin

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from eomgen.model.fields import ListRule
+from eomgen.model.containers import ListRule
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Joint
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, Text, Turn

@@ -49,7 +49,7 @@ class Placed(Joint):
     def pose(self, s: Scalars, value: Value) -> Pose:
         places = self._places(s)
         position = (*s[:places], *([0] * (3 - places)))
-        return Pose(self._rotation(s[places:], value), position)  # type: ignore[arg-type]
+        return Pose(self._rotation(s[places:], value), position)
 
     def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         places = self._places(s)

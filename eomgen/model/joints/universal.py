@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from eomgen.model.fields import CONFIGURATION, FormulaRule, ListRule, VectorRule
+from eomgen.model.containers import ListRule
+from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.joints.base import Joint
 from eomgen.symbolic.expressions import Expression
 

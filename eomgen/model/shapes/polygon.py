@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar
 
-from eomgen.model.fields import FormulaRule, ListRule, VectorRule
+from eomgen.model.containers import ListRule
+from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.shapes.base import MassProperties, Shape, Value
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import over

@@ -1,0 +1,91 @@
+"""What is wrong with a model, where in it, and in which words."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import Any
+
+Path = tuple[str | int, ...]
+
+
+class Decimal(str):
+    """A decimal of the file as it was written (tomllib's `parse_float`): a number, exact."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing wrong, at a path into the model.
+
+    Args:
+        path: keys and indices that lead to the culprit.
+        what: what is wrong, the culprit printed.
+        mend: the nearest right thing, or "".
+        column, length: the culprit within the text of an expression (None: all of it).
+        key: the culprit is the key itself, not its value.
+        raw: what could not be read (names in it count as used).
+    """
+
+    path: Path
+    what: str
+    mend: str = ""
+    column: int | None = None
+    length: int | None = None
+    key: bool = False
+    raw: Any = field(default=None, compare=False, repr=False)
+
+
+LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is offered: a hostile file must not cost minutes
+MOST_OFFERS = 50
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """ "did you mean 'forearm'?", or "" where nothing is near."""
+    words = [str(name) for name in known]
+    if len(word) > LONGEST_WORD or len(words) > MOST_WORDS:
+        return ""
+    close = get_close_matches(word, words, n=1, cutoff=0.6)
+    close = close or [name for name in words if name.lower() == word.lower()]
+    return f"did you mean '{close[0]}'?" if close else ""
+
+
+def shown(raw: Any) -> str:
+    """A value of the file in a message."""
+    if isinstance(raw, Mapping):
+        return "a table"
+    if isinstance(raw, (list, tuple)):
+        return "a list"
+    if isinstance(raw, bool):
+        return str(raw).lower()
+    text = str(raw)
+    text = text if len(text) <= 60 else text[:57] + "..."
+    return f"'{text}'" if isinstance(raw, str) and not isinstance(raw, Decimal) else text
+
+
+TABLES = {
+    "parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input", "points": "point",
+    "bodies": "body", "constraints": "constraint", "trusses": "truss", "forces": "force", "outputs": "output",
+    "unknowns": "unknown",
+}  # fmt: skip
+"""The tables of a model that name things, and what one of those is called."""
+
+
+def whereabouts(path: Path, what: str = "") -> str:
+    """A part in words: "the joint of body 'hand'", "parameter 'm'"."""
+    if len(path) < 2 or path[0] not in TABLES:
+        return f"[{path[0]}]" if path else what or "the model"
+    owner = f"{TABLES[str(path[0])]} '{path[1]}'"
+    inner = [str(key) for key in path[2:] if isinstance(key, str)]
+    if inner[:1] == ["points"] and path[0] == "bodies" and len(inner) > 1:
+        return f"point '{inner[1]}' of {owner}"
+    return " of ".join([*(f"the {key}" for key in reversed(inner)), owner])
+
+
+def unknown_keys(raw: Mapping, known: Iterable[str], path: Path, found: list[Finding], what: str) -> None:
+    """Every key of a table that nobody reads is a finding."""
+    strange = [key for key in raw if key not in known]
+    listed = ", ".join(f"'{name}'" for name in known)
+    for k, key in enumerate(strange):
+        mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
+        found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True, raw=raw[key]))

@@ -1,0 +1,177 @@
+"""What a derivation is made of: steps of typed statements, in which formulas are graph scalars until they are printed.
+
+Plain strings are plain text in every format: each format escapes them in its own way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.symbolic.graph import Node, Scalar
+
+
+@dataclass(frozen=True)
+class Name:
+    """A quantity by its letter: T, V, Q(theta), x(arm.center), speed(arm.center)^2.
+
+    Args:
+        letter: as `text_of` and LETTERS of the formats know it.
+        of: whose it is: a body, a force, a point.
+        by: the symbol that it belongs to: Q(theta).
+        power: a whole exponent.
+    """
+
+    letter: str
+    of: str = ""
+    by: Node | None = None
+    power: int = 1
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An entry of a matrix: M[theta, phi]."""
+
+    letter: str
+    row: Node
+    column: Node
+
+
+@dataclass(frozen=True)
+class Partial:
+    """The partial derivative of a quantity: dT/dtheta'; with a minus sign where `sign` is -1."""
+
+    of: Name
+    by: Node
+    sign: int = 1
+
+
+@dataclass(frozen=True)
+class Rate:
+    """A time derivative: of a coordinate (`theta'`), or of a quantity (d/dt(dT/dtheta'))."""
+
+    of: Node | Name | Partial
+
+
+@dataclass(frozen=True)
+class Law:
+    """A general law, printed as it stands: for text, and for LaTeX."""
+
+    text: str
+    latex: str
+
+
+@dataclass(frozen=True)
+class Omitted:
+    """What is too long to be printed: the number of its operations."""
+
+    operations: int
+
+
+@dataclass(frozen=True)
+class Code:
+    """Something that a user types."""
+
+    text: str
+
+
+Side = Name | Entry | Partial | Rate | Law | Omitted | Scalar
+Piece = str | Code | Name | Entry | Partial | Rate | Law | Node
+
+
+@dataclass(frozen=True)
+class Prose:
+    """A sentence, with formulas inside."""
+
+    pieces: tuple[Piece, ...]
+
+
+@dataclass(frozen=True)
+class Formula:
+    """sides joined by equality signs, on a line of their own."""
+
+    sides: tuple[Side, ...]
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a symbol stands for.
+
+    Args:
+        symbol: a symbol of the formulas, or a quantity.
+        meaning: in words.
+        unit: "" for a plain number.
+        value: as text, "" where it has none.
+    """
+
+    symbol: Side
+    meaning: str
+    unit: str = ""
+    value: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A list of symbols and what they stand for; `head` names the columns symbol, meaning, unit, value."""
+
+    head: tuple[str, str, str, str]
+    rows: tuple[Meaning, ...]
+
+
+Statement = Prose | Formula | Table
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a derivation; `key` names it for machines."""
+
+    key: str
+    title: str
+    statements: tuple[Statement, ...]
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One equation of motion, as printed.
+
+    Args:
+        speed: whose equation it is.
+        left: inertia: (M a + c) / divisor.
+        right: forces: (Q + J^T lam) / divisor.
+        divisor: what both sides were divided by.
+    """
+
+    speed: Node
+    left: Scalar
+    right: Scalar
+    divisor: Scalar = 1
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """A derivation, step by step.
+
+    Args:
+        title: the model's name.
+        about: a remark of the user, "" where there is none.
+        source: where the system comes from, "".
+        space: "plane" or "space".
+        method: "lagrange" or "projection".
+        steps: in order.
+        equations: the equations of motion as printed; empty where they are too long.
+        definitions: sub-expressions with a name of their own, in the order of their use.
+    """
+
+    title: str
+    about: str
+    source: str
+    space: str
+    method: str
+    steps: tuple[Step, ...]
+    equations: tuple[Equation, ...] = ()
+    definitions: tuple[tuple[Node, Scalar], ...] = ()
+
+    @property
+    def nomenclature(self) -> tuple[Meaning, ...]:
+        """What every symbol stands for."""
+        tables = (s for step in self.steps for s in step.statements if isinstance(s, Table))
+        return tuple(row for table in tables for row in table.rows)
