@@ -1,20 +1,50 @@
-"""eomgen: from a mechanical system to its equations of motion, with proof."""
+"""Equations of motion of mechanical systems: derived, certified, typeset, simulated, compiled.
 
-from __future__ import annotations
+    model = eomgen.load("pendulum.toml")
+    equations = eomgen.derive(model)
+    eomgen.simulate(model, time=10)
+
+The names below are imported on first use, so that `import eomgen` costs nothing.
+"""
 
 from importlib import import_module
 from typing import Any
 
-_PLACES = {
-    "load": "eomgen.model.reader",
-    "loads": "eomgen.model.reader",
-    "derive": "eomgen.pipeline",
-    "simulate": "eomgen.pipeline",
-    "Equations": "eomgen.pipeline",
-}
+from eomgen.version import __version__
+
+
+_HOMES = {
+    "answers": ("Answer", "solve"),
+    "certificate": ("Certificate", "Check"),
+    "errors": (
+        "DerivationError", "EomgenError", "ExpressionError", "MissingValues", "ModelError", "NotYet", "Problem",
+        "RunFailed", "ToolMissing", "UsageError",
+    ),
+    "mechanics.freedom": ("Freedom", "freedom_of"),
+    "model.parts": (
+        "Body", "Coordinate", "Given", "Input", "Linearize", "Model", "Output", "Parameter", "Piece", "Speed", "Truss",
+        "Unknown",
+    ),
+    "model.reader": ("load", "loads"),
+    "pipeline": ("Equations", "derive", "simulate"),
+    "simulation.trajectory": ("Trajectory",),
+}  # fmt: skip
+_PLACES = {name: home for home, names in _HOMES.items() for name in names}
+_ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)
+
+__all__ = sorted([*_PLACES, *_ROOMS, "__version__"])
 
 
 def __getattr__(name: str) -> Any:
     if name in _PLACES:
-        return getattr(import_module(_PLACES[name]), name)
-    raise AttributeError(f"module 'eomgen' has no attribute '{name}'")
+        value = getattr(import_module(f"eomgen.{_PLACES[name]}"), name)
+    elif name in _ROOMS:
+        value = import_module(f"eomgen.model.{name}")
+    else:
+        raise AttributeError(f"module 'eomgen' has no attribute '{name}'")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -290,7 +290,7 @@ def _known_values(equations: Equations) -> tuple[np.ndarray | None, np.ndarray |
 def _with_accelerations(system: System, assembly: Assembly) -> Assembly:
     """The assembly with explicit accelerations of the tree, where articulated bodies give them."""
     branches = branches_of(system.motion)
-    if assembly.J or not articulated.applies(branches, len(assembly.symbols.u)):
+    if assembly.J or not articulated.applies(system.motion, branches):
         return assembly
     return replace(assembly, accelerations=articulated.accelerations(system.loads, branches))
 

@@ -18,8 +18,6 @@
 # %%
 from pathlib import Path
 
-import numpy as np
-
 import eomgen
 
 here = Path(__file__).parent if "__file__" in globals() else Path.cwd()
@@ -75,15 +73,13 @@ trajectory
 
 # %%
 assert trajectory.t[-1] == 10
-assert np.max(np.abs(trajectory.drift)) < 1e-6
+assert trajectory.drift < 1e-6
 
 # %%
 import matplotlib.pyplot as plt
 
 figure, axes = plt.subplots()
-x = np.asarray(trajectory.x)
-angles = x if x.shape[0] == len(trajectory.t) else x.T
-axes.plot(trajectory.t, angles[:, :2])
+axes.plot(trajectory.t, trajectory.x[:, :2])
 axes.set_xlabel("t [s]")
 axes.set_ylabel("angle [rad]")
 axes.legend([r"$\theta_1$", r"$\theta_2$"])

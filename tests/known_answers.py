@@ -72,7 +72,7 @@ CLASSICS = {
         "m1/2*x1'^2 + m2/2*x2'^2",
         (
             ("m1*x1'' + (k1 + k2)*x1 - k2*x2", "1"),
-            ("m2*x2'' - k2*x1 + (k2 + k3)*x2 + c*x2'", "1"),
+            ("m2*x2'' - k2*x1 + (k2 + k3)*x2", "1"),
         ),
     ),
     "parallelogram_reactions": Known("12*M*l^2*theta'^2", (("theta'' - 7/12*g/l*cos(theta)", "24*M*l^2"),)),

@@ -95,4 +95,4 @@ def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | 
     error = max((abs(a - b) for a, b in zip(found, dx, strict=True)), default=0.0) / largest
     if not error < WORST:
         return None
-    return Vector(state.t, state.x, state.p, state.inputs, dx, max(TOLERANCE, 10 * error))
+    return Vector(state.t, state.x, state.p, state.inputs, dx, float(max(TOLERANCE, 10 * error)))

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.mechanics.kinematics import GROUND
+from eomgen.mechanics.armature import armature_bias, armature_mass
+from eomgen.mechanics.kinematics import GROUND, Motion
 from eomgen.mechanics.loads import Loads
 from eomgen.mechanics.recursion import applied_wrenches, inertia_wrench, rate_matrix
 from eomgen.mechanics.tree import Branch
@@ -35,26 +36,28 @@ class Elimination:
     r: Scalar
 
 
-def applies(branches: tuple[Branch, ...], size: int) -> bool:
-    """Every speed belongs to one joint alone."""
+def applies(motion: Motion, branches: tuple[Branch, ...]) -> bool:
+    """Every speed belongs to one joint alone, and no rotor couples two of them."""
+    size = len(motion.scope.symbols.u)
     owned = [k for branch in branches for k in branch.columns]
-    return sorted(owned) == list(range(size)) and size > 0
+    coupled = any(i != j for i, j, _ in armature_mass(motion))
+    return sorted(owned) == list(range(size)) and size > 0 and not coupled
 
 
 def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, ...]:
-    """a of the tree under its loads, closing rows left out.
-
-    Raises:
-        ZeroDivisionError: never for bodies with mass; a pivot that is identically zero is a DerivationError.
-    """
+    """a of the tree under its loads, closing rows left out."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)
-    effort = [a + b for a, b in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
+    direct = zip(joint_forces(loads), placeless_forces(loads), armature_bias(motion, size), strict=True)
+    effort = [a + b - rotor for a, b, rotor in direct]
+    rotors: list[Scalar] = [0] * size
+    for k, _, value in armature_mass(motion):
+        rotors[k] = rotors[k] + value
     base = (*ZERO, *times(-1, loads.fields))
     biases, p = _velocity_terms(branches)
     for i, wrench in applied_wrenches(loads, branches).items():
         p[i] = [a - b for a, b in zip(p[i], (*wrench.tau, *wrench.f), strict=True)]
-    eliminated = _inward(branches, effort, biases, p)
+    eliminated = _inward(branches, (effort, rotors), biases, p)
     return _outward(branches, eliminated, biases, list(base), size)
 
 
@@ -77,7 +80,11 @@ def _velocity_terms(branches: tuple[Branch, ...]) -> tuple[list[Six], list[Six]]
     return biases, wrenches
 
 
-def _inward(branches: tuple[Branch, ...], effort: list[Scalar], biases: list[Six], p: list[Six]):
+def _inward(
+    branches: tuple[Branch, ...], joints: tuple[list[Scalar], list[Scalar]], biases: list[Six], p: list[Six]
+) -> list[list[Elimination]]:
+    """Eliminate every column, leaves first; joints: (effort, rotor inertia) of each speed."""
+    effort, rotors = joints
     inertia = [_matrix(branch) for branch in branches]
     eliminated: list[list[Elimination]] = [[] for _ in branches]
     for i in reversed(range(len(branches))):
@@ -87,7 +94,7 @@ def _inward(branches: tuple[Branch, ...], effort: list[Scalar], biases: list[Six
         for k, (w, v) in branch.columns.items():
             s = [*w, *v]
             Is = _times(I, s)
-            d = _dot(s, Is)
+            d = _dot(s, Is) + rotors[k]
             r = effort[k] - _dot(s, shifted)
             g = over(1, d)
             scaled = [g * x for x in Is]

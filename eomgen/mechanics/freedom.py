@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
-from eomgen.mechanics.kinematics import Link
-from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.kinematics import Link, Motion, motion_of
+from eomgen.mechanics.scope import Scope, scope_of
+from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.model.values import exact_parameters, start_values
@@ -73,71 +74,70 @@ def freedom_of(model: Model) -> Freedom:
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
     try:
-        system = system_of(model)
+        ties = ties_of(motion_of(scope_of(model)))
     except NotYet as error:
         return Freedom(not_counted=error.what)
-    count, formula = counted(system)
-    rows = system.ties.rows
-    identical = tuple(dict.fromkeys(row.tie for row in rows if row.identical))
-    closing = tuple(dict.fromkeys(row.tie for row in system.ties.closing))
+    count, formula = counted(ties)
+    identical = tuple(dict.fromkeys(row.tie for row in ties.rows if row.identical))
+    closing = tuple(dict.fromkeys(row.tie for row in ties.closing))
     try:
-        redundant = redundant_rows(system)
+        redundant = redundant_rows(ties)
     except EomgenError as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
-    rank = len(system.ties.closing) - len(redundant)
-    return Freedom(len(system.symbols.u) - rank, count, formula, redundant, identical, closing)
+    rank = len(ties.closing) - len(redundant)
+    return Freedom(len(ties.motion.scope.symbols.u) - rank, count, formula, redundant, identical, closing)
 
 
 # -- by formula ------------------------------------------------------------------------------------
 
 
-def counted(system: System) -> tuple[int, str]:
+def counted(ties: Ties) -> tuple[int, str]:
     """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
-    of_body, of_particle = (3, 2) if system.scope.model.space == "plane" else (6, 3)
-    particles = [link for link in system.motion.links if _is_particle(system, link)]
-    bodies = [link for link in system.motion.links if link not in particles]
-    terms = [(f"{of_body}*{len(bodies)}", of_body * len(bodies), "bodies")]
-    if particles:
-        terms.append((f"{of_particle}*{len(particles)}", of_particle * len(particles), "particles"))
+    motion = ties.motion
+    of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
+    particles = [link for link in motion.links if _is_particle(motion, link)]
+    bodies = [link for link in motion.links if link not in particles]
+    free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
     joints = sum(_components(link, of_body) for link in bodies)
     joints += sum(_components(link, of_particle) for link in particles)
-    driven = sum(coordinate.driven for coordinate in system.scope.model.coordinates.values())
-    taken = [(joints, "joints"), (len(system.ties.rows), "ties"), (driven, "given motions")]
-    total = sum(value for _, value, _ in terms) - sum(value for value, _ in taken)
-    text = " + ".join(f"{shown} ({what})" for shown, _, what in terms)
+    driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
+    taken = [(joints, "joints"), (len(ties.rows), "ties"), (driven, "given motions")]
+    total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
+    text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
     return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
 
 
-def _is_particle(system: System, link: Link) -> bool:
+def _is_particle(motion: Motion, link: Link) -> bool:
     """A point mass that its joint does not turn."""
-    shape = system.scope.model.bodies[link.name].shape
+    shape = motion.scope.model.bodies[link.name].shape
     turns = any(not is_zero(x) for w, _ in link.S for x in w)
-    placed = link.joint is not None and not link.joint.carries_reaction
-    return shape is not None and shape.kind == "particle" and (placed or not turns)
+    return shape is not None and shape.kind == "particle" and (_is_placed(link) or not turns)
+
+
+def _is_placed(link: Link) -> bool:
+    return link.joint is None or not link.joint.carries_reaction
 
 
 def _components(link: Link, free: int) -> int:
     """How many components of motion the joint takes; what is placed, or has no joint, keeps all."""
-    if link.joint is None or not link.joint.carries_reaction:
-        return 0
-    return free - len(link.S)
+    return 0 if _is_placed(link) else free - len(link.S)
 
 
 # -- by rank ---------------------------------------------------------------------------------------
 
 
-def redundant_rows(system: System) -> tuple[Redundant, ...]:
+def redundant_rows(ties: Ties) -> tuple[Redundant, ...]:
     """The closing rows that follow from those before them, at a generic configuration in which the ties hold.
 
     Raises:
         MissingValues: the ties cannot be closed without values for the parameters.
         DerivationError: they do not close near the start.
     """
-    closing = system.ties.closing
+    closing = ties.closing
     if not closing:
         return ()
-    J = np.array(evaluate([x for row in system.ties.J for x in row], generic_state(system), FLOAT))
-    J = J.reshape(len(closing), len(system.symbols.u))
+    J = np.array(evaluate([x for row in ties.J for x in row], generic_state(ties), FLOAT))
+    J = J.reshape(len(closing), len(ties.motion.scope.symbols.u))
     found, basis, kept = [], np.zeros((0, J.shape[1])), []
     for row, line in zip(closing, J, strict=True):
         size = float(np.linalg.norm(line))
@@ -160,7 +160,7 @@ def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> t
     return tuple(name for name in dict.fromkeys(names) if name != tie)
 
 
-def generic_state(system: System) -> dict[Node, float]:
+def generic_state(ties: Ties) -> dict[Node, float]:
     """Numbers for every symbol: near the start, off any special position, with phi = 0.
 
     Parameters without a value get one. Inputs are as at t = 0.
@@ -168,38 +168,40 @@ def generic_state(system: System) -> dict[Node, float]:
     Raises:
         DerivationError: the ties do not close there.
     """
-    model, symbols, rng = system.scope.model, system.symbols, Random(1)
+    scope, rng = ties.motion.scope, Random(1)
+    model, symbols = scope.model, scope.symbols
     known = exact_parameters(model)
     p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
     q, _ = start_values(model, p)
     state = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
     for name, node in symbols.inputs.items():
-        state[node] = evaluate([system.scope.value(model.inputs[name].value)], state, FLOAT)[0]
+        state[node] = evaluate([scope.value(model.inputs[name].value)], state, FLOAT)[0]
     state |= {node: rng.uniform(-1, 1) for node in symbols.u}
     for spread in SPREADS:
-        near = {node: q[node.name] + _shift(system, node, spread, rng) for node in symbols.q}
-        closed = _closed(system, state | near)
+        near = {node: q[node.name] + _shift(scope, node, spread, rng) for node in symbols.q}
+        closed = _closed(ties, state | near)
         if closed is not None:
             return closed
-    raise _open(system, known)
+    raise _open(ties, known)
 
 
-def _shift(system: System, node: Node, spread: float, rng: Random) -> float:
-    return 0.0 if system.scope.model.coordinates[node.name].driven else rng.uniform(-spread, spread)
+def _shift(scope: Scope, node: Node, spread: float, rng: Random) -> float:
+    return 0.0 if scope.model.coordinates[node.name].driven else rng.uniform(-spread, spread)
 
 
-def _open(system: System, known: Mapping[str, Any]) -> EomgenError:
-    missing = tuple(name for name in system.symbols.parameters if name not in known)
+def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
+    missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
     if missing:
         return MissingValues(missing)
-    names = ", ".join(dict.fromkeys(row.tie for row in system.ties.closing))
+    names = ", ".join(dict.fromkeys(row.tie for row in ties.closing))
     return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
 
 
-def _closed(system: System, state: dict[Node, float]) -> dict[Node, float] | None:
-    """The nearest state with phi = 0, by Newton steps of least norm in the free coordinates; None where none is near."""
-    gaps = [gap for gap in system.ties.phi if gap is not None]
-    free = [q for q in system.symbols.q if not system.scope.model.coordinates[q.name].driven]
+def _closed(ties: Ties, state: dict[Node, float]) -> dict[Node, float] | None:
+    """The nearest state with phi = 0, by Newton steps of least norm; None where none is near."""
+    scope = ties.motion.scope
+    gaps = [gap for gap in ties.phi if gap is not None]
+    free = [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
     slopes = [x for row in jacobian(tuple(gaps), free) for x in row] if gaps else []
     for _ in range(STEPS):
         values = np.array(evaluate([*gaps, *slopes], state, FLOAT))

@@ -5,7 +5,7 @@ unknown wrench F_i from its joint; the joints say how A_i may differ from that o
 
     I_i A_i + p_i = W_i + F_i - sum over children X^T F_c + sum over closing rows W lam
     A_i = X A_parent + b_i + S_i (D a)
-    (S_i D_k)^T F_i summed over joints = what acts on joints and coordinates at no place
+    (S_i D_k)^T F_i summed over joints + rotors = what acts on joints and coordinates at no place
     J a + gamma = 0
 
 One linear system in (A, F, a, lam); what depends on velocity is found by differences of numbers along
@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.mechanics.armature import armature_bias, armature_mass
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
@@ -91,7 +92,10 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
             A[6 * link.parent : 6 * link.parent + 6, wrench] = X.T
         A[speeds, wrench] = column.T
     direct = [a + b for a, b in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
-    right[speeds] = numbers.array(tuple(direct)) if nu else 0
+    rotors = armature_bias(system.motion, nu)
+    right[speeds] = numbers.array(tuple(a - b for a, b in zip(direct, rotors, strict=True))) if nu else 0
+    for i, j, value in armature_mass(system.motion):
+        A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
     return np.linalg.lstsq(A, right, rcond=1e-13)[0][speeds]
 
@@ -125,8 +129,8 @@ def _joint(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
     u = numbers.system.scope.symbols.u
     if link.joint is None:
         return np.zeros((6, len(u))), np.zeros(6)
-    S = np.array([[*numbers.array(w), *numbers.array(v)] for w, v in link.S]).reshape(-1, 6).T
-    D = np.array([numbers.array(gradient(rate, u)) for rate in link.s_rate]).reshape(-1, len(u))
+    S = np.array([[*numbers.array(w), *numbers.array(v)] for w, v in link.S]).reshape(len(link.S), 6).T
+    D = np.array([numbers.array(gradient(rate, u)) for rate in link.s_rate]).reshape(len(link.s_rate), len(u))
     local = link.before.then(link.relative)
     R_CP = numbers.array(local.R).T
     offset = numbers.array(local.p)

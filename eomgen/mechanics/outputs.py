@@ -93,7 +93,7 @@ class Quantities:
         if frame in self.system.motion.index:
             R = self.system.motion.link(frame).pose.R
             w = apply(transposed(R), minus(w, self._spin(frame)))
-        return self._rate(w, order - 1)
+        return w if order == 1 else self.system.scope.with_accelerations(w)  # type: ignore[return-value]
 
     def _spin(self, body: str) -> Vector:
         """Angular velocity in ground axes, from the twist; of the ground 0 [rad/s]."""

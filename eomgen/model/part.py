@@ -33,9 +33,13 @@ class Slot:
     default: Any
 
 
+def slots_of(part: Any) -> tuple[Slot, ...]:
+    """The fields of a part's class, in order."""
+    return _slots_of(part)
+
+
 @cache
-def slots_of(cls: Any) -> tuple[Slot, ...]:
-    """The fields of a part, in order."""
+def _slots_of(cls: Any) -> tuple[Slot, ...]:
     slots = []
     for field in fields(cls):
         default = field.default_factory() if field.default_factory is not MISSING else field.default

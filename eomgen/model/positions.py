@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 
 Path = tuple[str | int, ...]
 
+DEEPEST = 16  # pieces of a dotted key
+MOST_DOTS = 5000
+
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _SPACE = re.compile(r"[ \t]*")
 _KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'""")
@@ -36,12 +39,14 @@ class Index:
         text: the text.
         keys, values: the span of each key, and of each value (a table's header stands for its value), by path.
         twice: path, span, and whole statement (None: a header or a key within a line) of every key given before.
+        deep: the first key with more pieces than DEEPEST, where the scan ended.
     """
 
     text: str
     keys: dict[Path, Span] = field(default_factory=dict)
     values: dict[Path, Span] = field(default_factory=dict)
     twice: list[tuple[Path, Span, Span | None]] = field(default_factory=list)
+    deep: Span | None = None
     _lines: list[int] = field(default_factory=list)
 
     def line_and_column(self, offset: int) -> tuple[int, int]:
@@ -84,7 +89,18 @@ def index_of(text: str) -> Index:
     scanner = _Scanner(text)
     with suppress(_Lost, RecursionError):
         scanner.document()
+    if scanner.at < len(text) and scanner.index.deep is None:
+        scanner.index.deep = _dotted_line(text, scanner.at)
     return scanner.index
+
+
+def _dotted_line(text: str, start: int) -> Span | None:
+    """The first line from here on with more dots than any model has (tomllib's memory grows with their square)."""
+    for line in text[start:].split("\n"):
+        if line.count(".") > MOST_DOTS:
+            return Span(start, start + 1)
+        start += len(line) + 1
+    return None
 
 
 class _Lost(Exception):
@@ -154,6 +170,9 @@ class _Scanner:
             self.match(_SPACE)
             if not self.text.startswith(".", self.at):
                 return pieces
+            if len(pieces) == DEEPEST:
+                self.index.deep = pieces[0][1]
+                raise _Lost
             self.at += 1
 
     def pair(self, table: Path, whole_line: bool = False) -> None:

@@ -46,6 +46,9 @@ def loads(text: str | bytes, name: str = "<text>") -> Model:
 def _loads(data: bytes, name: str, title: str) -> Model:
     text = _text(data, name)
     index = index_of(text)
+    if index.deep is not None:
+        deep = Finding((), "not TOML that a model needs: a key with too many pieces", "a model has at most bodies.arm.joint")
+        raise ModelError((_problem(deep, index.deep, index, name),))
     raw, twice = _table(text, index, name)
     found = _version(raw)
     draft = draft_of(Model, raw, title, found)

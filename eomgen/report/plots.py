@@ -78,7 +78,7 @@ def plot_trajectory(
 def mathtext(name: str) -> str:
     r"""A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}."""
     base, dots = name.rstrip("'"), len(name) - len(name.rstrip("'"))
-    head, tail = re.fullmatch(r"([^\W\d_]+|.)_?(.*)", base, re.DOTALL).groups()  # type: ignore[union-attr]
+    head, tail = re.fullmatch(r"([^\W\d_]+|.)_*(.*)", base.strip("_") or "x", re.DOTALL).groups()  # type: ignore[union-attr]
     letter = f"\\{head}" if head in GREEK else head if len(head) == 1 else f"\\mathrm{{{head}}}"
     dotted = {0: letter, 1: f"\\dot{{{letter}}}", 2: f"\\ddot{{{letter}}}"}.get(dots, letter + "'" * dots)
     below = tail.replace("_", r"\,")

@@ -14,7 +14,7 @@ from functools import cache
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.graph import LARGEST_POWER, Node, Number, Scalar
+from eomgen.symbolic.graph import CONSTANTS, LARGEST_POWER, Graph, Node, Number, Scalar
 
 FREE = frozenset(("symbol", "pi", "neg"))
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
@@ -70,6 +70,12 @@ def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node]
         if x.op != "symbol" and x not in given:
             stack += [a for a in x.args if type(a) is Node]
     return sorted(seen, key=_index)
+
+
+def united(outputs: Sequence[Scalar]) -> tuple[Graph, list[Scalar]]:
+    """(graph, outputs) with the constants that have no graph of their own taken into that of the others."""
+    home = next((x.graph for x in outputs if type(x) is Node and x.graph is not CONSTANTS), CONSTANTS)
+    return home, [home.adopted(x) for x in outputs]
 
 
 def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any]:

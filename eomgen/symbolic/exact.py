@@ -15,7 +15,17 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import PRIME, PRIME_FIELD, Arithmetic, NoMeaning, NoValue, evaluate, fifty_digits, order
+from eomgen.symbolic.evaluation import (
+    PRIME,
+    PRIME_FIELD,
+    Arithmetic,
+    NoMeaning,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    order,
+    united,
+)
 from eomgen.symbolic.graph import Node, Number, Scalar, linear_terms
 
 TRIES = 12  # states to be tried for one with a value
@@ -63,8 +73,7 @@ def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int 
     Raises:
         DerivationError: no real state was found at which the expressions have values.
     """
-    pairs = [(a, b) for a, b in pairs]
-    flat = [x for pair in pairs for x in pair]
+    _, flat = united([x for pair in pairs for x in pair])
     rng = Random(seed)
     try:
         for _ in range(states):

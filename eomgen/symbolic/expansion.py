@@ -7,11 +7,11 @@ sum f, an atom with negative powers. The work is bounded: `TooLarge` rather than
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.atoms import RADIAN, Atoms, Opaque
+from eomgen.symbolic.evaluation import order, united
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.terms import (
     HALF,
@@ -34,7 +34,7 @@ from eomgen.symbolic.terms import (
 )
 
 LARGEST_EXPONENT = 64
-RADIAN = -1  # the angle of a plain number: sin(1)
+MOST_TERMS = 2_000  # of a sum: nobody reads a longer one
 _TURNS = {  # cos(turn * pi) = coefficient * sqrt(root)
     Fraction(0): (Fraction(1), 1),
     Fraction(1, 6): (HALF, 3),
@@ -42,14 +42,6 @@ _TURNS = {  # cos(turn * pi) = coefficient * sqrt(root)
     Fraction(1, 3): (HALF, 1),
     Fraction(1, 2): (Fraction(0), 1),
 }
-
-
-@dataclass(frozen=True)
-class Opaque:
-    """An atom that is no symbol: a function with its canonical arguments ("sum": an f that one divides by)."""
-
-    op: str
-    arguments: tuple[Terms, ...]
 
 
 class Expansion:
@@ -62,24 +54,33 @@ class Expansion:
 
     def __init__(self, graph: Graph, limit: int) -> None:
         self.graph, self.limit, self.work = graph, limit, 0
-        self.atoms: dict[int, Node] = {}
-        self.opaque: dict[int, Opaque] = {}
+        self.atoms = Atoms(graph)
         self._known: dict[Node, Terms] = {}
+        self._too_long: set[Node] = set()
 
     def of(self, x: Scalar) -> Terms:
         """x as a sum of terms.
 
         Raises:
-            TooLarge: the limit of work is reached.
+            TooLarge: the limit of work is reached, or a sum has more than MOST_TERMS terms.
         """
         if type(x) is not Node:
             return constant(x)
         for node in order((x,), self._known):
+            if node in self._too_long:
+                raise TooLarge(f"a sum of more than {MOST_TERMS} terms")
             if node not in self._known:
-                self._known[node] = self._expanded(node)
+                self._known[node] = self._bounded(node)
         return self._known[x]
 
     # -- one node from its arguments ---------------------------------------------------------------
+
+    def _bounded(self, x: Node) -> Terms:
+        terms = self._expanded(x)
+        if len(terms) > MOST_TERMS:
+            self._too_long.add(x)
+            raise TooLarge(f"a sum of more than {MOST_TERMS} terms")
+        return terms
 
     def _expanded(self, x: Node) -> Terms:
         op = x.op
@@ -123,12 +124,12 @@ class Expansion:
             raise TooLarge(f"more than {self.limit} products of terms")
 
     def _atom(self, x: Node) -> Terms:
-        self.atoms[x.index] = x
+        self.atoms.nodes[x.index] = x
         return {(((x.index, 1),), ()): 1}
 
     def _function(self, op: str, arguments: tuple[Terms, ...]) -> Terms:
         """An opaque atom op(arguments), the same one for equal arguments."""
-        nodes = [self.node(a) for a in arguments]
+        nodes = [self.atoms.node(a) for a in arguments]
         x = self.graph.select(*nodes) if op == "select" else self._applied(op, nodes)
         if type(x) is not Node:
             return constant(x)
@@ -137,14 +138,14 @@ class Expansion:
             return self.of(x)
         if inner is not x:
             arguments = tuple(self.of(a) for a in inner.args)
-        self.opaque[inner.index] = Opaque(op, arguments)
+        self.atoms.opaque[inner.index] = Opaque(op, arguments)
         return scaled(self._atom(inner), -1 if inner is not x else 1)
 
     def _applied(self, op: str, nodes: list[Scalar]) -> Scalar:
         return self.graph.pow(nodes[0], nodes[1]) if op == "pow" else self.graph.call(op, *nodes)
 
     def _without_squared_roots(self, a: Terms) -> Terms:
-        roots = {atom for atom in self.opaque if self._is(atom, "sqrt")}
+        roots = {atom for atom in self.atoms.opaque if self.atoms.is_a(atom, "sqrt")}
         if not roots:
             return a
         result: Terms = {}
@@ -156,7 +157,7 @@ class Expansion:
             rest = tuple((atom, e % 2 if (atom, e) in squared else e) for atom, e in monomial)
             part: Terms = {(tuple((atom, e) for atom, e in rest if e), w): c}
             for atom, e in squared:
-                part = self.product(part, self.power(self.opaque[atom].arguments[0], e // 2))
+                part = self.product(part, self.power(self.atoms.opaque[atom].arguments[0], e // 2))
             result = plus(result, part)
         return result
 
@@ -185,7 +186,7 @@ class Expansion:
             if w == () and all(self._invertible(atom) for atom, _ in monomial):
                 inverted, factor = inverse(monomial)
                 return {(inverted, ()): tidy(factor / Fraction(c))}
-            root = next((atom for atom, _ in monomial if self._is(atom, "sqrt")), None)
+            root = next((atom for atom, _ in monomial if self.atoms.is_a(atom, "sqrt")), None)
             if root is not None:  # 1/(m sqrt(f)) = sqrt(f)/(m f)
                 by_root: Terms = {(((root, 1),), ()): 1}
                 return self.product(by_root, self.reciprocal(self.product(f, by_root)))
@@ -194,24 +195,21 @@ class Expansion:
         if denominators:  # 1/(a + b/d) = d/(a d + b)
             result = self.reciprocal(cleared)
             for atom, e in denominators.items():
-                result = self.product(result, self.power(self.opaque[atom].arguments[0], e))
+                result = self.product(result, self.power(self.atoms.opaque[atom].arguments[0], e))
         else:
             result = self._inverted_sum(primitive)
         inverted, _ = inverse(monomial)
         return self.product(result, {(inverted, ()): tidy(1 / factor)})
 
-    def _is(self, atom: int, op: str) -> bool:
-        return atom in self.opaque and self.opaque[atom].op == op
-
     def _invertible(self, atom: int) -> bool:
         """Whether negative and positive powers of the atom are both atoms: not so for sqrt(f) and for sums."""
-        return not self._is(atom, "sqrt") and not self._is(atom, "sum")
+        return not self.atoms.is_a(atom, "sqrt") and not self.atoms.is_a(atom, "sum")
 
     def _inverted_sum(self, f: Terms) -> Terms:
-        node = self.node(f)
+        node = self.atoms.node(f)
         assert type(node) is Node
-        self.atoms[node.index] = node
-        self.opaque[node.index] = Opaque("sum", (f,))
+        self.atoms.nodes[node.index] = node
+        self.atoms.opaque[node.index] = Opaque("sum", (f,))
         return {(((node.index, -1),), ()): 1}
 
     def primitive(self, f: Terms) -> tuple[Fraction, Monomial, Terms]:
@@ -228,7 +226,7 @@ class Expansion:
         powers: dict[int, int] = {}
         for monomial, _ in f:
             for atom, e in monomial:
-                if e < 0 and self._is(atom, "sum"):
+                if e < 0 and self.atoms.is_a(atom, "sum"):
                     powers[atom] = max(powers.get(atom, 0), -e)
         if not powers:
             return f, {}
@@ -238,7 +236,7 @@ class Expansion:
             missing = {atom: power + exponents.pop(atom, 0) for atom, power in powers.items()}
             part: Terms = {(tuple(sorted(exponents.items())), w): c}
             for atom, e in missing.items():
-                part = self.product(part, self.power(self.opaque[atom].arguments[0], e))
+                part = self.product(part, self.power(self.atoms.opaque[atom].arguments[0], e))
             numerator = plus(numerator, part)
         inner, more = self.cleared(numerator)
         for atom, e in more.items():
@@ -274,9 +272,9 @@ class Expansion:
         monomial, w = key
         if w == () and len(monomial) == 1 and monomial[0][1] == 1 and monomial[0][0] >= 0:
             return monomial[0][0]
-        node = self.node({key: 1})
+        node = self.atoms.node({key: 1})
         assert type(node) is Node
-        self.atoms[node.index] = node
+        self.atoms.nodes[node.index] = node
         return node.index
 
     def _wave(self, kind: str, k: Vector) -> Terms:
@@ -299,50 +297,9 @@ class Expansion:
         c, root = _TURNS[turn]
         return {(((-root, 1),) if root > 1 else (), ()): tidy(sign * c)} if c else {}
 
-    # -- back to nodes -----------------------------------------------------------------------------
-
-    def node(self, terms: Terms) -> Scalar:
-        """The sum as a node, in an order that depends on the terms only."""
-        total: Scalar = 0
-        for key in sorted(terms):
-            total = self.graph.add(total, self.term(key, terms[key]))
-        return total
-
-    def term(self, key: Key, c: Number) -> Scalar:
-        """c * monomial * wave as a node."""
-        monomial, w = key
-        above: Scalar = self.wave_node(w[0], w[1]) if w else 1
-        above, below = self.monomial_nodes(monomial, above)
-        return self.graph.mul(c, self.graph.div(above, below))
-
-    def monomial_nodes(self, monomial: Monomial, above: Scalar = 1) -> tuple[Scalar, Scalar]:
-        """(numerator, denominator) of a monomial, `above` multiplied into the numerator."""
-        numerator: Scalar = 1
-        below: Scalar = 1
-        for atom, e in monomial:
-            if atom < 0:
-                numerator = self.graph.mul(numerator, self.graph.sqrt(-atom))
-            elif e > 0:
-                numerator = self.graph.mul(numerator, self.graph.pow(self.atoms[atom], e))
-            else:
-                below = self.graph.mul(below, self.graph.pow(self.atoms[atom], -e))
-        return self.graph.mul(numerator, above), below
-
-    def wave_node(self, kind: str, k: Vector) -> Scalar:
-        """cos or sin of k . angles."""
-        return self.graph.call(kind, self.angle_node(k))
-
-    def angle_node(self, k: Vector) -> Scalar:
-        """k . angles"""
-        angle: Scalar = 0
-        for atom, c in k:
-            angle = self.graph.add(angle, c if atom == RADIAN else self.graph.mul(c, self.atoms[atom]))
-        return angle
-
 
 def expanded(outputs: Iterable[Scalar], limit: int) -> tuple[Expansion, list[Terms]]:
     """The outputs as sums of terms, with the expansion that owns their atoms."""
-    outputs = list(outputs)
-    graph = next((x.graph for x in outputs if type(x) is Node), None) or Graph()
+    graph, outputs = united(list(outputs))
     expansion = Expansion(graph, limit)
     return expansion, [expansion.of(x) for x in outputs]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import CONSTANTS, Node
 
 NAMES = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1,
@@ -18,22 +18,31 @@ NAMES = {
 
 
 def function(name: str, *args):
-    """The function of the table NAMES at its arguments, in the arithmetic of the arguments."""
+    """The function of the table NAMES at its arguments, in the arithmetic of the arguments.
+
+    At exact numbers it stays exact: sqrt(4) is 2, sqrt(2) a node of the graph CONSTANTS.
+    """
     for a in args:
         if type(a) is Node:
             return a.graph.call(name, *args)
-    if all(isinstance(a, (float, int)) and not isinstance(a, bool) for a in args):
-        if name in ("min", "max"):
-            return min(args) if name == "min" else max(args)
-        if name == "abs":
-            return abs(args[0])
-        if name == "sign":
-            return (args[0] > 0) - (args[0] < 0)
-        return getattr(math, name)(*args)
+    if all(isinstance(a, (int, Fraction)) for a in args):
+        return CONSTANTS.call(name, *args)
+    if all(isinstance(a, (float, int, Fraction)) for a in args):
+        return _at_floats(name, *map(float, args))
     own = getattr(type(args[0]), f"scalar_{name}", None)
     if own is not None:
         return own(*args)
     return _sympy_function(name, *args)
+
+
+def _at_floats(name: str, *args: float) -> float:
+    if name in ("min", "max"):
+        return min(args) if name == "min" else max(args)
+    if name == "abs":
+        return abs(args[0])
+    if name == "sign":
+        return float((args[0] > 0) - (args[0] < 0))
+    return getattr(math, name)(*args)
 
 
 def _sympy_function(name: str, *args):
@@ -52,11 +61,6 @@ def cos(a):
 
 
 def sqrt(a):
-    """The square root; of an exact square it is exact."""
-    if isinstance(a, (int, Fraction)):
-        root = Fraction(math.isqrt(Fraction(a).numerator), math.isqrt(Fraction(a).denominator))
-        if root * root == a:
-            return root.numerator if root.denominator == 1 else root
     return function("sqrt", a)
 
 

@@ -12,6 +12,7 @@ There is no expansion and no simplification.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
@@ -21,6 +22,7 @@ from eomgen.symbolic.numbers import Number, binary_folded_at, exact, exact_power
 
 __all__ = [
     "BINARY",
+    "CONSTANTS",
     "LARGEST_POWER",
     "UNARY",
     "Graph",
@@ -76,6 +78,8 @@ class Graph:
             return self._shift(exact(a), b)
         if type(b) is not Node:
             return self._shift(exact(b), a)
+        if a.graph is not b.graph:
+            return _united(Graph.add, a, b)
         if a is b:
             return self.mul(2, a)
         negative_a = a.op == "neg"
@@ -122,7 +126,8 @@ class Graph:
             return self.add(x.args[0], self.add(x.args[1], y))
         if y.op == "add" and type(y.args[0]) is not Node:
             return self.add(y.args[0], self.add(x, y.args[1]))
-        return self.held("add", (x, y) if x.index < y.index else (y, x))
+        turned = self._nodes.get(("add", (y, x)))
+        return self.held("add", (x, y)) if turned is None else turned  # in the order in which it was written first
 
     def _difference(self, x: Node, y: Node) -> Scalar:
         """x - y, both without a sign."""
@@ -151,7 +156,7 @@ class Graph:
             return self.add(x.args[0], self.add(x.args[1], self.neg(y)))
         if y.op == "add" and type(y.args[0]) is not Node:
             return self.add(-y.args[0], self.add(x, self.neg(y.args[1])))
-        if x.index < y.index:
+        if ("sub", (y, x)) not in self._nodes:
             return self.held("sub", (x, y))
         return self.held("neg", (self.held("sub", (y, x)),))
 
@@ -171,6 +176,8 @@ class Graph:
             return self._scale(exact(a), b)
         if type(b) is not Node:
             return self._scale(exact(b), a)
+        if a.graph is not b.graph:
+            return _united(Graph.mul, a, b)
         if a.op == "neg":
             return self._product(a.args[0], b.args[0]) if b.op == "neg" else self.neg(self._product(a.args[0], b))
         return self.neg(self._product(a, b.args[0])) if b.op == "neg" else self._product(a, b)
@@ -225,6 +232,8 @@ class Graph:
             negative = (a < 0) is not (b.op == "neg")
             a = -a if a < 0 else a
             b = b.args[0] if b.op == "neg" else b
+        elif a.graph is not b.graph:
+            return _united(Graph.div, a, b)
         else:
             negative = (a.op == "neg") is not (b.op == "neg")
             a, b = (a.args[0] if a.op == "neg" else a), (b.args[0] if b.op == "neg" else b)
@@ -266,7 +275,9 @@ class Graph:
     def pow(self, base: Scalar, exponent: Scalar) -> Scalar:
         """base ** exponent; small whole powers are products, halves are square roots."""
         if type(exponent) is Node:
-            if type(base) is not Node and base == 1:
+            if type(base) is Node and base.graph is not exponent.graph:
+                return _united(Graph.pow, base, exponent)
+            if type(base) is not Node and exact(base) == 1:
                 return 1
             return self.held("pow", (base, exponent))
         exponent = exact(exponent)
@@ -335,6 +346,8 @@ class Graph:
         if type(a) is not Node and type(b) is not Node:
             folded = binary_folded_at(name, exact(a), exact(b))
             return self.held(name, (a, b)) if folded is None else folded
+        if type(a) is Node and type(b) is Node and a.graph is not b.graph:
+            return _united(lambda home, a, b: home.call(name, a, b), a, b)
         if a is b and name in _OF_EQUALS:
             folded = _OF_EQUALS[name]
             return a if folded is None else folded
@@ -349,7 +362,29 @@ class Graph:
             return if_true if condition else if_false
         if if_true is if_false or _same_number(if_true, if_false):
             return if_true
+        if len({x.graph for x in (condition, if_true, if_false) if type(x) is Node}) > 1:
+            return _united(Graph.select, condition, if_true, if_false)
         return self.held("select", (condition, if_true, if_false))
+
+    def adopted(self, a: Scalar) -> Scalar:
+        """A constant such as sqrt(2) or cos(3/10) as a node of this graph."""
+        if type(a) is not Node or a.graph is self:
+            return a
+        if a.graph is not CONSTANTS:
+            raise TypeError("two expressions of different graphs cannot be combined")
+        if a.op == "pi":
+            return self.pi
+        return self.held(a.op, tuple(self.adopted(x) for x in a.args))
+
+
+CONSTANTS = Graph()
+"""Home of what functions give at exact numbers, sqrt(2) or cos(3/10), until it meets an expression of a graph."""
+
+
+def _united(operation: Callable[..., Scalar], *args: Scalar) -> Scalar:
+    """The operation on constants and expressions of one graph, in that graph."""
+    home = next(a.graph for a in args if type(a) is Node and a.graph is not CONSTANTS)
+    return operation(home, *(home.adopted(a) for a in args))
 
 
 def _coefficient(x: Node) -> tuple[Number, Node]:

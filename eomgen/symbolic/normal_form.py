@@ -7,12 +7,13 @@ a number of products of terms; where it is not enough, what is readable stays as
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.derivative import depends_on, substituted, tangent
+from eomgen.symbolic.evaluation import united
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion, expanded
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
@@ -20,7 +21,7 @@ from eomgen.symbolic.quotient import reduced
 from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, times
 from eomgen.symbolic.writing import Writer, is_rate
 
-LIMIT = 200_000
+LIMIT = 50_000
 
 __all__ = [
     "LIMIT",
@@ -45,7 +46,7 @@ class NormalForm:
         terms: ((monomial, wave), coefficient), ascending.
     """
 
-    graph: Graph
+    graph: Graph = field(compare=False)
     terms: tuple[tuple[Key, Number], ...]
 
     @property
@@ -85,7 +86,7 @@ def equal(a: Scalar, b: Scalar, limit: int = LIMIT) -> bool:
 def _has_relations(expansion: Expansion) -> bool:
     """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
     pi = expansion.graph.pi.index
-    return pi in expansion.atoms or any(opaque.op != "sum" for opaque in expansion.opaque.values())
+    return pi in expansion.atoms.nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
 
 
 def readable(x: Scalar, limit: int = LIMIT) -> Scalar:
@@ -99,7 +100,8 @@ def readable(x: Scalar, limit: int = LIMIT) -> Scalar:
 
 def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT) -> tuple[Scalar, ...]:
     """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
-    expansion, _ = expanded(outputs[:0], limit) if not outputs else (_expansion(outputs, limit), None)
+    graph, outputs = united(outputs)
+    expansion = Expansion(graph, limit)
     writer = Writer(expansion)
     written = []
     for x in outputs:
@@ -109,10 +111,6 @@ def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT) -> tuple[Scalar,
         except TooLarge:
             written.append(x)
     return tuple(written)
-
-
-def _expansion(outputs: Iterable[Scalar], limit: int) -> Expansion:
-    return Expansion(next((x.graph for x in outputs if type(x) is Node), None) or Graph(), limit)
 
 
 def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = LIMIT) -> dict[Node | None, Scalar]:
@@ -132,7 +130,7 @@ def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = LIMIT) -> dict
 
 def _linear_parts(expansion: Expansion, terms: Terms, symbols: Sequence[Node]) -> dict[Node | None, Terms]:
     by_index = {symbol.index: symbol for symbol in symbols}
-    inside = [a for opaque in expansion.opaque.values() for a in opaque.arguments]
+    inside = [a for opaque in expansion.atoms.opaque.values() for a in opaque.arguments]
     if any(atom in by_index for a in inside for monomial, _ in a for atom, _ in monomial):
         raise _not_linear(symbols)
     parts: dict[Node | None, Terms] = {symbol: {} for symbol in (*symbols, None)}
@@ -169,8 +167,8 @@ def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT) -> Scalar:
     except TooLarge:
         return 1
     together: Terms = {}
-    for i, terms in enumerate(forms):  # the waves keep equal monomials of different outputs apart
-        together |= {(monomial, ("cos", ((i, n),))): c for n, ((monomial, _), c) in enumerate(terms.items())}
+    for terms in forms:
+        together |= {(monomial, ()): 1 for monomial, _ in terms}
     if not together:
         return 1
     common = tuple((atom, e) for atom, e in common_monomial(together) if _is_still(expansion, atom))
@@ -179,7 +177,7 @@ def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT) -> Scalar:
 
 
 def _is_still(expansion: Expansion, atom: int) -> bool:
-    node = expansion.atoms[atom]
+    node = expansion.atoms.nodes[atom]
     return node.op == "symbol" and not is_rate(node)
 
 

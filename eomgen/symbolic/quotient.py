@@ -35,7 +35,7 @@ def _fraction(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     numerator, powers = expansion.cleared(terms)
     denominator = constant(1)
     for atom, e in powers.items():
-        denominator = expansion.product(denominator, expansion.power(expansion.opaque[atom].arguments[0], e))
+        denominator = expansion.product(denominator, expansion.power(expansion.atoms.opaque[atom].arguments[0], e))
     for part in (numerator, denominator):
         below = tuple((atom, -e) for atom, e in common_monomial(part) if e < 0)
         if below:

@@ -70,6 +70,19 @@ class Unit:
         factor = self.factor.numerator if self.factor.denominator == 1 else self.factor
         return factor * pi**self.pi_power if self.pi_power else factor
 
+    @property
+    def si(self) -> str:
+        """The SI unit of the same kind, as text: m for cm, rad/s for deg/s."""
+        if self.factor == 1 and not self.pi_power:
+            return self.text
+        if self.dimension in _SI_NAMES:
+            return _SI_NAMES[self.dimension]
+        powers = (("rad", min(self.angle, 1)), ("kg", self.mass), ("m", self.length), ("s", self.time))
+        above = [name if n == 1 else f"{name}^{n}" for name, n in powers if n > 0]
+        below = [name if n == -1 else f"{name}^{-n}" for name, n in powers if n < 0]
+        under = f"/({'*'.join(below)})" if len(below) > 1 else f"/{below[0]}" if below else ""
+        return ("*".join(above) or "1") + under
+
     def expression_in_si(self, expression: Expression) -> Expression:
         """What a user wrote in this unit, in SI: 40 cm is 2/5, 90 deg is 1/2*pi."""
         return expression.scaled(self.factor, self.pi_power)
@@ -89,6 +102,9 @@ class Unit:
 
     def _made(self, factor: Fraction, *exponents: int) -> Unit:
         return Unit(self.text, factor, *exponents)
+
+
+_SI_NAMES = {(1, 1, -2): "N", (2, 1, -3): "W", (-1, 1, -2): "Pa"}
 
 
 def _table() -> dict[str, Unit]:

@@ -14,14 +14,14 @@ class Writer:
     """Writes the terms of one expansion as nodes of its graph."""
 
     def __init__(self, expansion: Expansion) -> None:
-        self.expansion, self.graph = expansion, expansion.graph
-        self._atoms: dict[int, Scalar] = {}
+        self.atoms, self.graph = expansion.atoms, expansion.graph
+        self._written_atoms: dict[int, Scalar] = {}
 
     def sum(self, terms: Terms) -> Scalar:
         """The terms added up; those over one divisor share one fraction."""
         parts: dict[Monomial, Terms] = {}
         for (monomial, w), c in terms.items():
-            below = tuple((atom, e) for atom, e in monomial if e < 0 and self._is_sum(atom))
+            below = tuple((atom, e) for atom, e in monomial if e < 0 and self.atoms.is_a(atom, "sum"))
             above = tuple(item for item in monomial if item not in below)
             parts.setdefault(below, {})[above, w] = c
         total: Scalar = 0
@@ -42,9 +42,6 @@ class Writer:
         """Whether the first term as written has a minus sign."""
         return bool(terms) and self._written(terms)[0][0] < 0
 
-    def _is_sum(self, atom: int) -> bool:
-        return atom in self.expansion.opaque and self.expansion.opaque[atom].op == "sum"
-
     def _divisor(self, below: Monomial) -> Scalar:
         product: Scalar = 1
         for atom, e in below:
@@ -63,53 +60,30 @@ class Writer:
             groups.setdefault(monomial, {})[w] = c
         return [
             (c, monomial, factors)
-            for monomial in sorted(groups, key=self._place)
+            for monomial in sorted(groups, key=self.atoms.place)
             for c, factors in shortest(groups[monomial])
         ]
-
-    def _place(self, monomial: Monomial) -> tuple:
-        """Accelerations before squares of rates before rates before the rest; then in the order of declaration."""
-        moving: tuple[list, list, list] = ([], [], [])
-        for atom, e in monomial:
-            moving[min(2, self._primes(atom))].append((atom, -e))
-        still, rates, accelerations = moving
-        degrees = (sum(e for _, e in accelerations), sum(e for _, e in rates))
-        return (*degrees, tuple(accelerations), tuple(rates), tuple(still))
-
-    def _primes(self, atom: int) -> int:
-        node = self.expansion.atoms.get(atom)
-        if node is None or node.op != "symbol":
-            return 0
-        return len(node.name) - len(node.name.rstrip("'"))
 
     def _term(self, c: Number, monomial: Monomial, factors: Factors) -> Scalar:
         above, below = self._monomial(monomial)
         for kind, angle, e in factors:
-            above = self.graph.mul(above, self.graph.pow(self.expansion.wave_node(kind, angle), e))
+            above = self.graph.mul(above, self.graph.pow(self.atoms.wave_node(kind, angle), e))
         return self.graph.mul(c, self.graph.div(above, below))
-
-    def _monomial(self, monomial: Monomial) -> tuple[Scalar, Scalar]:
-        above: Scalar = 1
-        below: Scalar = 1
-        for atom, e in monomial:
-            if atom < 0:
-                above = self.graph.mul(above, self.graph.sqrt(-atom))
-            elif e > 0:
-                above = self.graph.mul(above, self.graph.pow(self._atom(atom), e))
-            else:
-                below = self.graph.mul(below, self.graph.pow(self._atom(atom), -e))
-        return above, below
 
     def _atom(self, atom: int) -> Scalar:
         """The atom, the arguments of a function written out."""
-        if atom not in self._atoms:
-            opaque = self.expansion.opaque.get(atom)
-            node: Scalar = self.expansion.atoms[atom]
+        if atom not in self._written_atoms:
+            opaque = self.atoms.opaque.get(atom)
+            node: Scalar = self.atoms.nodes[atom]
             if opaque is not None:
                 arguments = [self.sum(a) for a in opaque.arguments]
                 node = arguments[0] if opaque.op == "sum" else self._applied(opaque.op, arguments)
-            self._atoms[atom] = node
-        return self._atoms[atom]
+            self._written_atoms[atom] = node
+        return self._written_atoms[atom]
+
+    def _monomial(self, monomial: Monomial) -> tuple[Scalar, Scalar]:
+        """(numerator, denominator)"""
+        return self.atoms.monomial_nodes(monomial, {atom: self._atom(atom) for atom, _ in monomial if atom >= 0})
 
     def _applied(self, op: str, arguments: list[Scalar]) -> Scalar:
         if op == "select":

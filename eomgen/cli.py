@@ -1,0 +1,249 @@
+"""The command line: verbs, their options, and the conventions that all of them share. No physics.
+
+Results go to stdout, everything else to stderr. Exit codes: 0 ok, 1 the model is wrong, 2 usage,
+3 derivation or run failed, 4 an optional tool is missing. What a verb needs is imported inside it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eomgen.errors import EomgenError, ModelError, Problem
+from eomgen.version import __version__
+
+if TYPE_CHECKING:
+    from eomgen.model.parts import Model
+    from eomgen.verbs.outcome import Outcome
+
+SCHEMA_VERSION = 1
+INTERRUPTED = 130  # as a shell has it for Ctrl-C
+CLOSED_PIPE = 141  # as a shell has it for a reader that went away
+LATER = ("reactions", "statics", "kinematics", "linearize", "verify", "inertia", "sweep")
+FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
+
+
+class Verbs(click.Group):
+    """The group of all verbs: what goes wrong in any of them becomes a message and an exit code."""
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        name = args[0]
+        if not name.startswith("-") and self.get_command(ctx, name) is None:
+            raise click.UsageError(_unknown_verb(name, self.list_commands(ctx)), ctx)
+        return super().resolve_command(ctx, args)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)  # in the order in which they are used
+
+    def main(self, args: Any = None, prog_name: str | None = None, *rest: Any, **extra: Any) -> Any:
+        if not extra.pop("standalone_mode", True):
+            return super().main(args, prog_name, *rest, standalone_mode=False, **extra)
+        words = list(sys.argv[1:] if args is None else args)
+        sys.exit(self._run(words, prog_name or "eomgen", extra))
+
+    def _run(self, words: list[str], prog_name: str, extra: dict[str, Any]) -> int:
+        wants_json = "--json" in words
+        try:
+            return super().main(words, prog_name, standalone_mode=False, **extra) or 0
+        except click.ClickException as error:
+            error.show()
+            return _told(error.exit_code, (Problem("", error.format_message()),), wants_json)
+        except EomgenError as error:
+            click.echo(str(error), err=True)
+            return _told(error.exit_code, _problems(error), wants_json)
+        except (click.Abort, KeyboardInterrupt):
+            return INTERRUPTED
+
+
+def _unknown_verb(name: str, verbs: list[str]) -> str:
+    import difflib
+
+    if name in LATER:
+        return f"'{name}' comes with a later version."
+    near = difflib.get_close_matches(name, verbs, n=1)
+    return f"There is no command '{name}'." + (f" Did you mean '{near[0]}'?" if near else "")
+
+
+def _problems(error: EomgenError) -> tuple[Problem, ...]:
+    if isinstance(error, ModelError):
+        return error.problems
+    return (Problem(error.where, error.what, mend=error.mend),)
+
+
+def _told(code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
+    """The problems for machines, where they are asked for."""
+    if wants_json:
+        error = {"exit_code": code, "problems": [_as_dict(problem) for problem in problems]}
+        _say(json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, ensure_ascii=False, indent=1) + "\n")
+    return code
+
+
+def _as_dict(problem: Problem) -> dict[str, Any]:
+    """A problem with its place taken apart: file, line and column where there are any."""
+    file, line, column = (*problem.where.rsplit(":", 2), "", "")[:3]
+    placed = line.isdigit() and column.isdigit()
+    return {
+        "where": problem.where, "file": file if placed else None, "line": int(line) if placed else None,
+        "column": int(column) if placed else None, "what": problem.what, "excerpt": problem.excerpt,
+        "mend": problem.mend,
+    }  # fmt: skip
+
+
+def _say(text: str) -> None:
+    """On stdout; a reader that went away ends the program quietly."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left in the buffer goes nowhere
+        sys.exit(CLOSED_PIPE)
+
+
+def _deliver(outcome: Outcome, wants_json: bool, output: str | None = None) -> int:
+    """The result to stdout or into a file, the rest to stderr; the exit code."""
+    from eomgen.verbs.outcome import write_text
+
+    result = outcome.json if wants_json else outcome.text
+    if output is None:
+        _say(result)
+    else:
+        write_text(output, result)
+    for line in (*outcome.notes, outcome.failed):
+        if line:
+            click.echo(line, err=True)
+    return 3 if outcome.failed else 0
+
+
+def _model(path: str) -> Model:
+    from eomgen.model.reader import load, loads
+
+    return loads(sys.stdin.buffer.read(), "<stdin>") if path == "-" else load(path)
+
+
+# -- the verbs -------------------------------------------------------------------------------------
+
+MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
+JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
+OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
+
+
+def _common(function: Callable[..., int]) -> Callable[..., int]:
+    return MODEL(JSON(OUTPUT(function)))
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="eomgen")
+def main() -> None:
+    """Equations of motion of mechanical systems: derived, certified, typeset, simulated, compiled.
+
+    MODEL is a text file that declares the system (- reads it from stdin); begin with `eomgen new NAME`.
+    """
+
+
+@main.command()
+@click.argument("name")
+@JSON
+def new(name: str, wants_json: bool) -> int:
+    """Write a commented starter model NAME.toml."""
+    from eomgen.verbs.new import new as made
+
+    return _deliver(made(name), wants_json)
+
+
+@main.command()
+@_common
+def check(model: str, wants_json: bool, output: str | None) -> int:
+    """Validate a model; count its degrees of freedom."""
+    from eomgen.verbs.check import check as checked
+
+    return _deliver(checked(_model(model)), wants_json, output)
+
+
+@main.command()
+@_common
+@click.option("--method", type=click.Choice(["lagrange", "projection"]), default="lagrange", show_default=True)
+@click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
+              help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
+@click.option("--no-certify", is_flag=True, help="Make no certificate.")
+def derive(
+    model: str, wants_json: bool, output: str | None, method: str, format_: str | None, no_certify: bool
+) -> int:
+    """Derive the equations of motion, step by step, with their certificate."""
+    from eomgen.verbs.derive import derive as derived
+
+    chosen = format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
+    wants_json = wants_json or chosen == "json"
+    outcome = derived(_model(model), method=method, format="json" if wants_json else chosen, certify=not no_certify)
+    return _deliver(outcome, wants_json, output)
+
+
+@main.command()
+@_common
+def solve(model: str, wants_json: bool, output: str | None) -> int:
+    """Answer every entry of [outputs], exactly and as a number."""
+    from eomgen.verbs.solve import solve as solved
+
+    return _deliver(solved(_model(model)), wants_json, output)
+
+
+@main.command()
+@MODEL
+@JSON
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
+@click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
+@click.option("--set", "given", multiple=True, metavar="NAME=VALUE", help="Another value of a parameter.")
+@click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
+@click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of a step.")
+@click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of a step.")
+@click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
+@click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
+def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -> int:
+    """Integrate the motion from the start; energy drift is reported."""
+    from eomgen.verbs.simulate import simulate as simulated
+
+    outcome = simulated(_model(model), output=output, **options)
+    if output and not wants_json:
+        click.echo(outcome.text, err=True, nl=False)
+        return _deliver(type(outcome)("", failed=outcome.failed), False)
+    return _deliver(outcome, wants_json)
+
+
+@main.command()
+@MODEL
+@JSON
+@click.option("--target", type=click.Choice(["numpy", "c"]), required=True, help="Language of the files.")
+@click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
+def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
+    """Write the right-hand side as files that compile as they are, with test vectors."""
+    from eomgen.verbs.codegen import codegen as generated
+
+    stem = "model" if model == "-" else Path(model).stem
+    outcome = generated(_model(model), stem=stem, origin=Path(model).name, target=target, directory=output)
+    return _deliver(outcome, wants_json)
+
+
+@main.command()
+@JSON
+@OUTPUT
+def schema(wants_json: bool, output: str | None) -> int:
+    """Write the JSON Schema of a model file, for editors."""
+    from eomgen.verbs.schema import schema as written
+
+    return _deliver(written(), wants_json, output)
+
+
+@main.command()
+@JSON
+@OUTPUT
+def doctor(wants_json: bool, output: str | None) -> int:
+    """Tell what this machine can do."""
+    from eomgen.verbs.doctor import doctor as examined
+
+    return _deliver(examined(), wants_json, output)

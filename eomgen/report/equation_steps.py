@@ -1,0 +1,192 @@
+"""Both sides of each equation -> the last steps: equations of motion, divided and printed, and solved where small."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.system import System
+from eomgen.report.bounded import elsewhere, page
+from eomgen.report.reading import LONGEST, WORK, Shortened, free_names, read, shortened, shown
+from eomgen.report.statements import Equation, Formula, Piece, Prose, Statement, Step
+from eomgen.symbolic.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.evaluation import operations
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import cancelled, common_factor, readable
+from eomgen.symbolic.text import text_size
+
+SOLVED = 3  # accelerations that are solved for by hand, at most
+NAMED_PART = 160  # characters of a formula in which long parts have names
+QUOTIENT = 200  # characters of a solved acceleration in one line, numerator over denominator
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Inertia and forces of one equation: left = M a + c, right = Q + J^T lam."""
+
+    left: Scalar
+    right: Scalar
+
+
+@dataclass(frozen=True)
+class Result:
+    """The equations as printed, and the steps that print them."""
+
+    equations: tuple[Equation, ...]
+    definitions: tuple[tuple[Node, Scalar], ...]
+    steps: tuple[Step, ...]
+
+
+def multiplier_forces(assembly: Assembly) -> tuple[Scalar, ...]:
+    """J^T lam, one entry a speed."""
+    size = len(assembly.symbols.u)
+    return tuple(
+        sum((row[k] * lam for row, lam in zip(assembly.J, assembly.symbols.lam, strict=True)), start=0)
+        for k in range(size)
+    )
+
+
+def sides_of(assembly: Assembly, M: Sequence[Sequence[Scalar]], c: Sequence[Scalar], Q: Sequence[Scalar]) -> list[Sides]:
+    """M a + c = Q + J^T lam, row by row."""
+    rows = []
+    for k, force in enumerate(multiplier_forces(assembly)):
+        inertia = sum((m * a for m, a in zip(M[k], assembly.symbols.a, strict=True)), start=c[k])
+        rows.append(Sides(inertia, Q[k] + force))
+    return rows
+
+
+def equations_of(system: System, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]) -> Result:
+    """The equations of motion, divided by what is common, and the accelerations where that is short.
+
+    Args:
+        sides: of each equation, as the method gave them.
+        rule: the law by which they come, in words.
+    """
+    if not sides:
+        return Result((), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),))
+    equations = _readable(assembly, sides)
+    definitions: tuple[tuple[Node, Scalar], ...] = ()
+    statements: list[Statement] = [Prose(rule)]
+    if equations is None:
+        found = _named(assembly)
+        if found is None:
+            count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
+            return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
+        equations, definitions = found
+        statements.append(Prose(("With the names",)))
+        statements += [Formula(pair) for pair in definitions]
+    statements += _printed(system, equations)
+    statements += _closing(assembly)
+    steps = [Step("equations", "Equations of motion", tuple(statements))]
+    if not definitions:
+        steps += _solved(system, assembly, equations)
+    return Result(tuple(equations), definitions, tuple(steps))
+
+
+def _readable(assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
+    """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
+    equations = []
+    for u, row in zip(assembly.symbols.u, sides, strict=True):
+        left, right = read(row.left), read(row.right)
+        if left is None or right is None or text_size(left) + text_size(right) > LONGEST:
+            return None
+        divisor = common_factor((left, right), WORK)
+        if is_zero(divisor):
+            divisor = 1
+        equations.append(Equation(u, readable(left / divisor, WORK), readable(right / divisor, WORK), divisor))
+    return equations
+
+
+def _named(assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
+    """The shortest form of the equations with named sub-expressions; None where even that is too long."""
+    graph = assembly.symbols.graph
+    bias = [-f for f in assembly.forcing]
+    sides = sides_of(assembly, assembly.M, bias, [0] * len(bias))
+    taken = {node.name for node in _symbols(assembly)}
+    found: Shortened | None = shortened(graph, [x for row in sides for x in (row.left, row.right)], NAMED_PART, taken)
+    if found is None:
+        return None
+    texts = iter(found.expressions)
+    return [Equation(u, next(texts), next(texts)) for u in assembly.symbols.u], found.definitions
+
+
+def _symbols(assembly: Assembly) -> tuple[Node, ...]:
+    s = assembly.symbols
+    return (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+
+
+def _printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
+    statements: list[Statement] = []
+    for equation in equations:
+        if type(equation.divisor) is Node or equation.divisor != 1:
+            statements.append(Prose(_divided(system, equation)))
+        statements.append(Formula((equation.left, equation.right)))
+    return statements
+
+
+def _divided(system: System, equation: Equation) -> tuple[Piece, ...]:
+    """What the equation was divided by, and that it must not vanish where it can."""
+    symbols = system.symbols
+    moving = isinstance(equation.divisor, Node) and depends_on(equation.divisor, symbols.q)
+    divisor: Piece = equation.divisor if isinstance(equation.divisor, Node) else str(equation.divisor)
+    words = " (where it is not zero):" if moving else ":"
+    return ("For ", equation.speed, ", divided by ", divisor, words)
+
+
+def _closing(assembly: Assembly) -> list[Statement]:
+    """J a + gamma = 0, for each closing row."""
+    rows = []
+    for row, gamma in zip(assembly.J, assembly.gamma, strict=True):
+        rows.append(sum((j * a for j, a in zip(row, assembly.symbols.a, strict=True)), start=gamma))
+    if not rows:
+        return []
+    words = "The constraints, differentiated until accelerations stand in them:"
+    return [Prose((words,)), *page(Formula((shown(row), 0)) for row in rows)]
+
+
+def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
+    """The accelerations, where there are few and their formulas short: by Cramer's rule."""
+    if assembly.J or len(equations) > SOLVED:
+        return []
+    a = assembly.symbols.a
+    M = [[_coefficient(e.left, x) for x in a] for e in equations]
+    rest = [readable(e.right - _without(e.left, a), WORK) for e in equations]
+    determinant = readable(_determinant(M), WORK)
+    if is_zero(determinant):
+        return []
+    numerators = [readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))]
+    quotients = [cancelled(x / determinant, WORK) for x in numerators]
+    if all(text_size(x) <= QUOTIENT for x in quotients):
+        return [Step("solved", "Accelerations", tuple(Formula(pair) for pair in zip(a, quotients, strict=True)))]
+    if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:
+        return []
+    taken = {node.name for node in _symbols(assembly)}
+    symbol = assembly.symbols.graph.symbol("D" if "D" not in taken else free_names("D", 1, taken.__contains__)[0])
+    formulas = [Formula((symbol, determinant))]
+    formulas += [Formula((symbol * x, n)) for x, n in zip(a, numerators, strict=True)]
+    words = Prose(("By Cramer's rule, with the determinant of the equations",))
+    return [Step("solved", "Accelerations", (words, *formulas))]
+
+
+def _coefficient(x: Scalar, a: Node) -> Scalar:
+    return derivative(x, a)
+
+
+def _without(x: Scalar, accelerations: Sequence[Node]) -> Scalar:
+    return substituted((x,), dict.fromkeys(accelerations, 0))[0]
+
+
+def _determinant(M: Sequence[Sequence[Scalar]]) -> Scalar:
+    """By the first row; for the few rows that are solved here."""
+    if not M:
+        return 1
+    total: Scalar = 0
+    for k, x in enumerate(M[0]):
+        minor = [[*row[:k], *row[k + 1 :]] for row in M[1:]]
+        total = total + (-1) ** k * x * _determinant(minor)
+    return total
+
+
+def _replaced(M: Sequence[Sequence[Scalar]], column: int, by: Sequence[Scalar]) -> list[list[Scalar]]:
+    return [[*row[:column], x, *row[column + 1 :]] for row, x in zip(M, by, strict=True)]

@@ -1,0 +1,204 @@
+"""Derivation -> a complete LaTeX document that compiles as it stands, and its equations alone for notebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.report.latex_lines import aligned, rows_of
+from eomgen.report.latex_math import Set, Setter, width_of
+from eomgen.report.latex_names import escaped, notation, upright
+from eomgen.report.statements import (
+    Code,
+    Derivation,
+    Entry,
+    Formula,
+    Law,
+    Name,
+    Omitted,
+    Partial,
+    Piece,
+    Prose,
+    Rate,
+    Side,
+    Statement,
+    Table,
+)
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.graph import Node, Scalar
+
+name = "latex"
+
+PREAMBLE = r"""\documentclass{article}
+\usepackage[T1]{fontenc}
+\usepackage[utf8]{inputenc}
+\usepackage{amsmath}
+\usepackage{longtable}
+\usepackage[margin=25mm]{geometry}
+\setlength{\parindent}{0pt}
+\allowdisplaybreaks
+"""
+BLOCK = 12  # rows of one aligned block, which no page break can divide
+LETTERS = {
+    "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
+    "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
+    "omega_z": r"\omega_{z", "gap": r"\phi_{", "couple": r"\tau_{",
+}  # fmt: skip
+"""letter -> how it begins, its subscript opened"""
+
+
+def setter_of(derivation: Derivation) -> Setter:
+    """One notation for the symbols of the whole derivation."""
+    names: dict[str, None] = {}
+    for step in derivation.steps:
+        for statement in step.statements:
+            names |= dict.fromkeys(symbol.name for symbol in symbols_in(statement))
+    return Setter(notation(names))
+
+
+def symbols_in(statement: Statement) -> list[Node]:
+    """The symbols that stand in the formulas of a statement."""
+    if isinstance(statement, Formula):
+        parts: Sequence[object] = statement.sides
+    else:
+        parts = statement.pieces if isinstance(statement, Prose) else [row.symbol for row in statement.rows]
+    found: list[Node] = []
+    for part in parts:
+        found += _symbols(part)
+    return [node for node in order(found) if node.op == "symbol"]
+
+
+def _symbols(part: object) -> list[Node]:
+    if isinstance(part, Node):
+        return [part]
+    if isinstance(part, Name):
+        return [] if part.by is None else [part.by]
+    if isinstance(part, Entry):
+        return [part.row, part.column]
+    if isinstance(part, Partial):
+        return [*_symbols(part.of), part.by]
+    return _symbols(part.of) if isinstance(part, Rate) else []
+
+
+def render(derivation: Derivation) -> str:
+    """The derivation as a document."""
+    setter = setter_of(derivation)
+    lines = [PREAMBLE + r"\begin{document}", rf"\section*{{{escaped(derivation.title)}}}"]
+    if derivation.about:
+        lines.append(escaped(derivation.about) + "\n")
+    if derivation.source:
+        lines.append(f"Source: {escaped(derivation.source)}.\n")
+    for step in derivation.steps:
+        lines.append(rf"\subsection*{{{escaped(step.title)}}}")
+        lines += statement_blocks(setter, step.statements)
+    return "\n".join([*lines, r"\end{document}"]) + "\n"
+
+
+def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
+    """Paragraphs, displays and tables; formulas that follow one another are aligned together."""
+    blocks: list[str] = []
+    for group in grouped(statements):
+        if isinstance(group, list):
+            blocks += ["\\[\n" + block + "\n\\]" for block in display_blocks(setter, group)]
+        elif isinstance(group, Prose):
+            blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + "\n")
+        else:
+            blocks.append(_table(setter, group))
+    return blocks
+
+
+def grouped(statements: Sequence[Statement]) -> list[Prose | Table | list[Formula]]:
+    """The statements, formulas in a row taken together."""
+    groups: list[Prose | Table | list[Formula]] = []
+    for statement in statements:
+        if not isinstance(statement, Formula):
+            groups.append(statement)
+        elif groups and isinstance(groups[-1], list):
+            groups[-1].append(statement)
+        else:
+            groups.append([statement])
+    return groups
+
+
+def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
+    """The formulas in aligned blocks of a few rows each."""
+    blocks: list[list[str]] = [[]]
+    for formula in formulas:
+        rows = rows_of(setter, [_side(setter, side) for side in formula.sides])
+        if blocks[-1] and len(blocks[-1]) + len(rows) > BLOCK:
+            blocks.append([])
+        blocks[-1] += rows
+    return [aligned(rows) for rows in blocks if rows]
+
+
+def equations_latex(derivation: Derivation) -> str:
+    """The equations of motion in one display, for Jupyter: $$ aligned $$."""
+    setter = setter_of(derivation)
+    formulas = [Formula(pair) for pair in derivation.definitions]
+    formulas += [Formula((equation.left, equation.right)) for equation in derivation.equations]
+    if not formulas:
+        return r"$$\text{The equations are too long to print.}$$"
+    rows = [row for formula in formulas for row in rows_of(setter, list(formula.sides))]
+    return f"$${aligned(rows)}$$"
+
+
+def piece_latex(setter: Setter, piece: Piece, escape) -> str:
+    """One piece of a sentence, formulas between dollars."""
+    if isinstance(piece, str):
+        return escape(piece)
+    if isinstance(piece, Code):
+        return rf"\texttt{{{escape(piece.text)}}}"
+    return f"${side_latex(setter, piece)}$"
+
+
+def side_latex(setter: Setter, side: Side) -> str:
+    """One side of a formula."""
+    found = _side(setter, side)
+    return found.tex if isinstance(found, Set) else setter.set(found).tex
+
+
+def _side(setter: Setter, side: Side) -> Set | Scalar:
+    """A scalar as it is; a quantity as set."""
+    if isinstance(side, (Name, Entry, Partial, Rate)):
+        tex = _quantity(setter, side)
+        return Set(tex, width_of(tex))
+    if isinstance(side, Omitted):
+        return Set(rf"\text{{({side.operations} operations, not printed)}}", 32)
+    return Set(side.latex, width_of(side.latex)) if isinstance(side, Law) else side
+
+
+def _quantity(setter: Setter, side: Name | Entry | Partial | Rate) -> str:
+    if isinstance(side, Name):
+        return _name(setter, side)
+    if isinstance(side, Entry):
+        return f"{side.letter}_{{{_symbol(setter, side.row)},{_symbol(setter, side.column)}}}"
+    if isinstance(side, Partial):
+        sign = "-" if side.sign < 0 else ""
+        return rf"{sign}\frac{{\partial {_name(setter, side.of)}}}{{\partial {_symbol(setter, side.by)}}}"
+    if isinstance(side.of, Node):
+        return rf"\dot{{{_symbol(setter, side.of)}}}"
+    return rf"\frac{{d}}{{dt}} {_quantity(setter, side.of)}"
+
+
+def _name(setter: Setter, quantity: Name) -> str:
+    """x_{arm}, v_{x,arm}, Q_{theta}: a mass centre goes by the name of its body."""
+    begin = LETTERS.get(quantity.letter, quantity.letter + "_{")
+    inside = [] if quantity.by is None else [_symbol(setter, quantity.by)]
+    inside += [upright(quantity.of.removesuffix(".center"))] if quantity.of else []
+    opened = not begin.endswith("{")
+    tex = begin + ("," if opened and inside else "") + ",".join(inside) + "}"
+    tex = tex.replace("_{}", "")
+    return tex if quantity.power == 1 else f"{tex}^{{{quantity.power}}}"
+
+
+def _symbol(setter: Setter, symbol: Node) -> str:
+    return setter.set(symbol).tex
+
+
+def _table(setter: Setter, table: Table) -> str:
+    """A table that may go over pages."""
+    head = " & ".join(escaped(cell) for cell in table.head)
+    lines = [r"\begin{longtable}{@{}lp{85mm}ll@{}}", head + r" \\ \hline \endhead"]
+    for row in table.rows:
+        cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
+        lines.append(" & ".join(cells) + r" \\")
+    return "\n".join([*lines, r"\end{longtable}"])

@@ -1,0 +1,61 @@
+"""Derivation -> Markdown with formulas between dollars, as notebooks and code forges show it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex
+from eomgen.report.latex_math import Setter
+from eomgen.report.statements import Code, Derivation, Piece, Prose, Statement, Table
+
+name = "markdown"
+
+_SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|$~^])")
+
+
+def render(derivation: Derivation) -> str:
+    """The derivation as Markdown."""
+    setter = setter_of(derivation)
+    blocks = [f"# {escaped(derivation.title)}"]
+    blocks += [escaped(text) for text in (derivation.about,) if text]
+    blocks += [f"Source: {escaped(derivation.source)}."] if derivation.source else []
+    for step in derivation.steps:
+        blocks.append(f"## {escaped(step.title)}")
+        blocks += statement_blocks(setter, step.statements)
+    return "\n\n".join(blocks) + "\n"
+
+
+def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
+    """Paragraphs, displays and tables."""
+    blocks: list[str] = []
+    for group in grouped(statements):
+        if isinstance(group, list):
+            blocks += [f"$$\n{block}\n$$" for block in display_blocks(setter, group)]
+        elif isinstance(group, Prose):
+            blocks.append("".join(_piece(setter, piece) for piece in group.pieces))
+        else:
+            blocks.append(_table(setter, group))
+    return blocks
+
+
+def escaped(text: str) -> str:
+    """Plain text for Markdown: nothing in it is markup, and it stays on its line."""
+    return " ".join(_SPECIAL.sub(r"\\\1", text).split())
+
+
+def _piece(setter: Setter, piece: Piece) -> str:
+    if isinstance(piece, Code):
+        return f"`{piece.text}`"
+    if isinstance(piece, str):  # blanks at the ends join the pieces
+        return _SPECIAL.sub(r"\\\1", piece)
+    return piece_latex(setter, piece, escaped)
+
+
+def _table(setter: Setter, table: Table) -> str:
+    """A table with all four columns."""
+    lines = ["| " + " | ".join(table.head) + " |", "|---|---|---|---|"]
+    for row in table.rows:
+        cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)

@@ -1,0 +1,115 @@
+"""System -> the steps about motion: positions, velocities, constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from eomgen.mechanics.inertia import BodyEnergy, mass_properties
+from eomgen.mechanics.kinematics import Link
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import Row
+from eomgen.model.forces.load import PointForce
+from eomgen.report.bounded import page
+from eomgen.report.reading import shown
+from eomgen.report.statements import Formula, Meaning, Name, Prose, Rate, Statement, Step, Table
+from eomgen.symbolic.graph import Node, is_zero
+from eomgen.symbolic.spatial import Vector, dot
+
+AXES = "xyz"
+
+
+def axes(system: System) -> str:
+    """The letters of the axes: xy in the plane."""
+    return AXES[:2] if system.scope.model.space == "plane" else AXES
+
+
+def positions_step(system: System) -> Step:
+    """Where the mass centres are, how the bodies stand, where given forces act."""
+    motion = system.motion
+    formulas: list[Formula] = []
+    for link in motion.links:
+        body = mass_properties(system.scope, link.name)
+        if not is_zero(body.m):
+            at = motion.position((link.name, body.com))
+            formulas += components(system, "", f"{link.name}.center", at)
+        if _turns(link):
+            formulas.append(Formula((Name("angle", link.name), shown(link.angle))))  # type: ignore[arg-type]
+    for name, point in points_of_forces(system):
+        formulas += components(system, "", name, point)
+    statements: list[Statement] = [Prose(("The mass centres, and the angles of the bodies against the x axis:"
+                                          if len(axes(system)) == 2 else "The mass centres:",)), *page(formulas)]
+    return Step("positions", "Positions", tuple(statements))
+
+
+def _turns(link: Link) -> bool:
+    return isinstance(link.angle, Node)
+
+
+def components(system: System, prefix: str, of: str, vector: Vector) -> list[Formula]:
+    """One formula for each component; `prefix` is "v" for velocities."""
+    return [Formula((Name(prefix + axis, of), shown(x))) for axis, x in zip(axes(system), vector, strict=False)]
+
+
+def points_of_forces(system: System) -> Iterator[tuple[str, Vector]]:
+    """(name of the force, where it acts) of every force at a point of a body that has no potential."""
+    for force in system.loads.applied:
+        if force.potential is None:
+            places = [load.place for load in force.loads if isinstance(load, PointForce) and load.place[0] is not None]
+            for number, place in enumerate(places, start=1):
+                label = force.name if len(places) == 1 else f"{force.name} {number}"
+                yield label, system.motion.position(place)
+
+
+def velocities_step(system: System, energies: tuple[BodyEnergy, ...]) -> Step:
+    """Velocities of the mass centres and angular velocities, by differentiation."""
+    formulas: list[Formula] = []
+    for energy in energies:
+        if not is_zero(mass_properties(system.scope, energy.body).m):
+            of = f"{energy.body}.center"
+            formulas += components(system, "v", of, energy.velocity)
+            formulas.append(Formula((Name("speed", of, power=2), shown(dot(energy.velocity, energy.velocity)))))
+        formulas += spins(system, energy.body, energy.spin)
+    words = "The derivatives of the positions, and the angular velocities"
+    words += ":" if len(axes(system)) == 2 else " in the axes of the bodies:"
+    return Step("velocities", "Velocities", (Prose((words,)), *page(formulas)))
+
+
+def spins(system: System, body: str, spin: Vector) -> list[Formula]:
+    """The angular velocity of a body: one number in the plane, its components in body axes in space."""
+    if len(axes(system)) == 2:
+        return [] if is_zero(spin[2]) else [Formula((Name("omega", body), shown(spin[2])))]
+    if all(is_zero(x) for x in spin):
+        return []
+    return [Formula((Name(f"omega_{axis}", body), shown(x))) for axis, x in zip(AXES, spin, strict=True)]
+
+
+def constraints_step(system: System) -> tuple[Step, ...]:
+    """The constraints: their gaps and rates, and which of them the coordinates satisfy; nothing where there are none."""
+    if not system.ties.rows:
+        return ()
+    statements: list[Statement] = []
+    named = dict(zip((row.label for row in system.ties.closing), system.symbols.lam, strict=True))
+    formulas: list[Formula] = []
+    for row in system.ties.rows:
+        if row.identical:
+            statements.append(Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)))
+        else:
+            formulas.append(_closing(row))
+    if formulas:
+        statements += [Prose(("These must vanish along the motion:",)), *page(formulas)]
+        rows = tuple(
+            Meaning(named[row.label], f"multiplier of {row.tie}, row {row.number}") for row in system.ties.closing
+        )
+        statements.append(Table(("multiplier", "meaning", "unit", ""), rows))
+    return (Step("constraints", "Constraints", tuple(statements)),)
+
+
+def _closing(row: Row) -> Formula:
+    name = _gap_name(row)
+    if row.gap is not None:
+        return Formula((name, shown(row.gap), 0))
+    return Formula((Rate(name), shown(row.velocity), 0))
+
+
+def _gap_name(row: Row) -> Name:
+    return Name("gap", f"{row.tie}, {row.number}")

@@ -1,0 +1,55 @@
+"""Steps -> the last step: what the letters mean that stand for quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from eomgen.report.statements import Entry, Formula, Meaning, Name, Partial, Prose, Rate, Statement, Step, Table
+
+MEANINGS = {
+    "T": ("kinetic energy, of the whole or of a body", "J"),
+    "V": ("potential energy, of the whole or of a force", "J"),
+    "Q": ("generalized force along a coordinate, of everything applied or of one force", ""),
+    "M": ("mass matrix", ""),
+    "c": ("inertia terms that are left when nothing accelerates", ""),
+    "x": ("position along x, ground axes", "m"),
+    "y": ("position along y, ground axes", "m"),
+    "z": ("position along z, ground axes", "m"),
+    "vx": ("velocity along x, ground axes", "m/s"),
+    "vy": ("velocity along y, ground axes", "m/s"),
+    "vz": ("velocity along z, ground axes", "m/s"),
+    "speed": ("magnitude of the velocity", "m/s"),
+    "angle": ("angle of a body against the x axis, counter-clockwise", "rad"),
+    "omega": ("angular velocity of a body, counter-clockwise", "rad/s"),
+    "omega_x": ("angular velocity of a body about its own x axis", "rad/s"),
+    "omega_y": ("angular velocity of a body about its own y axis", "rad/s"),
+    "omega_z": ("angular velocity of a body about its own z axis", "rad/s"),
+    "Fx": ("force along x, ground axes", "N"),
+    "Fy": ("force along y, ground axes", "N"),
+    "Fz": ("force along z, ground axes", "N"),
+    "couple": ("couple on a body, counter-clockwise", "N m"),
+    "gap": ("what a constraint keeps at zero", ""),
+}
+"""letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""
+
+
+def notation_step(steps: Sequence[Step]) -> Step:
+    """The letters that the steps use."""
+    letters = {name.letter for step in steps for statement in step.statements for name in quantities(statement)}
+    rows = tuple(Meaning(Name(letter), *MEANINGS[letter]) for letter in MEANINGS if letter in letters)
+    return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), rows),))
+
+
+def quantities(statement: Statement) -> Iterator[Name]:
+    """The quantities that a statement names."""
+    if isinstance(statement, Formula):
+        parts: Sequence[object] = statement.sides
+    else:
+        parts = statement.pieces if isinstance(statement, Prose) else [row.symbol for row in statement.rows]
+    for part in parts:
+        while isinstance(part, (Partial, Rate)):
+            part = part.of
+        if isinstance(part, Entry):
+            yield Name(part.letter)
+        elif isinstance(part, Name):
+            yield part

@@ -1,0 +1,54 @@
+"""System -> the steps of the projection of Newton-Euler: velocities by twists, M, c and Q as projected wrenches."""
+
+from __future__ import annotations
+
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.kinematics import velocity_of
+from eomgen.mechanics.system import System
+from eomgen.report.bounded import page
+from eomgen.report.motion_steps import components, spins
+from eomgen.report.reading import shown
+from eomgen.report.setting_steps import moved_coordinates
+from eomgen.report.statements import Entry, Formula, Law, Name, Prose, Step
+from eomgen.symbolic.graph import is_zero
+
+BALANCE = Law(
+    "m*a = F, I*epsilon + omega x I*omega = tau",
+    r"m a = F, \quad I \varepsilon + \omega \times I \omega = \tau",
+)
+PROJECTED = Law(
+    "sum (m*a - F)*dv/du_k + (I*epsilon + omega x I*omega - tau)*domega/du_k = 0",
+    r"\sum \left(m a - F\right) \cdot \frac{\partial v}{\partial u_{k}}"
+    r" + \left(I \varepsilon + \omega \times I \omega - \tau\right) \cdot \frac{\partial \omega}{\partial u_{k}} = 0",
+)
+
+
+def twists_step(system: System) -> Step:
+    """Velocities of the mass centres and angular velocities, from body to body along the tree."""
+    formulas: list[Formula] = []
+    for link in system.motion.links:
+        body = mass_properties(system.scope, link.name)
+        if not is_zero(body.m):
+            velocity = velocity_of(system.motion, (link.name, body.com))
+            formulas += components(system, "v", f"{link.name}.center", velocity)
+        formulas += spins(system, link.name, link.twist.w)
+    words = "Each body moves with the one it hangs on and by its joint:"
+    return Step("velocities", "Velocities", (Prose((words,)), *page(formulas)))
+
+
+def balance_step(system: System, assembly: Assembly) -> Step:
+    """M, c and Q: the balance of momentum of every body along the motions that the joints allow."""
+    u, q = system.symbols.u, moved_coordinates(system)
+    inertia = [
+        Formula((Entry("M", u[i], u[j]), shown(assembly.M[i][j])))
+        for i in range(len(u)) for j in range(i, len(u)) if not is_zero(assembly.M[i][j])
+    ]  # fmt: skip
+    inertia += [Formula((Name("c", by=x), shown(c))) for x, c in zip(u, assembly.c, strict=True)]
+    forces = [Formula((Name("Q", by=x), shown(Q))) for x, Q in zip(q, assembly.Q, strict=True)]
+    statements = (
+        Prose(("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that")),
+        Formula((PROJECTED,)),
+        Prose(("Sorted by accelerations:",)), *page(inertia), *page(forces),
+    )  # fmt: skip
+    return Step("balance", "Balance of momentum along the free motions", statements)

@@ -1,0 +1,128 @@
+"""System -> the first steps of a derivation: data, degrees of freedom, coordinates."""
+
+from __future__ import annotations
+
+import math
+
+from eomgen.mechanics.system import System
+from eomgen.model.values import exact_parameters
+from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
+from eomgen.symbolic.graph import Node
+
+PARAMETERS = ("parameter", "meaning", "unit", "value")
+COORDINATES = ("coordinate", "meaning", "unit", "start")
+INPUTS = ("input", "meaning", "unit", "value")
+
+
+def setting_steps(system: System) -> tuple[Step, ...]:
+    """Data, degrees of freedom, coordinates."""
+    return (_data(system), _freedom(system), _coordinates(system))
+
+
+def listed(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:
+    """The symbols, with commas between."""
+    pieces: list[Piece] = []
+    for symbol in symbols:
+        pieces += [", ", symbol] if pieces else [symbol]
+    return tuple(pieces)
+
+
+def count(number: int, noun: str, plural: str = "") -> str:
+    """1 coordinate, 2 coordinates."""
+    return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
+
+
+def _data(system: System) -> Step:
+    """What is given."""
+    model, symbols = system.scope.model, system.symbols
+    values = exact_parameters(model)
+    rows = []
+    for name, symbol in symbols.parameters.items():
+        part = model.parameters[name]
+        rows.append(Meaning(symbol, part.about or "given", _unit(part), _in_unit(values.get(name), part)))
+    statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [Prose(("No parameters.",))]
+    inputs = tuple(
+        Meaning(symbol, model.inputs[name].about or "input, a known function of time", _unit(model.inputs[name]),
+                model.inputs[name].value.text)
+        for name, symbol in symbols.inputs.items()
+    )  # fmt: skip
+    if inputs:
+        statements.append(Table(INPUTS, inputs))
+    return Step("data", "Data", tuple(statements))
+
+
+def _unit(part) -> str:
+    return "" if part.unit is None else str(part.unit)
+
+
+def _in_unit(value, part) -> str:
+    """A value in the unit in which the user gave it."""
+    if value is None:
+        return ""
+    return f"{float(value if part.unit is None else part.unit.from_si(value, math.pi)):.10g}"
+
+
+def _freedom(system: System) -> Step:
+    """How many coordinates, how many of them are driven, how many rows close."""
+    symbols, closing = system.symbols, system.ties.closing
+    driven = len(symbols.q) - len(symbols.u)
+    statements: list[Statement] = [Prose((
+        f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
+        f", {driven} of them driven" if driven else "", f": {count(len(symbols.u), 'free speed')}.",
+    ))]  # fmt: skip
+    identical = [row for row in system.ties.rows if row.identical]
+    if identical:
+        ties = ", ".join(dict.fromkeys(row.tie for row in identical))
+        statements.append(Prose((
+            f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves ({ties}): ",
+            "they carry reactions and take no freedom.",
+        )))  # fmt: skip
+    if closing:
+        statements.append(Prose((
+            f"{count(len(closing), 'equation')} of the constraints ",
+            "remains to be satisfied by the motion" if len(closing) == 1 else "remain to be satisfied by the motion",
+            " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
+        )))  # fmt: skip
+    freedom = len(symbols.u) - len(closing)
+    independent = ", where the constraints' equations are independent" if closing else ""
+    statements.append(Prose((f"{count(freedom, 'degree')} of freedom{independent}.",)))
+    return Step("freedom", "Degrees of freedom", tuple(statements))
+
+
+def _coordinates(system: System) -> Step:
+    """Coordinates, their rates and accelerations, and what moves as the model says."""
+    model, symbols, scope = system.scope.model, system.symbols, system.scope
+    values = exact_parameters(model)
+    rows = [
+        Meaning(q, part.about or "coordinate", _unit(part), _start(part, part.start, values))
+        for q, part in zip(symbols.q, model.coordinates.values(), strict=True)
+    ]
+    free = {u.name.removesuffix("'"): (u, a) for u, a in zip(symbols.u, symbols.a, strict=True)}
+    for name, (u, a) in free.items():
+        part = model.coordinates[name]
+        unit = _unit(part)
+        rows.append(Meaning(u, f"rate of {name}", f"{unit}/s" if unit else "", _start(part, part.speed, values)))
+        rows.append(Meaning(a, f"acceleration of {name}", f"{unit}/s^2" if unit else ""))
+    rows.append(Meaning(symbols.t, "time", "s"))
+    statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
+    driven = [
+        Formula((Rate(q), rate)) for q, rate in zip(symbols.q, scope.rates, strict=True) if q.name not in free
+    ]
+    if driven:
+        statements += [Prose(("Driven coordinates move as given:",)), *driven]
+    return Step("coordinates", "Coordinates", tuple(statements))
+
+
+def _start(part, expression, values) -> str:
+    """A start value in the user's unit; an expression of parameters without values as text."""
+    if expression is None:
+        return "" if part.driven else "0"
+    if expression.names <= values.keys() | {"pi"}:
+        return _in_unit(expression.evaluate({**values, "pi": math.pi}), part)
+    return expression.text
+
+
+def moved_coordinates(system: System) -> tuple[Node, ...]:
+    """The coordinate of each speed."""
+    by_name = {q.name: q for q in system.symbols.q}
+    return tuple(by_name[u.name.removesuffix("'")] for u in system.symbols.u)

@@ -1,0 +1,148 @@
+"""Derivation -> plain text, 100 columns wide. Formulas are in the grammar of the model file."""
+
+from __future__ import annotations
+
+import textwrap
+
+from eomgen.report.statements import (
+    Code,
+    Derivation,
+    Entry,
+    Formula,
+    Law,
+    Meaning,
+    Name,
+    Omitted,
+    Partial,
+    Piece,
+    Prose,
+    Rate,
+    Side,
+    Statement,
+    Table,
+)
+from eomgen.symbolic.graph import Node
+from eomgen.symbolic.text import to_text
+
+name = "text"
+
+WIDTH = 100
+INDENT = "    "
+
+
+def render(derivation: Derivation) -> str:
+    """The derivation as text."""
+    lines = [*_headed(derivation.title, "="), *_remarks(derivation)]
+    for number, step in enumerate(derivation.steps, start=1):
+        lines += ["", *_headed(f"{number}. {step.title}", "-")]
+        for statement in step.statements:
+            lines += _statement_lines(statement)
+    return "\n".join(lines) + "\n"
+
+
+def _headed(title: str, rule: str) -> list[str]:
+    return [title, rule * len(title)]
+
+
+def _remarks(derivation: Derivation) -> list[str]:
+    source = f"Source: {derivation.source}." if derivation.source else ""
+    return [line for text in (derivation.about, source) if text for line in textwrap.wrap(text, WIDTH)]
+
+
+def _statement_lines(statement: Statement) -> list[str]:
+    if isinstance(statement, Prose):
+        return textwrap.wrap(prose_text(statement), WIDTH)
+    if isinstance(statement, Formula):
+        return broken(formula_text(statement), INDENT, WIDTH)
+    return _table_lines(statement)
+
+
+def prose_text(prose: Prose) -> str:
+    """A sentence on one line."""
+    return "".join(piece_text(piece) for piece in prose.pieces)
+
+
+def piece_text(piece: Piece) -> str:
+    """One piece of a sentence."""
+    if isinstance(piece, str):
+        return piece
+    return f"`{piece.text}`" if isinstance(piece, Code) else side_text(piece)
+
+
+def formula_text(formula: Formula) -> str:
+    """A formula on one line: T = 6*M*R^2*theta'^2."""
+    return " = ".join(side_text(side) for side in formula.sides)
+
+
+def side_text(side: Side) -> str:
+    """One side of a formula; scalars as the grammar reads them back."""
+    if isinstance(side, Name):
+        return _name_text(side)
+    if isinstance(side, Entry):
+        return f"{side.letter}[{side.row.name}, {side.column.name}]"
+    if isinstance(side, Partial):
+        return f"{'-' if side.sign < 0 else ''}d{_name_text(side.of)}/d{side.by.name}"
+    if isinstance(side, Rate):
+        return side.of.name + "'" if isinstance(side.of, Node) else f"d/dt({side_text(side.of)})"
+    if isinstance(side, Omitted):
+        return f"({side.operations} operations, not printed)"
+    return side.text if isinstance(side, Law) else to_text(side)
+
+
+def _name_text(quantity: Name) -> str:
+    inside = ", ".join(([quantity.by.name] if quantity.by is not None else []) + ([quantity.of] if quantity.of else []))
+    text = f"{quantity.letter}({inside})" if inside else quantity.letter
+    return text if quantity.power == 1 else f"{text}^{quantity.power}"
+
+
+def _table_lines(table: Table) -> list[str]:
+    """Columns as wide as what stands in them; the meaning is wrapped."""
+    rows = [tuple(table.head), *(_cells(row) for row in table.rows)]
+    kept = [k for k in range(4) if k == 1 or any(row[k] for row in rows[1:])]
+    widths = {k: max(len(row[k]) for row in rows) for k in kept}
+    widths[1] = max(20, min(widths[1], WIDTH - len(INDENT) - sum(widths[k] + 2 for k in kept if k != 1)))
+    lines: list[str] = []
+    for row in rows:
+        meaning = textwrap.wrap(row[1], widths[1]) or [""]
+        for number, part in enumerate(meaning):
+            cells = [part if k == 1 else row[k] if number == 0 else "" for k in kept]
+            line = "  ".join(cell.ljust(widths[k]) for k, cell in zip(kept, cells, strict=True))
+            lines.append(f"{INDENT}{line}".rstrip())
+    return lines
+
+
+def _cells(row: Meaning) -> tuple[str, str, str, str]:
+    return side_text(row.symbol), row.meaning, row.unit, row.value
+
+
+def broken(text: str, indent: str, width: int) -> list[str]:
+    """A formula on lines of at most `width` characters, broken before = + and - of the least depth.
+
+    A piece that cannot be broken stays whole.
+    """
+    lines, start, hang = [], 0, indent
+    while len(text) - start > width - len(hang):
+        stop = _break(text, start, start + width - len(hang))
+        if stop is None:
+            break
+        lines.append(hang + text[start:stop].rstrip())
+        start, hang = stop, indent * 2
+    return [*lines, hang + text[start:]]
+
+
+def _break(text: str, start: int, end: int) -> int | None:
+    """Where to break text[start:end]: the last sign of the least depth in it; else the first one beyond it."""
+    best: tuple[int, int] | None = None
+    depth = 0
+    for i in range(start + 1, len(text)):
+        character = text[i]
+        if character in "([":
+            depth += 1
+        elif character in ")]":
+            depth -= 1
+        elif character in "+-=" and text[i - 1] == " " and text[i + 1 : i + 2] == " ":
+            if i > end:
+                return best[1] if best else i
+            if best is None or depth <= best[0]:
+                best = (depth, i)
+    return best[1] if best else None

@@ -1,0 +1,51 @@
+"""eomgen check: validates, and counts the degrees of freedom."""
+
+from __future__ import annotations
+
+from eomgen.mechanics.freedom import Freedom, freedom_of
+from eomgen.model.parts import Model
+from eomgen.model.unbuilt import unbuilt
+from eomgen.model.values import exact_parameters
+from eomgen.verbs.outcome import Outcome, listed
+
+
+def check(model: Model) -> Outcome:
+    """The model's parts and its degrees of freedom, by rank beside the count by formula."""
+    freedom = freedom_of(model)
+    waiting = unbuilt(model)
+    missing = [name for name in model.parameters if name not in exact_parameters(model)]
+    driven = [name for name, coordinate in model.coordinates.items() if coordinate.driven]
+    lines = [f"{model.name}: no problems found", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
+    lines.append(f"coordinates: {listed(f'{q} (driven)' if q in driven else q for q in model.coordinates)}")
+    lines += [f"parameters without a value: {listed(missing)}"] if missing else []
+    lines += _freedom_lines(model, freedom)
+    lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
+    payload = {
+        "ok": True, "name": model.name, "space": model.space, "bodies": list(model.bodies),
+        "coordinates": list(model.coordinates), "driven": driven, "missing_values": missing,
+        "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
+        "not_counted": freedom.not_counted or None,
+        "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
+        "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
+        "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
+    }  # fmt: skip
+    return Outcome("\n".join(lines) + "\n", payload)
+
+
+def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:
+    if freedom.by_rank is None:
+        lines = [f"degrees of freedom: not counted yet ({freedom.not_counted})"]
+        return lines if freedom.by_formula is None else [*lines, _formula_line(model, freedom)]
+    lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(model, freedom)]
+    lines += [f"ties that close: {listed(freedom.closing)}"] if freedom.closing else []
+    lines += [f"ties that only react: {listed(freedom.identical)}"] if freedom.identical else []
+    for row in freedom.redundant:
+        others = f", it follows from {listed(row.others)}" if row.others else ""
+        lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
+    return lines
+
+
+def _formula_line(model: Model, freedom: Freedom) -> str:
+    placed = [name for name, body in model.bodies.items() if body.joint is None or not body.joint.carries_reaction]
+    remark = f"; {listed(placed)}: placed, counted as free" if placed else ""
+    return f"count by formula: {freedom.by_formula} = {freedom.formula or '0'}{remark}"

@@ -1,0 +1,46 @@
+"""eomgen doctor: what this machine can do."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+from importlib import metadata
+from pathlib import Path
+
+import platformdirs
+
+from eomgen.codegen.build import compiler
+from eomgen.verbs.outcome import Outcome
+from eomgen.version import __version__
+
+
+def doctor() -> Outcome:
+    """What this machine can do."""
+    rows = [("eomgen", __version__), ("python", platform.python_version())]
+    for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs"):
+        try:
+            rows.append((package, metadata.version(package)))
+        except metadata.PackageNotFoundError:
+            rows.append((package, None))
+    rows.append(("C compiler", compiler()))
+    rows.append(("cache", _cache()))
+    rows.append(("LaTeX", next(filter(None, map(shutil.which, ("pdflatex", "lualatex", "xelatex", "tectonic"))), None)))
+    lines = [f"{what:<12}  {found or 'not found' + _without(what)}" for what, found in rows]
+    return Outcome("\n".join(lines) + "\n", {"found": dict(rows)})
+
+
+def _without(what: str) -> str:
+    """What a missing tool means."""
+    return {
+        "C compiler": ": equations run in numpy, some 30 times slower; install cc or `pip install ziglang`",
+        "cache": ": it cannot be written, code is compiled anew each time",
+        "LaTeX": ": derivations are written as .tex, but cannot be typeset here",
+    }.get(what, f": pip install {what}")
+
+
+def _cache() -> str | None:
+    """The folder of compiled code, where it can be written."""
+    place = Path(platformdirs.user_cache_dir("eomgen"))
+    there = next(folder for folder in (place, *place.parents) if folder.exists())
+    return str(place) if os.access(there, os.W_OK) else None

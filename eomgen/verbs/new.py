@@ -1,0 +1,33 @@
+"""eomgen new: a commented starter model."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from eomgen.errors import RunFailed, UsageError
+from eomgen.verbs.outcome import Outcome
+
+TEMPLATES = Path(__file__).parent.parent / "templates"
+
+
+def new(name: str) -> Outcome:
+    """A commented starter model NAME.toml; never over a file that is there.
+
+    Raises:
+        UsageError: the file is there already, or the name is none.
+        RunFailed: it cannot be written.
+    """
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if not path.stem.isprintable() or path.stem.startswith(".") or path.name == ".toml":
+        raise UsageError(f"{name!r} is no name for a model", mend="use letters, digits, _ and -")
+    text = (TEMPLATES / "starter.toml").read_text(encoding="utf-8")
+    text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", str(path))
+    try:
+        with open(path, "x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise UsageError(f"'{path}' is there already", mend="take another name") from None
+    except OSError as error:
+        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+    return Outcome(f"{path}\n", {"file": str(path)}, notes=(f"now try: eomgen derive {path}",))

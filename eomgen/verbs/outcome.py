@@ -1,0 +1,80 @@
+"""What a verb gives, and how files are written: whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from eomgen.errors import RunFailed
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a verb gives.
+
+    Args:
+        text: the result for people.
+        payload: the result for machines; `schema_version` is added on the way out.
+        failed: why the exit code is 3, or "".
+        notes: what else is worth a line on stderr.
+    """
+
+    text: str
+    payload: Mapping[str, Any] = field(default_factory=dict)
+    failed: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def json(self) -> str:
+        return json.dumps({"schema_version": SCHEMA_VERSION, **self.payload}, ensure_ascii=False, indent=1,
+                          allow_nan=False) + "\n"  # fmt: skip
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names in a line of text."""
+    return ", ".join(names) or "none"
+
+
+def prepared(path: str) -> Path:
+    """The path, its folder made if it is not there.
+
+    Raises:
+        RunFailed: the folder cannot be made.
+    """
+    try:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunFailed(f"the folder cannot be made: {error.strerror or error}", str(Path(path).parent)) from None
+    return Path(path)
+
+
+def write_text(path: str, text: str) -> None:
+    """The text into a file, whole or not at all.
+
+    Raises:
+        RunFailed: it cannot be written; what was there before is then still there.
+    """
+    target = prepared(path)
+    aside = None
+    try:
+        if target.exists() and not target.is_file():  # a pipe, a terminal: nothing to move into place
+            target.write_text(text, encoding="utf-8")
+            return
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=target.parent, prefix=".eomgen-",
+                                         delete=False) as file:  # fmt: skip
+            aside = file.name
+            file.write(text)
+        os.umask(mask := os.umask(0))
+        os.chmod(aside, 0o666 & ~mask)
+        os.replace(aside, target)
+    except OSError as error:
+        if aside is not None:
+            Path(aside).unlink(missing_ok=True)
+        raise RunFailed(f"the file cannot be written: {error.strerror or error}", path) from None

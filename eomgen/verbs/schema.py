@@ -1,0 +1,14 @@
+"""eomgen schema: the JSON Schema of a model file."""
+
+from __future__ import annotations
+
+import json
+
+from eomgen.model.schema import json_schema
+from eomgen.verbs.outcome import Outcome
+
+
+def schema() -> Outcome:
+    """The JSON Schema of a model file."""
+    found = json_schema()
+    return Outcome(json.dumps(found, ensure_ascii=False, indent=2) + "\n", found)

@@ -1,0 +1,145 @@
+"""eomgen simulate: the motion from the start, as a summary, as files, as a picture."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from eomgen import pipeline
+from eomgen.errors import ExpressionError, UsageError
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.simulation.trajectory import Trajectory
+from eomgen.symbolic.expressions import parse
+from eomgen.verbs.outcome import Outcome, listed, prepared
+
+
+def simulate(
+    model: Model, *, time: float, given: tuple[str, ...], start: tuple[str, ...], rtol: float, atol: float,
+    target: str | None, samples: int | None, output: str | None, plot: str | None,
+) -> Outcome:  # fmt: skip
+    """The motion from the start; trajectory and picture are written where they are asked for."""
+
+    parameters = _parameters(model, given)
+    _check_ending(output)
+    equations = pipeline.derive(model)
+    run = pipeline.simulated(equations, time=time, parameters=parameters, start=_start(equations, parameters, start),
+                    rtol=rtol, atol=atol, target=target, samples=samples)  # fmt: skip
+    files = [path for path in (output, plot) if path]
+    if output:
+        _write_run(run, output)
+    if plot:
+        from eomgen.report.plots import plot_trajectory
+
+        units = {q: part.unit.si for q, part in model.coordinates.items() if part.unit is not None}
+        plot_trajectory(run, prepared(plot), title=model.name, units=units)
+    return Outcome(_run_text(model, run), _run_payload(model, run, files), "" if run.ok else run.message)
+
+
+def _check_ending(output: str | None) -> None:
+    """Refuses a trajectory file that cannot be written, before the work is done.
+
+    Raises:
+        UsageError: the name ends in neither .csv nor .npz.
+    """
+    if output and not _is_stream(output) and Path(output).suffix.lower() not in (".csv", ".npz"):
+        raise UsageError(f"no trajectory can be written as '{output}'", mend="endings are .csv, .npz")
+
+
+def _is_stream(path: str) -> bool:
+    """A pipe or a terminal: nothing to move into place."""
+    return Path(path).exists() and not Path(path).is_file()
+
+
+def _write_run(run: Trajectory, output: str) -> None:
+    if Path(output).suffix.lower() == ".npz":
+        run.to_npz(prepared(output))
+    elif _is_stream(output):
+        with open(output, "w", encoding="utf-8") as file:
+            run.to_csv(file)
+    else:
+        run.to_csv(prepared(output))
+
+
+def _run_text(model: Model, run: Trajectory) -> str:
+    """Where the motion ended, and how well the laws were kept."""
+    columns = run.columns()
+    width = max((len(name) for name in columns), default=0)
+    lines = [f"{model.name}: {run.summary()}"]
+    if len(run.t):
+        lines += [f"{'':<{width}}  {'start':>16}  {'end':>16}"]
+        lines += [f"{name:<{width}}  {column[0]:>16.9g}  {column[-1]:>16.9g}" for name, column in columns.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:
+    columns = {name: [_finite(x) for x in column.tolist()] for name, column in run.columns().items()}
+    payload = {
+        "name": model.name, "status": run.status, "message": run.message, "time": _finite(run.phases[-1].end),
+        "start": {name: column[0] for name, column in columns.items() if column},
+        "end": {name: column[-1] for name, column in columns.items() if column},
+        "energy_drift": _finite(run.drift), "gap": _finite(run.gap),
+        "steps": run.steps, "evaluations": run.evaluations, "files": files,
+    }  # fmt: skip
+    return payload if files else payload | {"trajectory": columns}
+
+
+def _finite(x: float | None) -> float | None:
+    return float(x) if x is not None and abs(x) < float("inf") else None
+
+
+def _parameters(model: Model, given: tuple[str, ...]) -> dict[str, float]:
+    """The values of `--set m=2`: numbers, or expressions of numbers.
+
+    Raises:
+        UsageError: no parameter of that name, or no number.
+    """
+    values = {}
+    for name, text in _assignments(given, "--set m=2"):
+        if name not in model.parameters:
+            raise UsageError(f"--set: there is no parameter '{name}'", mend=_nearest(name, model.parameters))
+        values[name] = _value(text, {}, f"--set {name}={text}")
+    return values
+
+
+def _start(equations: pipeline.Equations, parameters: Mapping[str, float], given: tuple[str, ...]) -> dict[str, float]:
+    """The values of `--start theta=pi/2`, in which parameters may stand.
+
+    Raises:
+        UsageError: no coordinate or speed of that name, or no number.
+    """
+    known = exact_parameters(equations.model, parameters)
+    names = (*equations.coordinates, *equations.speeds)
+    values = {}
+    for name, text in _assignments(given, "--start theta=1"):
+        if name not in names:
+            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=_nearest(name, names))
+        values[name] = _value(text, known, f"--start {name}={text}")
+    return values
+
+
+def _assignments(given: tuple[str, ...], example: str) -> list[tuple[str, str]]:
+    pairs = []
+    for word in given:
+        name, sign, text = word.partition("=")
+        if not sign or not name.strip() or not text.strip():
+            raise UsageError(f"'{word}' is no assignment", mend=f"write {example}")
+        pairs.append((name.strip(), text.strip()))
+    return pairs
+
+
+def _value(text: str, known: Mapping[str, Any], where: str) -> float:
+
+    try:
+        return float(parse(text).evaluate({**known, "pi": math.pi}))
+    except (ExpressionError, OverflowError) as error:
+        raise UsageError(f"{where}: {getattr(error, 'what', error)}", mend=getattr(error, "mend", "")) from error
+
+
+def _nearest(name: str, names: Iterable[str]) -> str:
+    names = list(names)
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"did you mean '{near[0]}'?" if near else f"there are {listed(names)}"

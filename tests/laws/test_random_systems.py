@@ -1,0 +1,142 @@
+"""The certificate holds for random trees of bodies under random forces: systems that nobody has thought of."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+
+import eomgen
+from eomgen.certificate import Certificate
+
+
+def number(rng: Random) -> str:
+    return f"{rng.randint(1, 30) / 10}"
+
+
+def axis(rng: Random) -> list[int]:
+    return rng.choice([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 2, 2], [0, 3, 4], [1, -1, 0]])
+
+
+class Writer:
+    """Writes the text of a random model, body by body."""
+
+    def __init__(self, space: str, rng: Random) -> None:
+        self.space, self.rng = space, rng
+        self.size = 2 if space == "plane" else 3
+        self.coordinates: list[str] = []
+        self.bodies: list[str] = []
+        self.forces: list[str] = []
+        self.names: list[str] = []
+
+    def vector(self) -> str:
+        return "[" + ", ".join(f'"{self.rng.choice(["l", "h", "-l", "0", "2*h"])}"' for _ in range(self.size)) + "]"
+
+    def coordinate(self, driven: bool = False) -> str:
+        name = f"q{len(self.coordinates) + 1}"
+        laws = ['{ motion = "A*sin(w*t)" }', '{ rate = "w*t" }', '{ acceleration = "A*cos(w*t)", speed = "w" }']
+        self.coordinates.append(f"{name} = {self.rng.choice(laws) if driven else number(self.rng)}")
+        return name
+
+    def seat(self) -> str:
+        if not self.names or self.rng.random() < 0.2:
+            return f"at = {self.vector()}"
+        parent = self.rng.choice(self.names)
+        return f'on = "{parent}.P"' if self.rng.random() < 0.5 else f'on = "{parent}", at = {self.vector()}'
+
+    def joint(self) -> str:
+        rng = self.rng
+        kinds = ["revolute", "revolute", "prismatic", "planar", "fixed", "placed"]
+        kind = rng.choice(kinds + (["free"] if self.space == "plane" else []))
+        turned = f', axis = {axis(rng)}, turned = {{ axis = {axis(rng)}, angle = "pi/{rng.randint(2, 5)}" }}'
+        spatial = turned if self.space == "space" else ""
+        if kind == "revolute":
+            angle = self.coordinate(rng.random() < 0.2)
+            drive = rng.choice(["", ', torque = "tau - c*' + angle + "'\"", ', stiffness = "k", rest = 0.3, damping = "c"',
+                                ', armature = "m/10"'])  # fmt: skip
+            return f'{{ kind = "revolute", {self.seat()}, angle = "{angle}", point = "P"{spatial}{drive} }}'
+        if kind == "prismatic":
+            along = axis(rng) if self.space == "space" else [3, 4]
+            turn = turned.replace(turned.split(", turned")[0], "") if self.space == "space" else ""
+            return f'{{ kind = "prismatic", {self.seat()}, displacement = "{self.coordinate()}", axis = {along}{turn} }}'
+        if kind in ("planar", "free"):
+            x, y, angle = (self.coordinate() for _ in range(3))
+            return f'{{ kind = "{kind}", {self.seat()}, x = "{x}", y = "{y}", angle = "{angle}" }}'
+        if kind == "fixed":
+            return f'{{ kind = "fixed", {self.seat()}, angle = 0.3 }}'
+        q = self.coordinate()
+        at = [f"l*cos({q})", f"h*{q}^2 + A*t", f"l*sin(2*{q})"][: self.size]
+        on = f'on = "{rng.choice(self.names)}", ' if self.names else ""
+        return f'{{ kind = "placed", {on}at = {at}, angle = "2*{q} - w*t" }}'
+
+    def body(self) -> None:
+        rng, name = self.rng, f"B{len(self.names) + 1}"
+        mass = rng.choice(['mass = "m"', 'mass = "2*m"'])
+        inertia = 'inertia = "I"' if self.space == "plane" else 'inertia = ["I", "2*I", "2*I", "I/9", "-I/7", "I/11"]'
+        joint = self.joint()
+        self.bodies.append(
+            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()} }}\njoint = {joint}"
+        )
+        self.names.append(name)
+
+    def force(self, k: int) -> None:
+        rng = self.rng
+        body, other = rng.choice(self.names), rng.choice(self.names)
+        q = rng.choice([line.split(" ")[0] for line in self.coordinates])
+        point = f'"{body}.P"'
+        two = f'points = ["G", {point}]' if body == other else f'points = ["{other}.center", {point}]'
+        axes = rng.choice(["ground", body])
+        components = ", ".join(f'"{e}"' for e in ["k*l*sin(w*t)", f"-c*{q}'", "k*h"][: self.size])
+        couple = '"k*l*l"' if self.space == "plane" else '["k*l*l", "c*l", "k"]'
+        kinds = [
+            f'kind = "force", point = {point}, force = [{components}], axes = "{axes}"',
+            f'kind = "couple", body = "{body}", couple = {couple}, axes = "{axes}"',
+            f'kind = "spring", {two}, stiffness = "k", length = "l"',
+            f'kind = "damper", {two}, damping = "c"',
+            f'kind = "between", {two}, pull = "k*l/r^2 + c*r\'"',
+            f'kind = "potential", energy = "k*{q}^4/4 + k*l*cos({q})"',
+            f'kind = "generalized", coordinate = "{q}", value = "-c*{q}\'^3 + tau"',
+        ]
+        if self.space == "plane":
+            kinds += [
+                f'kind = "torsion_spring", body = "{body}", stiffness = "k", rest = 0.1',
+                f'kind = "torsion_damper", body = "{body}", damping = "c"',
+                f'kind = "spring", {two}, stiffness = "k", length = "l", along = [3, 4]',
+            ]
+        self.forces.append(f"f{k} = {{ {rng.choice(kinds)} }}")
+
+    def text(self) -> str:
+        gravity = ", ".join(['"0"', '"-g"', '"g/5"'][: self.size])
+        return "\n".join([
+            f'eomgen = 1\nname = "random"\nspace = "{self.space}"',
+            "[parameters]", *(f"{p} = {number(self.rng)}" for p in ("m", "I", "l", "h", "g", "k", "c", "A", "w")),
+            "[coordinates]", *self.coordinates, '[inputs]\ntau = "A*sin(t)"',
+            "[points]", f"G = {self.vector()}", *self.bodies,
+            "[forces]", f'weight = {{ kind = "gravity", acceleration = [{gravity}] }}', *self.forces,
+        ])  # fmt: skip
+
+
+def random_model(space: str, seed: int) -> str:
+    rng = Random(seed)
+    writer = Writer(space, rng)
+    while len(writer.names) < 4 or not writer.coordinates:
+        writer.body()
+    for k in range(3):
+        writer.force(k)
+    if "tau" not in "".join(writer.bodies + writer.forces):
+        q = writer.coordinates[0].split(" ")[0]
+        writer.forces.append(f'last = {{ kind = "generalized", coordinate = "{q}", value = "tau" }}')
+    return writer.text()
+
+
+def certificate_of(text: str) -> Certificate:
+    return eomgen.derive(eomgen.loads(text)).certify()
+
+
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("space", ["plane", "space"])
+def test_the_certificate_holds_for_random_trees(space, seed):
+    """Every joint and every force of this version, rheonomic or not, hung together at random."""
+    text = random_model(space, seed)
+    certificate = certificate_of(text)
+    assert certificate.ok, f"{certificate}\n{text}"
