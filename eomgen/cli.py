@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.errors import EomgenError, ModelError, Problem
+from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing
 from eomgen.version import __version__
 
 if TYPE_CHECKING:
@@ -57,6 +57,12 @@ class Verbs(click.Group):
         except EomgenError as error:
             click.echo(str(error), err=True)
             return _told(error.exit_code, _problems(error), wants_json)
+        except ModuleNotFoundError as error:
+            if (error.name or "").split(".")[0] == "eomgen":
+                raise
+            missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
+            click.echo(str(missing), err=True)
+            return _told(missing.exit_code, _problems(missing), wants_json)
         except (click.Abort, KeyboardInterrupt):
             return INTERRUPTED
 
@@ -174,7 +180,7 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
 def derive(
     model: str, wants_json: bool, output: str | None, method: str, format_: str | None, no_certify: bool
 ) -> int:
-    """Derive the equations of motion, step by step, with their certificate."""
+    """Derive the equations of motion and certify them."""
     from eomgen.verbs.derive import derive as derived
 
     chosen = format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
@@ -186,7 +192,7 @@ def derive(
 @main.command()
 @_common
 def solve(model: str, wants_json: bool, output: str | None) -> int:
-    """Answer every entry of [outputs], exactly and as a number."""
+    """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve as solved
 
     return _deliver(solved(_model(model)), wants_json, output)
@@ -205,7 +211,7 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
 def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -> int:
-    """Integrate the motion from the start; energy drift is reported."""
+    """Integrate the motion from the start values."""
     from eomgen.verbs.simulate import simulate as simulated
 
     outcome = simulated(_model(model), output=output, **options)
@@ -218,10 +224,10 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
 @main.command()
 @MODEL
 @JSON
-@click.option("--target", type=click.Choice(["numpy", "c"]), required=True, help="Language of the files.")
+@click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True)
 @click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
 def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
-    """Write the right-hand side as files that compile as they are, with test vectors."""
+    """Write the equations as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem

@@ -9,8 +9,8 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
-    ("errors",), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
-    ("certificate", "answers"), ("pipeline",), ("cli", "notebook", "__main__"),
+    ("version", "errors"), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
+    ("certificate", "answers"), ("pipeline",), ("verbs", "notebook"), ("cli",), ("__main__",),
 )  # fmt: skip
 RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}
 

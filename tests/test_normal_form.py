@@ -181,6 +181,8 @@ def test_a_relative_angle_stands_alone(the):
         (lambda a, b, c: cos(a) * cos(b) - sin(a) * sin(b), {"cos(a + b)"}),
         (lambda a, b, c: sin(a) * cos(b), {"sin(a)*cos(b)", "cos(b)*sin(a)"}),
         (lambda a, b, c: sin(a) * cos(b + c), {"sin(a)*cos(b + c)", "cos(b + c)*sin(a)"}),
+        (lambda a, b, c: cos(a) * sin(a + b), {"cos(a)*sin(a + b)", "sin(a + b)*cos(a)"}),
+        (lambda a, b, c: sin(a) * sin(a + b) + cos(b) / 2, {"cos(b) - 1/2*cos(2*a + b)"}),
         (lambda a, b, c: cos(a) ** 2 * sin(b) ** 2, {"cos(a)^2*sin(b)^2", "sin(b)^2*cos(a)^2"}),
         (lambda a, b, c: 1 - cos(a), {"1 - cos(a)"}),
         (lambda a, b, c: Fraction(4, 3) - cos(a) ** 2, {"1/3 + sin(a)^2"}),

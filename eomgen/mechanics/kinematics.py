@@ -18,7 +18,7 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.scope import Scope
 from eomgen.model.joints.base import Z, unit, vector
-from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.derivative import jacobian, symbols_of
 from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.graph import Scalar, collected
 from eomgen.symbolic.spatial import (
@@ -72,6 +72,11 @@ class Link:
     angle: Scalar | None
     twist: Twist
 
+    @property
+    def local(self) -> Pose:
+        """Where the joint leaves the child's axes and the joint point, in the parent."""
+        return self.before.then(self.relative)
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -92,6 +97,11 @@ class Motion:
     def points(self) -> dict[str, dict[str, Vector]]:
         """Points of each body, body axes [m]."""
         return {link.name: body_points(self.scope, link.name) for link in self.links}
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        """Whether any of the scalars depends on coordinates or time."""
+        moving = {*self.scope.symbols.q, self.scope.symbols.t}
+        return any(symbol in moving for symbol in symbols_of(scalars))
 
     def place(self, point: str) -> tuple[str | None, Vector]:
         """(body, position in its axes) of a named point; (None, position) for a point of the ground."""

@@ -204,6 +204,9 @@ def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
         if e is None or e.drive is None and e.stiffness is None and e.damping is None:
             continue
         drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
+        if motion.moves((*link.before.p, *link.point)):
+            raise DerivationError("a joint with a drive, spring or damper sits at a place that moves in its body",
+                                  f"bodies.{link.name}.joint", "let another joint carry the motion of the seat")
         stretch = link.s[k] - scope.value(e.rest)
         stiffness = scope.value(e.stiffness)
         potential = Fraction(1, 2) * stiffness * stretch * stretch

@@ -1,11 +1,11 @@
 """System -> accelerations at one state, in numbers, from the free bodies: the check that uses no B.
 
-Every body has its own acceleration A_i = (wd, acc) of its joint point, its own Newton-Euler equations and an
+Every body has its own acceleration A_i = (wd, acc) of its origin, its own Newton-Euler equations and an
 unknown wrench F_i from its joint; the joints say how A_i may differ from that of the parent:
 
     I_i A_i + p_i = W_i + F_i - sum over children X^T F_c + sum over closing rows W lam
-    A_i = X A_parent + b_i + S_i (D a)
-    (S_i D_k)^T F_i summed over joints + rotors = what acts on joints and coordinates at no place
+    A_i = X A_parent + b_i + C_i a
+    C_i^T F_i summed over joints + rotors = what acts on joints and coordinates at no place
     J a + gamma = 0
 
 One linear system in (A, F, a, lam); what depends on velocity is found by differences of numbers along
@@ -28,6 +28,7 @@ from eomgen.mechanics.work import joint_forces, placeless_forces
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.spatial import ZERO, Vector, plus, times
 
 State = dict[Node, Any]
 
@@ -87,7 +88,7 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
         A[motion, motion], A[motion, wrench], right[motion] = inertia, -np.eye(6), push
         A[wrench, motion], A[wrench, speeds], right[wrench] = np.eye(6), -column, bias
         if link.parent >= 0:
-            X = _transfer(numbers, link, links[link.parent])
+            X = _transfer(numbers, link)
             A[wrench, 6 * link.parent : 6 * link.parent + 6] = -X
             A[6 * link.parent : 6 * link.parent + 6, wrench] = X.T
         A[speeds, wrench] = column.T
@@ -101,74 +102,57 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
 
 
 def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
-    """(I, W - p) of a free body about its joint point, body axes: W the applied wrench, p what velocity takes."""
+    """(I, W - p) of a free body about its origin, body axes: W the applied wrench, p what velocity takes."""
     system = numbers.system
     mass = mass_properties(system.scope, link.name)
     m, com, I_com = float(numbers.array((mass.m,))[0]), numbers.array(mass.com), numbers.array(mass.I)
     w = numbers.array(link.twist.w)
-    c = com - numbers.array(link.point)
-    C = _tilde(c)
+    C = _tilde(com)
     inertia = np.block([[I_com - m * C @ C, m * C], [-m * C, m * np.eye(3)]])
-    centripetal = m * np.cross(w, np.cross(w, c))
-    p = np.concatenate([np.cross(w, I_com @ w) + np.cross(c, centripetal), centripetal])
+    centripetal = m * np.cross(w, np.cross(w, com))
+    p = np.concatenate([np.cross(w, I_com @ w) + np.cross(com, centripetal), centripetal])
     applied = np.zeros(6)
     for load in (*system.loads.placed, *weights(system.loads)):
         found = body_wrench(system.motion, load)
         if found is not None and found[0] == link.name:
-            applied += _about_joint(numbers, link, found[1])
+            applied += numbers.array((*found[1].tau, *found[1].f))
     return inertia, applied - p
 
 
-def _about_joint(numbers: Numbers, link: Link, wrench: Any) -> np.ndarray:
-    tau, f = numbers.array(wrench.tau), numbers.array(wrench.f)
-    return np.concatenate([tau - np.cross(numbers.array(link.point), f), f])
-
-
 def _joint(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
-    """(S D, b): the joint's columns per speed, and the acceleration of the child against the parent at a = 0."""
-    u = numbers.system.scope.symbols.u
-    if link.joint is None:
-        return np.zeros((6, len(u))), np.zeros(6)
-    S = np.array([[*numbers.array(w), *numbers.array(v)] for w, v in link.S]).reshape(len(link.S), 6).T
-    D = np.array([numbers.array(gradient(rate, u)) for rate in link.s_rate]).reshape(len(link.s_rate), len(u))
-    local = link.before.then(link.relative)
-    R_CP = numbers.array(local.R).T
-    offset = numbers.array(local.p)
-    w_child = numbers.array(link.twist.w)
-    parent = numbers.system.motion.links[link.parent] if link.parent >= 0 else None
-    if parent is None:
-        w_p = np.zeros(3)
-    else:
-        w_p, offset = numbers.array(parent.twist.w), offset - numbers.array(parent.point)
-    first, second = _path_rates(numbers, local.p, parent)
-    turning = R_CP @ w_p
-    spin_rate = _relative_spin_rate(numbers, link)
-    acc = np.cross(w_p, np.cross(w_p, offset)) + 2 * np.cross(w_p, first) + second
-    return S @ D, np.concatenate([spin_rate + np.cross(turning, w_child - turning), R_CP @ acc])
-
-
-def _path_rates(numbers: Numbers, p: Any, parent: Link | None) -> tuple[np.ndarray, np.ndarray]:
-    """First and second time derivative (at a = 0) of the seat in the parent, by differences."""
-    flat = tuple(p) if parent is None else tuple(x - y for x, y in zip(p, parent.point, strict=True))
+    """(columns, b): the child's acceleration against its parent per unit of a, and at a = 0."""
     scope = numbers.system.scope
-    first = scope.time_derivative(flat)
-    return numbers.rate(flat), numbers.rate(first)
+    parent = numbers.system.motion.links[link.parent] if link.parent >= 0 else None
+    R_CP = numbers.array(link.local.R).T
+    offset = _origin(link)
+    first = scope.time_derivative(offset)
+    spin = _relative_spin(link)
+    w_p = np.zeros(3) if parent is None else numbers.array(parent.twist.w)
+    velocity, w = numbers.rate(offset), numbers.array(spin)
+    acc = np.cross(w_p, np.cross(w_p, numbers.array(offset))) + 2 * np.cross(w_p, velocity) + numbers.rate(first)
+    bias = np.concatenate([numbers.rate(spin) + np.cross(R_CP @ w_p, w), R_CP @ acc])
+    columns = [[*numbers.array(gradient(x, scope.symbols.u))] for x in (*spin, *first)]
+    turned = np.array(columns).reshape(6, len(scope.symbols.u))
+    return np.vstack([turned[:3], R_CP @ turned[3:]]), bias
 
 
-def _relative_spin_rate(numbers: Numbers, link: Link) -> np.ndarray:
-    """Apparent rate, in the child's axes, of its angular velocity against the parent, at a = 0."""
-    spin = tuple(
-        sum((rate * w[j] for rate, (w, _) in zip(link.s_rate, link.S, strict=True)), start=0) for j in range(3)
-    )
-    return numbers.rate(spin)
+def _origin(link: Link) -> Vector:
+    """The child's origin in the parent's axes."""
+    return link.local.point(times(-1, link.point))
 
 
-def _transfer(numbers: Numbers, link: Link, parent: Link) -> np.ndarray:
-    """X: acceleration of the parent's joint point, parent's axes -> that of the child's seat, child's axes."""
-    local = link.before.then(link.relative)
-    R_CP = numbers.array(local.R).T
-    r = numbers.array(local.p) - numbers.array(parent.point)
-    return np.block([[R_CP, np.zeros((3, 3))], [-R_CP @ _tilde(r), R_CP]])
+def _relative_spin(link: Link) -> Vector:
+    """Angular velocity of the child against its parent, child's axes."""
+    spin = ZERO
+    for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
+        spin = plus(spin, times(rate, w))
+    return spin
+
+
+def _transfer(numbers: Numbers, link: Link) -> np.ndarray:
+    """X: acceleration of the parent's origin, parent's axes -> of the child's origin if it were fixed in the parent."""
+    R_CP = numbers.array(link.local.R).T
+    return np.block([[R_CP, np.zeros((3, 3))], [-R_CP @ _tilde(numbers.array(_origin(link))), R_CP]])
 
 
 def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slice) -> None:
@@ -179,7 +163,7 @@ def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slic
         place = multipliers.start + j
         for body, wrench in row.wrenches:
             i = system.motion.index[body]
-            A[6 * i : 6 * i + 6, place] -= _about_joint(numbers, system.motion.links[i], wrench)
+            A[6 * i : 6 * i + 6, place] -= numbers.array((*wrench.tau, *wrench.f))
         J = gradient(row.velocity, system.scope.symbols.u)
         A[place, 12 * n : 12 * n + len(J)] = numbers.array(J)
         if not row.wrenches:

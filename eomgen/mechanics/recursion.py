@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from eomgen.mechanics.kinematics import GROUND
 from eomgen.mechanics.loads import Loads, body_wrench, in_ground_axes
-from eomgen.mechanics.tree import Branch, Column, Moments
+from eomgen.mechanics.tree import Branch, Column, Moments, origin_of
 from eomgen.model.forces.load import PointForce
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import (
@@ -173,7 +173,7 @@ def applied_wrenches(loads: Loads, branches: tuple[Branch, ...]) -> dict[int, Wr
         body, wrench = found
         i = index[body]
         link = branches[i].link
-        about_joint = wrench.moved(times(-1, apply(branches[i].axes, link.point)))
+        about_joint = wrench.moved(times(-1, apply(branches[i].axes, origin_of(motion, link))))
         total[i] = total[i].plus(about_joint) if i in total else about_joint
     return total
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, Link, Motion
-from eomgen.symbolic.derivative import derivative, symbols_of
+from eomgen.symbolic.derivative import symbols_of, tangent
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import (
     IDENTITY,
@@ -60,7 +60,7 @@ class Moments:
 
 @dataclass(frozen=True)
 class Branch:
-    """One body as the recursions see it, in its working axes, at its joint point.
+    """One body as the recursions see it, in its working axes, at its origin: the joint point.
 
     Args:
         link: the body.
@@ -90,7 +90,7 @@ class Branch:
 def branches_of(motion: Motion) -> tuple[Branch, ...]:
     """The tree of bodies for the recursions, parents first."""
     plane = motion.scope.model.space == "plane"
-    offsets = [_offset(motion, i) for i in range(len(motion.links))]
+    offsets = [offset_of(motion, link) for link in motion.links]
     moments = _regrouped(motion, offsets, plane)
     branches = []
     for i, link in enumerate(motion.links):
@@ -98,44 +98,46 @@ def branches_of(motion: Motion) -> tuple[Branch, ...]:
     return tuple(branches)
 
 
-def _offset(motion: Motion, i: int) -> Vector:
-    """From the parent's joint point to this body's, in the parent's body axes."""
-    link = motion.links[i]
-    local = link.before.then(link.relative).p
-    return local if link.parent == GROUND else minus(local, motion.links[link.parent].point)
+def origin_of(motion: Motion, link: Link) -> Vector:
+    """A branch's origin in body axes: the joint point, or the body's own origin where the joint slides along it."""
+    return ZERO if motion.moves(link.point) else link.point
+
+
+def offset_of(motion: Motion, link: Link) -> Vector:
+    """From the parent's origin to this branch's, in the parent's body axes."""
+    place = link.local.point(minus(origin_of(motion, link), link.point))
+    return place if link.parent == GROUND else minus(place, origin_of(motion, motion.links[link.parent]))
 
 
 def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane: bool) -> Branch:
     scope = motion.scope
     parent_axes = IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
     axes = link.pose.R if plane else IDENTITY
-    E = IDENTITY if plane else transposed(product(link.before.R, link.relative.R))
+    E = IDENTITY if plane else transposed(link.local.R)
     rate = scope.time_derivative(offset)
     bias = scope.time_derivative(rate)
-    S = [(apply(axes, w), apply(axes, v)) for w, v in link.S]
+    directions = [apply(axes, w) for w, _ in link.S]
     w = w_bias = ZERO
     s_bias = scope.time_derivative(link.s_rate)
-    for (column, _), (body_column, _), s_rate, s_acc in zip(S, link.S, link.s_rate, s_bias, strict=True):
-        w = plus(w, times(s_rate, column))
-        turning = apply(axes, scope.time_derivative(body_column))
-        w_bias = plus(w_bias, plus(times(s_acc, column), times(s_rate, turning)))
+    for direction, (body_direction, _), s_rate, s_acc in zip(directions, link.S, link.s_rate, s_bias, strict=True):
+        w = plus(w, times(s_rate, direction))
+        turning = apply(axes, scope.time_derivative(body_direction))
+        w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
+    own_rate = apply(parent_axes, rate)
     return Branch(
-        link, link.parent, E, apply(parent_axes, offset), apply(parent_axes, rate), apply(parent_axes, bias),
-        w, w_bias, _columns(motion, link, S), moments, axes,
+        link, link.parent, E, apply(parent_axes, offset), own_rate, apply(parent_axes, bias), w, w_bias,
+        _columns(motion, w, own_rate if plane else apply(E, rate)), moments, axes,
     )  # fmt: skip
 
 
-def _columns(motion: Motion, link: Link, S: list[Column]) -> dict[int, Column]:
-    """Columns of S D: the joint's twist per unit of each speed on which it depends."""
+def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, Column]:
+    """The branch's twist against its parent per unit of each speed on which it depends."""
     speeds = {u: k for k, u in enumerate(motion.scope.symbols.u)}
-    columns: dict[int, Column] = {}
-    for (w, v), rate in zip(S, link.s_rate, strict=True):
-        for symbol in symbols_of((rate,)):
-            if symbol not in speeds:
-                continue
-            factor = derivative(rate, symbol)
-            w0, v0 = columns.get(speeds[symbol], (ZERO, ZERO))
-            columns[speeds[symbol]] = (plus(w0, times(factor, w)), plus(v0, times(factor, v)))
+    columns = {}
+    for symbol in symbols_of((*w, *v)):
+        if symbol in speeds:
+            rates = tangent((*w, *v), {symbol: 1})
+            columns[speeds[symbol]] = (rates[:3], rates[3:])
     return dict(sorted(columns.items()))
 
 
@@ -174,7 +176,7 @@ def _own_moments(motion: Motion, link: Link, plane: bool) -> Moments:
     J = tuple(tuple((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
     if plane:
         J = ((body.I[2][2], 0, 0), ZERO, ZERO)
-    com = minus(body.com, link.point)
+    com = minus(body.com, origin_of(motion, link))
     return _flat(Moments(body.m, ZERO, J).moved(com), plane)  # type: ignore[arg-type]
 
 
@@ -193,9 +195,7 @@ def _hinge_axis(motion: Motion, link: Link, offset: Vector) -> int | None:
     w = link.S[0][0]
     if sorted((type(x) is int, abs(x) if type(x) is int else 2) for x in w) != [(True, 0), (True, 0), (True, 1)]:
         return None
-    moving = {*motion.scope.symbols.q, motion.scope.symbols.t}
-    seat = (*offset, *link.point, *(x for row in link.before.R for x in row))
-    if any(symbol in moving for symbol in symbols_of(seat)):
+    if motion.moves((*offset, *link.point, *(x for row in link.before.R for x in row))):
         return None
     return next(k for k in range(3) if w[k] != 0)
 

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eomgen.report.statements import Code, Formula, Omitted, Prose, Statement
-from eomgen.symbolic.graph import Node
+from eomgen.report.reading import Reader, omitted
+from eomgen.report.statements import Code, Formula, Omitted, Prose, Side, Statement
+from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size
 
-PAGE = 7000  # characters of formulas in one step
+PAGE = 5000  # characters of formulas in one step
 
 
-def page(formulas: Iterable[Formula]) -> tuple[Statement, ...]:
-    """The formulas up to a page of them; what is left out is counted, and said where to get."""
+def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Side, ...] = ()) -> tuple[Statement, ...]:
+    """name = readable scalar (= then), up to a page of them; the rest is counted, not read."""
     kept: list[Statement] = []
     length, left_out = 0, 0
-    for formula in formulas:
-        size = sum(text_size(side) for side in formula.sides if isinstance(side, Node))
-        if any(isinstance(side, Omitted) for side in formula.sides) or length + size > PAGE:
+    for name, x in pairs:
+        shown = reader.shown(x) if length < PAGE else omitted(x)
+        if isinstance(shown, Omitted):
             left_out += 1
         else:
-            kept.append(formula)
-            length += size
+            kept.append(Formula((name, shown, *then)))
+            length += text_size(shown)
     return (*kept, *_rest(left_out, len(kept))) if left_out else tuple(kept)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import projection
-from eomgen.mechanics.inertia import armature_energy, body_energies
+from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies
 from eomgen.mechanics.system import System
+from eomgen.mechanics.work import generalized_forces
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.report.notation import notation_step
-from eomgen.report.reading import read
+from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Derivation, Law, Step
 from eomgen.symbolic.graph import Scalar
@@ -34,7 +35,7 @@ def derivation_of(system: System, assembly: Assembly, method: str) -> Derivation
     Args:
         assembly: the equations that a user gets; printed with named sub-expressions where the method's own are long.
     """
-    steps, result = _BY_METHOD[method](system, assembly)
+    steps, result = _BY_METHOD[method](system, Reader(), assembly)
     model = system.scope.model
     steps = (*setting_steps(system), *steps, *result.steps)
     return Derivation(
@@ -43,32 +44,31 @@ def derivation_of(system: System, assembly: Assembly, method: str) -> Derivation
     )  # fmt: skip
 
 
-def _lagrange(system: System, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
     energies = body_energies(system.motion)
-    T = _whole(system, energies)
-    momenta = energy_steps.momenta_of(system, T)
-    forces = energy_steps.generalized_forces_of(system)
+    T = _whole(system, reader, energies)
+    momenta = energy_steps.momenta_of(system, reader, T)
+    forces = reader.short(generalized_forces(system.loads))
     steps = (
-        motion_steps.positions_step(system),
-        motion_steps.velocities_step(system, energies),
-        *motion_steps.constraints_step(system),
-        energy_steps.kinetic_energy_step(system, energies, T),
-        energy_steps.work_step(system, forces),
+        motion_steps.positions_step(system, reader),
+        motion_steps.velocities_step(system, reader, energies),
+        *motion_steps.constraints_step(system, reader),
+        energy_steps.kinetic_energy_step(system, reader, energies, T),
+        energy_steps.work_step(system, reader, forces),
     )
     if momenta.momenta:
-        steps = (*steps, energy_steps.derivatives_step(system, momenta))
+        steps = (*steps, energy_steps.derivatives_step(system, reader, momenta))
     sides = _lagrange_sides(assembly, momenta, forces)
     law = LAGRANGE_WITH_TIES if assembly.J else LAGRANGE
-    return steps, equations_of(system, assembly, sides, ("Lagrange's equations ", law, ":"))
+    return steps, equations_of(system, reader, assembly, sides, ("Lagrange's equations ", law, ":"))
 
 
-def _whole(system: System, energies) -> Scalar:
+def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:
     """T of the whole, readable where it is short enough."""
     total: Scalar = 0
     for link, energy in zip(system.motion.links, energies, strict=True):
         total = total + energy.translation + energy.rotation + armature_energy(system.motion, link)
-    short = read(total)
-    return total if short is None else short
+    return reader.short((total,))[0]
 
 
 def _lagrange_sides(assembly: Assembly, momenta: Momenta, forces: tuple[Scalar, ...]) -> list[Sides]:
@@ -78,18 +78,18 @@ def _lagrange_sides(assembly: Assembly, momenta: Momenta, forces: tuple[Scalar, 
     return [Sides(rate - held, force + tie) for rate, held, force, tie in rows]
 
 
-def _projection(system: System, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
     own = projection.assemble(system)
     steps: tuple[Step, ...] = (
-        motion_steps.positions_step(system),
-        projection_steps.twists_step(system),
-        *motion_steps.constraints_step(system),
+        motion_steps.positions_step(system, reader),
+        projection_steps.twists_step(system, reader),
+        *motion_steps.constraints_step(system, reader),
     )
     if own.Q:
-        steps = (*steps, projection_steps.balance_step(system, own))
+        steps = (*steps, projection_steps.balance_step(system, reader, own))
     sides = sides_of(assembly, own.M, own.c, own.Q)
     law = MATRICES_WITH_TIES if assembly.J else MATRICES
-    return steps, equations_of(system, assembly, sides, ("The equations ", law, ":"))
+    return steps, equations_of(system, reader, assembly, sides, ("The equations ", law, ":"))
 
 
 _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}

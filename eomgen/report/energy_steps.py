@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from eomgen.mechanics.inertia import BodyEnergy, armature_energy
 from eomgen.mechanics.loads import Applied, JointEffort
 from eomgen.mechanics.system import System
-from eomgen.mechanics.work import effort_row, force_row, generalized_forces, per_speed
+from eomgen.mechanics.work import effort_row, force_row, per_speed
 from eomgen.model.forces.load import Couple, Load, PointForce
 from eomgen.report.bounded import page
-from eomgen.report.motion_steps import axes, components
-from eomgen.report.reading import read, shown
+from eomgen.report.motion_steps import Pair, axes, components
+from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Rate, Side, Statement, Step
+from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Statement, Step
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.graph import Scalar, is_zero
 
@@ -43,35 +43,34 @@ class Momenta:
     held: tuple[Scalar, ...]
 
 
-def momenta_of(system: System, T: Scalar) -> Momenta:
+def momenta_of(system: System, reader: Reader, T: Scalar) -> Momenta:
     """The three derivatives of T for each speed."""
     scope = system.scope
-    momenta = _short(gradient(T, scope.symbols.u))
-    rates = _short(scope.with_accelerations(momenta))
-    held = _short(per_speed(system.motion, gradient(T, scope.symbols.q)))
+    momenta = reader.short(gradient(T, scope.symbols.u))
+    rates = reader.short(scope.with_accelerations(momenta))
+    held = reader.short(per_speed(system.motion, gradient(T, scope.symbols.q)))
     return Momenta(T, momenta, rates, held)
 
 
-def _short(scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
-    """Each in its readable form, or as it is."""
-    return tuple(x if (short := read(x)) is None else short for x in scalars)
-
-
-def kinetic_energy_step(system: System, energies: tuple[BodyEnergy, ...], total: Scalar) -> Step:
+def kinetic_energy_step(
+    system: System, reader: Reader, energies: tuple[BodyEnergy, ...], total: Scalar
+) -> Step:
     """T of each body, then of the whole."""
-    formulas = []
+    formulas: list[Pair] = []
     for link, energy in zip(system.motion.links, energies, strict=True):
         of_body = energy.translation + energy.rotation
         if not is_zero(of_body):
-            formulas.append(Formula((Name("T", link.name), shown(of_body))))
+            formulas.append((Name("T", link.name), of_body))
         rotor = armature_energy(system.motion, link)
         if not is_zero(rotor):
-            formulas.append(Formula((Name("T", f"{link.name}, rotor"), shown(rotor))))
-    statements = (Prose(("Of each body ", KINETIC, ":")), *page(formulas), Prose(("Together:",)))
-    return Step("kinetic_energy", "Kinetic energy", (*statements, *page([Formula((T, shown(total)))])))
+            formulas.append((Name("T", f"{link.name}, rotor"), rotor))
+    if len(formulas) <= 1:
+        return Step("kinetic_energy", "Kinetic energy", (Prose((KINETIC, ":")), *page(reader, [(T, total)])))
+    statements = (Prose(("Of each body ", KINETIC, ":")), *page(reader, formulas), Prose(("Together:",)))
+    return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, total)])))
 
 
-def work_step(system: System, forces: tuple[Scalar, ...]) -> Step:
+def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Step:
     """The work of each force, and the generalized forces of everything applied."""
     statements: list[Statement] = []
     if not system.loads.applied and not system.loads.efforts:
@@ -80,64 +79,54 @@ def work_step(system: System, forces: tuple[Scalar, ...]) -> Step:
         statements.append(Prose(("Potentials and virtual work, ", WORK, ":")))
     formulas = [f for force in system.loads.applied for f in _force(system, force)]
     formulas += [f for effort in system.loads.efforts for f in _effort(system, effort)]
-    statements += page(formulas)
-    if any(force.potential is not None for force in system.loads.applied) or _elastic(system):
+    statements += page(reader, formulas)
+    if sum(isinstance(name, Name) and name.letter == "V" for name, _ in formulas) > 1:
         statements += [Prose(("The potential energy together:",))]
-        statements += page([Formula((V, shown(system.loads.potential_energy)))])
+        statements += page(reader, [(V, system.loads.potential_energy)])
     names = moved_coordinates(system)
     if names:
         statements.append(Prose(("The generalized forces of everything applied:",)))
-        statements += page(Formula((Name("Q", by=q), shown(Q))) for q, Q in zip(names, forces, strict=True))
+        statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])
     return Step("work", "Work and generalized forces", tuple(statements))
 
 
-def generalized_forces_of(system: System) -> tuple[Scalar, ...]:
-    """Q, readable where it is short enough."""
-    return _short(generalized_forces(system.loads))
-
-
-def _elastic(system: System) -> bool:
-    return any(not is_zero(effort.potential) for effort in system.loads.efforts)
-
-
-def _force(system: System, force: Applied) -> list[Formula]:
+def _force(system: System, force: Applied) -> list[Pair]:
     """The potential of a force, or what it is and its virtual work."""
     if force.potential is not None:
-        return [Formula((Name("V", force.name), shown(force.potential)))]
+        return [(Name("V", force.name), force.potential)]
     formulas = [f for number, load in enumerate(force.loads, start=1)
                 for f in _load(system, load, force.name if len(force.loads) == 1 else f"{force.name} {number}")]  # fmt: skip
     return formulas + _contributions(system, force.name, force_row(system.loads, force))
 
 
-def _load(system: System, load: Load, name: str) -> list[Formula]:
+def _load(system: System, load: Load, name: str) -> list[Pair]:
     if isinstance(load, PointForce) and load.place[0] is not None and load.axes is None:
         return components(system, "F", name, load.force)
     if isinstance(load, Couple) and len(axes(system)) == 2:
-        return [Formula((Name("couple", name), shown(load.couple[2])))]
+        return [(Name("couple", name), load.couple[2])]
     return []
 
 
-def _contributions(system: System, name: str, row: tuple[Scalar, ...]) -> list[Formula]:
+def _contributions(system: System, name: str, row: tuple[Scalar, ...]) -> list[Pair]:
     names = moved_coordinates(system)
-    return [Formula((Name("Q", name, q), shown(x))) for q, x in zip(names, row, strict=True) if not is_zero(x)]
+    return [(Name("Q", name, q), x) for q, x in zip(names, row, strict=True) if not is_zero(x)]
 
 
-def _effort(system: System, effort: JointEffort) -> list[Formula]:
+def _effort(system: System, effort: JointEffort) -> list[Pair]:
     """A joint's spring, and the virtual work of its drive and damper."""
     name = f"joint of {effort.body}"
-    formulas = [] if is_zero(effort.potential) else [Formula((Name("V", name), shown(effort.potential)))]
+    formulas = [] if is_zero(effort.potential) else [(Name("V", name), effort.potential)]
     if is_zero(effort.drive):
         return formulas
     return formulas + _contributions(system, name, effort_row(system.motion, effort))
 
 
-def derivatives_step(system: System, momenta: Momenta) -> Step:
+def derivatives_step(system: System, reader: Reader, momenta: Momenta) -> Step:
     """dT/du, d/dt dT/du and dT/dq of each speed."""
-    formulas = []
+    formulas: list[Pair] = []
     for k, (u, q) in enumerate(zip(system.symbols.u, moved_coordinates(system), strict=True)):
         momentum = Partial(T, u)
-        rows: tuple[tuple[Side, Scalar], ...] = (
+        formulas += [
             (momentum, momenta.momenta[k]), (Rate(momentum), momenta.rates[k]), (Partial(T, q), momenta.held[k]),
-        )  # fmt: skip
-        formulas += [Formula((name, shown(x))) for name, x in rows]
-    return Step("derivatives", "Derivatives of the kinetic energy", page(formulas))
+        ]  # fmt: skip
+    return Step("derivatives", "Derivatives of the kinetic energy", page(reader, formulas))

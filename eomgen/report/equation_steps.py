@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
-from eomgen.report.bounded import elsewhere, page
-from eomgen.report.reading import LONGEST, WORK, Shortened, free_names, read, shortened, shown
+from eomgen.report.bounded import elsewhere
+from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, shortened
 from eomgen.report.statements import Equation, Formula, Piece, Prose, Statement, Step
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
@@ -56,7 +56,9 @@ def sides_of(assembly: Assembly, M: Sequence[Sequence[Scalar]], c: Sequence[Scal
     return rows
 
 
-def equations_of(system: System, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]) -> Result:
+def equations_of(
+    system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
+) -> Result:
     """The equations of motion, divided by what is common, and the accelerations where that is short.
 
     Args:
@@ -65,7 +67,7 @@ def equations_of(system: System, assembly: Assembly, sides: Sequence[Sides], rul
     """
     if not sides:
         return Result((), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),))
-    equations = _readable(assembly, sides)
+    equations = _readable(reader, assembly, sides)
     definitions: tuple[tuple[Node, Scalar], ...] = ()
     statements: list[Statement] = [Prose(rule)]
     if equations is None:
@@ -77,18 +79,18 @@ def equations_of(system: System, assembly: Assembly, sides: Sequence[Sides], rul
         statements.append(Prose(("With the names",)))
         statements += [Formula(pair) for pair in definitions]
     statements += _printed(system, equations)
-    statements += _closing(assembly)
+    statements += _closing(reader, assembly)
     steps = [Step("equations", "Equations of motion", tuple(statements))]
     if not definitions:
         steps += _solved(system, assembly, equations)
     return Result(tuple(equations), definitions, tuple(steps))
 
 
-def _readable(assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
+def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
     equations = []
     for u, row in zip(assembly.symbols.u, sides, strict=True):
-        left, right = read(row.left), read(row.right)
+        left, right = reader.read(row.left), reader.read(row.right)
         if left is None or right is None or text_size(left) + text_size(right) > LONGEST:
             return None
         divisor = common_factor((left, right), WORK)
@@ -134,7 +136,7 @@ def _divided(system: System, equation: Equation) -> tuple[Piece, ...]:
     return ("For ", equation.speed, ", divided by ", divisor, words)
 
 
-def _closing(assembly: Assembly) -> list[Statement]:
+def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
     """J a + gamma = 0, for each closing row."""
     rows = []
     for row, gamma in zip(assembly.J, assembly.gamma, strict=True):
@@ -142,7 +144,7 @@ def _closing(assembly: Assembly) -> list[Statement]:
     if not rows:
         return []
     words = "The constraints, differentiated until accelerations stand in them:"
-    return [Prose((words,)), *page(Formula((shown(row), 0)) for row in rows)]
+    return [Prose((words,)), *(Formula((reader.shown(row), 0)) for row in rows)]
 
 
 def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:

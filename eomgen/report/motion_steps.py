@@ -10,12 +10,13 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import PointForce
 from eomgen.report.bounded import page
-from eomgen.report.reading import shown
-from eomgen.report.statements import Formula, Meaning, Name, Prose, Rate, Statement, Step, Table
-from eomgen.symbolic.graph import Node, is_zero
+from eomgen.report.reading import Reader
+from eomgen.report.statements import Meaning, Name, Prose, Rate, Side, Statement, Step, Table
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, dot
 
 AXES = "xyz"
+Pair = tuple[Side, Scalar]
 
 
 def axes(system: System) -> str:
@@ -23,21 +24,21 @@ def axes(system: System) -> str:
     return AXES[:2] if system.scope.model.space == "plane" else AXES
 
 
-def positions_step(system: System) -> Step:
+def positions_step(system: System, reader: Reader) -> Step:
     """Where the mass centres are, how the bodies stand, where given forces act."""
     motion = system.motion
-    formulas: list[Formula] = []
+    formulas: list[Pair] = []
     for link in motion.links:
         body = mass_properties(system.scope, link.name)
         if not is_zero(body.m):
             at = motion.position((link.name, body.com))
             formulas += components(system, "", f"{link.name}.center", at)
         if _turns(link):
-            formulas.append(Formula((Name("angle", link.name), shown(link.angle))))  # type: ignore[arg-type]
+            formulas.append((Name("angle", link.name), link.angle))  # type: ignore[arg-type]
     for name, point in points_of_forces(system):
         formulas += components(system, "", name, point)
     statements: list[Statement] = [Prose(("The mass centres, and the angles of the bodies against the x axis:"
-                                          if len(axes(system)) == 2 else "The mass centres:",)), *page(formulas)]
+                                          if len(axes(system)) == 2 else "The mass centres:",)), *page(reader, formulas)]
     return Step("positions", "Positions", tuple(statements))
 
 
@@ -45,9 +46,9 @@ def _turns(link: Link) -> bool:
     return isinstance(link.angle, Node)
 
 
-def components(system: System, prefix: str, of: str, vector: Vector) -> list[Formula]:
+def components(system: System, prefix: str, of: str, vector: Vector) -> list[Pair]:
     """One formula for each component; `prefix` is "v" for velocities."""
-    return [Formula((Name(prefix + axis, of), shown(x))) for axis, x in zip(axes(system), vector, strict=False)]
+    return [(Name(prefix + axis, of), x) for axis, x in zip(axes(system), vector, strict=False)]
 
 
 def points_of_forces(system: System) -> Iterator[tuple[str, Vector]]:
@@ -60,43 +61,43 @@ def points_of_forces(system: System) -> Iterator[tuple[str, Vector]]:
                 yield label, system.motion.position(place)
 
 
-def velocities_step(system: System, energies: tuple[BodyEnergy, ...]) -> Step:
+def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Step:
     """Velocities of the mass centres and angular velocities, by differentiation."""
-    formulas: list[Formula] = []
+    formulas: list[Pair] = []
     for energy in energies:
         if not is_zero(mass_properties(system.scope, energy.body).m):
             of = f"{energy.body}.center"
             formulas += components(system, "v", of, energy.velocity)
-            formulas.append(Formula((Name("speed", of, power=2), shown(dot(energy.velocity, energy.velocity)))))
+            formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))
         formulas += spins(system, energy.body, energy.spin)
     words = "The derivatives of the positions, and the angular velocities"
     words += ":" if len(axes(system)) == 2 else " in the axes of the bodies:"
-    return Step("velocities", "Velocities", (Prose((words,)), *page(formulas)))
+    return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
 
 
-def spins(system: System, body: str, spin: Vector) -> list[Formula]:
+def spins(system: System, body: str, spin: Vector) -> list[Pair]:
     """The angular velocity of a body: one number in the plane, its components in body axes in space."""
     if len(axes(system)) == 2:
-        return [] if is_zero(spin[2]) else [Formula((Name("omega", body), shown(spin[2])))]
+        return [] if is_zero(spin[2]) else [(Name("omega", body), spin[2])]
     if all(is_zero(x) for x in spin):
         return []
-    return [Formula((Name(f"omega_{axis}", body), shown(x))) for axis, x in zip(AXES, spin, strict=True)]
+    return [(Name(f"omega_{axis}", body), x) for axis, x in zip(AXES, spin, strict=True)]
 
 
-def constraints_step(system: System) -> tuple[Step, ...]:
+def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
     """The constraints: their gaps and rates, and which of them the coordinates satisfy; nothing where there are none."""
     if not system.ties.rows:
         return ()
     statements: list[Statement] = []
     named = dict(zip((row.label for row in system.ties.closing), system.symbols.lam, strict=True))
-    formulas: list[Formula] = []
+    formulas: list[Pair] = []
     for row in system.ties.rows:
         if row.identical:
             statements.append(Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)))
         else:
             formulas.append(_closing(row))
     if formulas:
-        statements += [Prose(("These must vanish along the motion:",)), *page(formulas)]
+        statements += [Prose(("These must vanish along the motion:",)), *page(reader, formulas, then=(0,))]
         rows = tuple(
             Meaning(named[row.label], f"multiplier of {row.tie}, row {row.number}") for row in system.ties.closing
         )
@@ -104,11 +105,9 @@ def constraints_step(system: System) -> tuple[Step, ...]:
     return (Step("constraints", "Constraints", tuple(statements)),)
 
 
-def _closing(row: Row) -> Formula:
+def _closing(row: Row) -> Pair:
     name = _gap_name(row)
-    if row.gap is not None:
-        return Formula((name, shown(row.gap), 0))
-    return Formula((Rate(name), shown(row.velocity), 0))
+    return (name, row.gap) if row.gap is not None else (Rate(name), row.velocity)
 
 
 def _gap_name(row: Row) -> Name:

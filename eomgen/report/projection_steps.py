@@ -7,8 +7,8 @@ from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import velocity_of
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import page
-from eomgen.report.motion_steps import components, spins
-from eomgen.report.reading import shown
+from eomgen.report.motion_steps import Pair, components, spins
+from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Entry, Formula, Law, Name, Prose, Step
 from eomgen.symbolic.graph import is_zero
@@ -24,9 +24,9 @@ PROJECTED = Law(
 )
 
 
-def twists_step(system: System) -> Step:
+def twists_step(system: System, reader: Reader) -> Step:
     """Velocities of the mass centres and angular velocities, from body to body along the tree."""
-    formulas: list[Formula] = []
+    formulas: list[Pair] = []
     for link in system.motion.links:
         body = mass_properties(system.scope, link.name)
         if not is_zero(body.m):
@@ -34,21 +34,21 @@ def twists_step(system: System) -> Step:
             formulas += components(system, "v", f"{link.name}.center", velocity)
         formulas += spins(system, link.name, link.twist.w)
     words = "Each body moves with the one it hangs on and by its joint:"
-    return Step("velocities", "Velocities", (Prose((words,)), *page(formulas)))
+    return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
 
 
-def balance_step(system: System, assembly: Assembly) -> Step:
+def balance_step(system: System, reader: Reader, assembly: Assembly) -> Step:
     """M, c and Q: the balance of momentum of every body along the motions that the joints allow."""
     u, q = system.symbols.u, moved_coordinates(system)
-    inertia = [
-        Formula((Entry("M", u[i], u[j]), shown(assembly.M[i][j])))
+    inertia: list[Pair] = [
+        (Entry("M", u[i], u[j]), assembly.M[i][j])
         for i in range(len(u)) for j in range(i, len(u)) if not is_zero(assembly.M[i][j])
     ]  # fmt: skip
-    inertia += [Formula((Name("c", by=x), shown(c))) for x, c in zip(u, assembly.c, strict=True)]
-    forces = [Formula((Name("Q", by=x), shown(Q))) for x, Q in zip(q, assembly.Q, strict=True)]
+    inertia += [(Name("c", by=x), c) for x, c in zip(u, assembly.c, strict=True)]
+    forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, assembly.Q, strict=True)]
     statements = (
         Prose(("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that")),
         Formula((PROJECTED,)),
-        Prose(("Sorted by accelerations:",)), *page(inertia), *page(forces),
+        Prose(("Sorted by accelerations:",)), *page(reader, inertia), *page(reader, forces),
     )  # fmt: skip
     return Step("balance", "Balance of momentum along the free motions", statements)

@@ -13,27 +13,46 @@ from eomgen.symbolic.normal_form import readable
 from eomgen.symbolic.text import named_parts, text_size
 
 WORK = 2000  # products of terms that are multiplied out for one formula
-LONGEST = 1800  # characters of one formula in print
-TRIED = 20_000  # characters: what is longer by far will not become short
+LONGEST = 1500  # characters of one formula in print
+NESTED = 400  # characters of a formula that is not multiplied out, in print
+TRIED = 8000  # characters: what is longer by far will not become short
+BUDGET = 60_000  # characters of all formulas that did not become short, before no more are tried
 NAMED = 40  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 6000  # characters of all named sub-expressions together, at most
 
 
-def read(x: Scalar) -> Scalar | None:
-    """x in its readable form; None where it is too long to print."""
-    size = text_size(x)
-    if size > TRIED:
-        return None
-    short = readable(x, WORK)
-    if text_size(short) <= LONGEST:
-        return short
-    return x if size <= LONGEST else None
+class Reader:
+    """Puts scalars into readable form, each once, with bounded work in all."""
 
+    def __init__(self) -> None:
+        self._known: dict[Scalar, Scalar | None] = {}
+        self._spent = 0
 
-def shown(x: Scalar) -> Scalar | Omitted:
-    """x in its readable form, or how large it is."""
-    short = read(x)
-    return omitted(x) if short is None else short
+    def read(self, x: Scalar) -> Scalar | None:
+        """x in its readable form; None where it is too long to print."""
+        if x not in self._known:
+            short = self._known[x] = self._read(x)
+            if short is not None:
+                self._known[short] = short
+        return self._known[x]
+
+    def _read(self, x: Scalar) -> Scalar | None:
+        size = text_size(x)
+        if size <= TRIED and self._spent < BUDGET:
+            short = readable(x, WORK)
+            if text_size(short) <= LONGEST:
+                return short
+            self._spent += size
+        return x if size <= NESTED else None
+
+    def shown(self, x: Scalar) -> Scalar | Omitted:
+        """x in its readable form, or how large it is."""
+        short = self.read(x)
+        return omitted(x) if short is None else short
+
+    def short(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """Each in its readable form, or as it is where that is too long."""
+        return tuple(x if (short := self.read(x)) is None else short for x in scalars)
 
 
 def omitted(*expressions: Scalar) -> Omitted:

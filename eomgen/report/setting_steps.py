@@ -68,7 +68,7 @@ def _freedom(system: System) -> Step:
     driven = len(symbols.q) - len(symbols.u)
     statements: list[Statement] = [Prose((
         f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
-        f", {driven} of them driven" if driven else "", f": {count(len(symbols.u), 'free speed')}.",
+        f", {driven} of them driven." if driven else ".",
     ))]  # fmt: skip
     identical = [row for row in system.ties.rows if row.identical]
     if identical:

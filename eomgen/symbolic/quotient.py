@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Number
-from eomgen.symbolic.shortest import axes_of, power_form
+from eomgen.symbolic.powers import axes_of, power_form
 from eomgen.symbolic.terms import Terms, Vector, Wave, common_monomial, constant, plus, tidy
 
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought

@@ -1,8 +1,9 @@
 """A sum of waves -> the shortest way to write it: 27/2 cos(theta)^2, cos(theta1 - theta2), sin(theta) cos(theta).
 
 Candidates: the waves themselves; powers of sines and cosines with s^2 or c^2 eliminated, angle by angle; powers along
-each direction of the angles (theta1 - theta2 is one), which keeps the energies of long chains short. The candidate with
-the fewest terms wins, then the one without multiple angles, then the one with fewer minus signs.
+each direction of the angles (theta1 - theta2 is one), which keeps the energies of long chains short; products of two in
+place of pairs. The candidate with the fewest terms wins, then the one without multiple angles, then the one with fewer
+minus signs.
 """
 
 from __future__ import annotations
@@ -10,19 +11,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from itertools import product
-from math import comb, gcd
+from math import gcd
 
 from eomgen.symbolic.graph import Number
-from eomgen.symbolic.terms import Vector, Wave, common_number, tidy
+from eomgen.symbolic.powers import Polynomial, axes_of, eliminated, power_form
+from eomgen.symbolic.terms import Vector, Wave, common_number, tidy, vector_sum, wave
 
 Waves = dict[Wave, Number]
 Factors = tuple[tuple[str, Vector, int], ...]  # (function, angle, exponent)
 Sum = tuple[tuple[Number, Factors], ...]
-Powers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
-Polynomial = dict[Powers, Number]
 
-LARGEST_DEGREE = 12  # of a wave to be written in powers
 MOST_AXES = 6
+MOST_PAIRED = 60  # waves among which pairs are sought
 MOST_CHOICES = 64  # of forms along the directions, tried all
 
 
@@ -34,6 +34,11 @@ def shortest(waves: Waves) -> Sum:
     """
     if len(waves) == 1 and not _has_multiple(waves):
         return _as_waves(waves)
+    pairs, rest = _paired(waves)
+    return min(_without_pairs(waves), _merged([*pairs, *_without_pairs(rest)]), key=_length)
+
+
+def _without_pairs(waves: Waves) -> Sum:
     candidates = [_as_waves(waves), _by_directions(waves)]
     whole = _in_powers(waves)
     if whole is not None:
@@ -100,7 +105,7 @@ def _forms(rays: Waves) -> list[Form]:
     polynomial, axes = _polynomial(rays) or ({}, ())
     if axes and any(_is_multiple(w[1]) or w[1] != axes[0] for w in rays if w):
         for keep in ("cos", "sin"):
-            reduced = _eliminated(polynomial, 0, keep)
+            reduced = eliminated(polynomial, 0, keep)
             number = reduced.pop(((0, 0),), 0)
             forms.append((number, _as_sum(reduced, axes)))
     return forms
@@ -110,6 +115,49 @@ def _direction(k: Vector) -> Vector:
     """k divided by the largest number that leaves whole multiples."""
     common = common_number(c for _, c in k)
     return tuple((angle, tidy(c / common)) for angle, c in k)
+
+
+# -- in pairs ---------------------------------------------------------------------------------
+
+
+def _paired(waves: Waves) -> tuple[list[tuple[Number, Factors]], Waves]:
+    """(products, the other waves): cos(b) + cos(2 a + b) = 2 cos(a) cos(a + b), and so on, where that is whole."""
+    products: list[tuple[Number, Factors]] = []
+    rest = dict(waves)
+    ordered = sorted(w for w in waves if w)[:MOST_PAIRED]
+    for i, v in enumerate(ordered):
+        for w in ordered[i + 1 :]:
+            if v in rest and w in rest and v[0] == w[0] and abs(rest[v]) == abs(rest[w]):
+                product = _product_of_pair(v[0], v[1], w[1], rest[v], rest[v] == rest[w])
+                if product is not None:
+                    products.append(product)
+                    del rest[v], rest[w]
+    return products, rest
+
+
+def _product_of_pair(kind: str, k: Vector, l: Vector, c: Number, same: bool) -> tuple[Number, Factors] | None:
+    """c (f(k) + f(l)), or c (f(k) - f(l)) where not `same`, as one product; None where (k + l)/2 is not whole."""
+    halves = [tuple((angle, tidy(Fraction(m) / 2)) for angle, m in vector_sum(k, l, sign)) for sign in (1, -1)]
+    if not all(halves) or any(type(m) is not int or angle < 0 for half in halves for angle, m in half):
+        return None
+    if kind == "cos":
+        functions = ("cos", "cos") if same else ("sin", "sin")
+    else:
+        functions = ("sin", "cos") if same else ("cos", "sin")
+    c = 2 * c if same or kind == "sin" else -2 * c
+    factors = []
+    for function, half in zip(functions, halves, strict=True):
+        (name, vector), sign = _named(wave(function, half))
+        c *= sign
+        factors.append((name, vector, 1))
+    return tidy(c), tuple(sorted(factors))
+
+
+def _named(found: tuple[Wave, int]) -> tuple[tuple[str, Vector], int]:
+    """A wave that is not 1."""
+    w, sign = found
+    assert w
+    return w, sign
 
 
 # -- by the angles that occur together --------------------------------------------------------
@@ -135,7 +183,7 @@ def _merged(terms: Iterable[tuple[Number, Factors]]) -> Sum:
     return tuple((c, factors) for factors, c in sorted(total.items()) if c)
 
 
-# -- powers of sines and cosines --------------------------------------------------------------------
+# -- in powers ---------------------------------------------------------------------------------
 
 
 def _in_powers(waves: Waves) -> Sum | None:
@@ -145,24 +193,9 @@ def _in_powers(waves: Waves) -> Sum | None:
         return None
     polynomial, axes = found
     for axis in range(len(axes)):
-        options = [_eliminated(polynomial, axis, keep) for keep in ("cos", "sin")]
+        options = [eliminated(polynomial, axis, keep) for keep in ("cos", "sin")]
         polynomial = min(options, key=lambda option: _length(_as_sum(option, axes)))
     return _as_sum(polynomial, axes)
-
-
-def power_form(waves: Waves, axes: tuple[Vector, ...]) -> Polynomial | None:
-    """The waves as a polynomial in the axes' cosines and sines, s^2 eliminated; None where that is too large."""
-    polynomial: Polynomial = {}
-    for w, c in waves.items():
-        multiples = _multiples(w[1], axes) if w else (0,) * len(axes)
-        if multiples is None or sum(abs(m) for m in multiples) > LARGEST_DEGREE:
-            return None
-        for powers, share in _wave_in_powers(w[0] if w else "cos", multiples).items():
-            polynomial[powers] = tidy(polynomial.get(powers, 0) + c * share)
-    polynomial = {powers: c for powers, c in polynomial.items() if c}
-    for axis in range(len(axes)):
-        polynomial = _eliminated(polynomial, axis, "cos")
-    return polynomial
 
 
 def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[Vector, ...]] | None:
@@ -171,84 +204,6 @@ def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[Vector, ...]] | None:
         return None
     polynomial = power_form(waves, axes)
     return None if polynomial is None else (polynomial, axes)
-
-
-def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
-    """Angles of which those of all waves are whole combinations.
-
-    Angles that always come in one proportion are one axis: sin(a) cos(b + c) has the axes a and b + c.
-    """
-    rows = [dict(w[1]) for w in waves if w]
-    groups: dict[tuple[Fraction, ...], list[tuple[int, Fraction]]] = {}
-    for angle in sorted({angle for row in rows for angle in row}):
-        column = [row.get(angle, 0) for row in rows]
-        lead = Fraction(next(c for c in column if c))
-        groups.setdefault(tuple(c / lead for c in column), []).append((angle, lead))
-    axes = []
-    for pattern, members in groups.items():
-        common = common_number(lead for _, lead in members)
-        unit = common_number([*(c * common for c in pattern if c), Fraction(1)])  # 1, or a fraction for half-angles
-        axes.append(tuple((angle, tidy(lead / common * unit)) for angle, lead in members))
-    return tuple(axes)
-
-
-def _multiples(k: Vector, axes: tuple[Vector, ...]) -> tuple[int, ...] | None:
-    """k as whole multiples of the axes, or None."""
-    entries = dict(k)
-    multiples = []
-    for axis in axes:
-        angle, unit = axis[0]
-        multiple = Fraction(entries.get(angle, 0)) / unit
-        if multiple.denominator != 1:
-            return None
-        for member, c in axis:
-            if entries.pop(member, 0) != multiple * c:
-                return None
-        multiples.append(multiple.numerator)
-    return None if entries else tuple(multiples)
-
-
-def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> Polynomial:
-    """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
-    real: Polynomial = {(): 1}
-    imaginary: Polynomial = {}
-    for m in multiples:
-        c_part, s_part = _one_axis(m)
-        real, imaginary = (
-            _joined((real, c_part, 1), (imaginary, s_part, -1)),
-            _joined((real, s_part, 1), (imaginary, c_part, 1)),
-        )
-    return real if kind == "cos" else imaginary
-
-
-def _one_axis(m: int) -> tuple[dict[tuple[int, int], int], dict[tuple[int, int], int]]:
-    """(cos(m a), sin(m a)) in powers of cos a and sin a, by de Moivre."""
-    n, sense = abs(m), 1 if m >= 0 else -1
-    cosine = {(n - j, j): (-1) ** (j // 2) * comb(n, j) for j in range(0, n + 1, 2)}
-    sine = {(n - j, j): sense * (-1) ** (j // 2) * comb(n, j) for j in range(1, n + 1, 2)}
-    return cosine, sine
-
-
-def _joined(*products: tuple[Polynomial, dict[tuple[int, int], int], int]) -> Polynomial:
-    total: Polynomial = {}
-    for left, right, sign in products:
-        for powers, c in left.items():
-            for pair, d in right.items():
-                total[(*powers, pair)] = total.get((*powers, pair), 0) + sign * c * d
-    return {powers: c for powers, c in total.items() if c}
-
-
-def _eliminated(polynomial: Polynomial, axis: int, keep: str) -> Polynomial:
-    """With s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") used up for one axis."""
-    total: Polynomial = {}
-    for powers, coefficient in polynomial.items():
-        c, s = powers[axis]
-        kept, gone = (c, s) if keep == "cos" else (s, c)
-        for j in range(gone // 2 + 1):
-            pair = (kept + 2 * j, gone % 2) if keep == "cos" else (gone % 2, kept + 2 * j)
-            key = (*powers[:axis], pair, *powers[axis + 1 :])
-            total[key] = tidy(total.get(key, 0) + coefficient * comb(gone // 2, j) * (-1) ** j)
-    return {powers: c for powers, c in total.items() if c}
 
 
 def _as_sum(polynomial: Polynomial, axes: tuple[Vector, ...]) -> Sum:

@@ -38,10 +38,13 @@ class Writer:
         self.coordinates.append(f"{name} = {self.rng.choice(laws) if driven else number(self.rng)}")
         return name
 
-    def seat(self) -> str:
+    def seat(self, moving: bool = False) -> str:
         if not self.names or self.rng.random() < 0.2:
             return f"at = {self.vector()}"
         parent = self.rng.choice(self.names)
+        if moving and self.coordinates and self.rng.random() < 0.3:
+            q = self.rng.choice(self.coordinates).split(" ")[0]
+            return f'on = "{parent}", at = {[f"l*cos({q})", "A*t", q][: self.size]}'
         return f'on = "{parent}.P"' if self.rng.random() < 0.5 else f'on = "{parent}", at = {self.vector()}'
 
     def joint(self) -> str:
@@ -58,10 +61,10 @@ class Writer:
         if kind == "prismatic":
             along = axis(rng) if self.space == "space" else [3, 4]
             turn = turned.replace(turned.split(", turned")[0], "") if self.space == "space" else ""
-            return f'{{ kind = "prismatic", {self.seat()}, displacement = "{self.coordinate()}", axis = {along}{turn} }}'
+            return f'{{ kind = "prismatic", {self.seat(moving=True)}, displacement = "{self.coordinate()}", axis = {along}{turn} }}'
         if kind in ("planar", "free"):
             x, y, angle = (self.coordinate() for _ in range(3))
-            return f'{{ kind = "{kind}", {self.seat()}, x = "{x}", y = "{y}", angle = "{angle}" }}'
+            return f'{{ kind = "{kind}", {self.seat(moving=True)}, x = "{x}", y = "{y}", angle = "{angle}" }}'
         if kind == "fixed":
             return f'{{ kind = "fixed", {self.seat()}, angle = 0.3 }}'
         q = self.coordinate()
@@ -74,8 +77,12 @@ class Writer:
         mass = rng.choice(['mass = "m"', 'mass = "2*m"'])
         inertia = 'inertia = "I"' if self.space == "plane" else 'inertia = ["I", "2*I", "2*I", "I/9", "-I/7", "I/11"]'
         joint = self.joint()
+        slide = self.vector()
+        if 'point = "P"' in joint and "torque" not in joint and "stiffness" not in joint and rng.random() < 0.5:
+            slide = str([f"l*{self.coordinate()}", "h", "0"][: self.size])  # the hinge slides along its own body
+            joint = joint.replace('point = "P"', 'point = "S"')
         self.bodies.append(
-            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()} }}\njoint = {joint}"
+            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()}, S = {slide} }}\njoint = {joint}"
         )
         self.names.append(name)
 

@@ -1,0 +1,132 @@
+"""Degrees of freedom: by rank at a generic configuration, beside the count by formula; redundant ties by name."""
+
+from __future__ import annotations
+
+import pytest
+
+import eomgen
+
+HEAD = """
+eomgen = 1
+name = "linkage"
+space = "plane"
+[parameters]
+l = 1.0
+d = 2.0
+m = 1.0
+"""
+
+
+def crank(name: str, at: str, q: str) -> str:
+    """A rod of length l that turns about a point of the ground by the angle q."""
+    return f"""
+[bodies.{name}]
+shape = {{ kind = "rod", mass = "m", length = "l" }}
+joint = {{ kind = "revolute", at = {at}, point = "start", angle = "{q}" }}
+"""
+
+
+COUPLER = """
+[bodies.coupler]
+shape = { kind = "rod", mass = "m", length = "d" }
+joint = { kind = "revolute", on = "left.end", point = "start", angle = "q2 - q1" }
+"""
+FOUR_BAR = crank("left", "[0, 0]", "q1") + COUPLER + crank("right", '["d", 0]', "q3")
+HINGE = '[constraints.right_hinge]\nkind = "pin"\npoints = ["coupler.end", "right.end"]\n'
+MIDDLE = crank("third", '["d/2", 0]', "q4") + (
+    '[constraints.middle_hinge]\nkind = "pin"\npoints = ["coupler.center", "third.end"]\n'
+)
+
+
+def coordinates(**starts: float) -> str:
+    return "[coordinates]\n" + "".join(f"{name} = {value}\n" for name, value in starts.items())
+
+
+def freedom(text: str):
+    return eomgen.freedom_of(eomgen.loads(HEAD + text))
+
+
+def test_a_four_bar_linkage_has_one_degree_of_freedom():
+    """f = nu - rank J = 3 - 2 = 1;  3*3 - 6 - 2 = 1"""
+    found = freedom(coordinates(q1=1.0, q2=0.0, q3=1.0) + FOUR_BAR + HINGE)
+    assert (found.by_rank, found.by_formula, found.redundant) == (1, 1, ())
+    assert found.closing == ("right_hinge",)
+
+
+def test_a_third_equal_crank_is_redundant_and_is_named():
+    """A parallelogram with three cranks: 3*4 - 8 - 4 = 0 by the formula, and yet it moves: f = 4 - 3 = 1."""
+    found = freedom(coordinates(q1=1.0, q2=0.0, q3=1.0, q4=1.0) + FOUR_BAR + HINGE + MIDDLE)
+    assert (found.by_rank, found.by_formula) == (1, 0)
+    assert [(row.tie, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
+def test_a_special_position_at_the_start_is_not_taken_for_a_redundant_tie(angle):
+    """With all hinges in line J loses a rank there, and only there."""
+    found = freedom(coordinates(q1=angle, q2=0.0, q3=angle) + FOUR_BAR + HINGE)
+    assert (found.by_rank, found.redundant) == (1, ())
+
+
+def test_the_same_support_twice_is_redundant_once():
+    """Two equal rows have rank 1."""
+    support = '[constraints.{}]\nkind = "support"\npoint = "left.end"\nnormal = [1, {}]\nat = ["l/2", 0]\n'
+    text = coordinates(q1=1.0, q2=0.3) + crank("left", "[0, 0]", "q1") + COUPLER
+    found = freedom(text + support.format("wall", 0) + support.format("again", 0))
+    assert found.by_rank == 1
+    assert [(row.tie, row.number, row.others) for row in found.redundant] == [("again", 1, ("wall",))]
+
+
+def test_a_tie_that_the_coordinates_satisfy_only_reacts():
+    """The coupler stays level by its angle -q1, so its second hinge closes nothing: f = 1."""
+    text = coordinates(q1=1.0) + FOUR_BAR.replace("q2 - q1", "-q1").replace("q3", "q1") + HINGE
+    found = freedom(text)
+    assert (found.by_rank, found.by_formula) == (1, 1)
+    assert (found.identical, found.closing) == (("right_hinge",), ())
+
+
+def test_a_driven_coordinate_is_no_freedom():
+    """f = 3*2 - 4 - 1 = 1"""
+    text = coordinates(q2=0.3) + 'q1 = { motion = "sin(t)" }\n' + crank("left", "[0, 0]", "q1") + COUPLER
+    found = freedom(text)
+    assert (found.by_rank, found.by_formula) == (1, 1)
+
+
+def test_particles_count_two_in_the_plane_and_three_in_space():
+    """2 Np, 3 Np: a free particle keeps all of them."""
+    body = '[bodies.p]\nshape = {{ kind = "particle", mass = "m" }}\njoint = {{ kind = "placed", at = {} }}\n'
+    unused = HEAD.replace("l = 1.0\nd = 2.0\n", "")
+    plane = eomgen.loads(unused + coordinates(x=0, y=0) + body.format('["x", "y"]'))
+    space = eomgen.loads(
+        unused.replace("plane", "space") + coordinates(x=0, y=0, z=0) + body.format('["x", "y", "z"]')
+    )
+    assert [(f.by_rank, f.by_formula) for f in map(eomgen.freedom_of, (plane, space))] == [(2, 2), (3, 3)]
+
+
+def test_a_rate_equation_takes_a_freedom():
+    """q2' = 3 q1' is one row."""
+    tie = '[constraints.gear]\nkind = "equation"\nrate = "q2\' - 3*q1\'"\n'
+    found = freedom(coordinates(q1=0.0, q2=0.0) + crank("left", "[0, 0]", "q1") + COUPLER + tie)
+    assert (found.by_rank, found.by_formula) == (1, 1)
+
+
+def test_ties_that_cannot_close_are_not_counted():
+    """No configuration has phi = 0 where the hinge is out of reach."""
+    far = FOUR_BAR.replace('["d", 0]', '["9*d", 0]')
+    found = freedom(coordinates(q1=1.0, q2=0.0, q3=1.0) + far + HINGE)
+    assert found.by_rank is None
+    assert "do not close near the start values: right_hinge" in found.not_counted
+
+
+def test_kinds_that_are_not_built_yet_are_named_instead_of_counted():
+    """degrees of freedom: not counted yet (clamp)"""
+    clamp = '[constraints.wall]\nkind = "clamp"\npoint = "left.start"\n'
+    found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + clamp)
+    assert (found.by_rank, found.not_counted) == (None, "clamp")
+
+
+def test_a_model_without_values_is_counted_all_the_same():
+    """The rank of a tree's rows does not wait for numbers."""
+    text = HEAD.replace("l = 1.0", "l = {}").replace("d = 2.0", "d = {}")
+    support = '[constraints.floor]\nkind = "support"\npoint = "coupler.end"\nnormal = [0, 1]\n'
+    tree = coordinates(q1=1.0, q2=0.3) + crank("left", "[0, 0]", "q1") + COUPLER + support
+    assert eomgen.freedom_of(eomgen.loads(text + tree)).by_rank == 1
