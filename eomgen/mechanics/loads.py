@@ -13,6 +13,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion, ground_place
+from eomgen.mechanics.scope import primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, UniformField
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.graph import Scalar, is_zero
@@ -106,6 +107,18 @@ class SystemScene:
     def value_at(self, expression, also: dict[str, Scalar]) -> Scalar:
         """An expression in which further names stand for given scalars (they win over the model's)."""
         return expression.evaluate({**self.motion.scope.names, **also})
+
+    def primitive(self, expression, name: str, at: Scalar) -> Scalar | None:
+        """The integral of an expression over one name, at a value of it.
+
+        None where it holds anything but that name and parameters, or has no closed form.
+        """
+        scope = self.motion.scope
+        if any(other != name and other not in (*scope.symbols.parameters, "pi") for other in expression.names):
+            return None
+        variable = scope.graph.symbol(f"({name})")  # no name of a model has parentheses
+        F = primitive(self.value_at(expression, {name: variable}), variable)
+        return None if F is None else substituted((F,), {variable: at})[0]
 
     def vector(self, expressions) -> Vector:
         return self.motion.scope.vector(expressions)

@@ -11,7 +11,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.model.parts import Coordinate, Model
-from eomgen.symbolic.derivative import depends_on, tangent
+from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Graph, Node, Scalar
 from eomgen.symbolic.spatial import Vector
@@ -133,23 +133,33 @@ def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
     Raises:
         DerivationError: none was found.
     """
-    if not depends_on(f, (t,)):
-        return f * t
-    from sympy import Integral
-    from sympy.integrals.manualintegrate import manualintegrate
-
-    from eomgen.symbolic.derivative import symbols_of
-    from eomgen.symbolic.sympy_form import from_sympy, to_sympy
-
-    expression, time = to_sympy((f, t))
-    primitive = manualintegrate(expression, time)
-    if primitive.has(Integral):
+    F = primitive(f, t)
+    if F is None:
         raise DerivationError(
             "the given acceleration has no integral in closed form", where,
             "give the coordinate's `motion` or `rate` instead",
-        )
-    lookup = {symbol.name: symbol for symbol in symbols_of((f, t))}
-    return from_sympy(primitive - primitive.subs(time, 0), lookup)
+        )  # fmt: skip
+    return F - substituted((F,), {t: 0})[0]
+
+
+def primitive(f: Scalar, x: Node) -> Scalar | None:
+    """A function of x whose derivative is f, or None where no closed form was found."""
+    if not depends_on(f, (x,)):
+        return f * x
+    from sympy import Integral
+    from sympy.integrals.manualintegrate import manualintegrate
+
+    from eomgen.symbolic.sympy_form import from_sympy, to_sympy
+
+    expression, variable = to_sympy((f, x))
+    found = manualintegrate(expression, variable)
+    if found.has(Integral):
+        return None
+    lookup = {symbol.name: symbol for symbol in symbols_of((f, x))}
+    try:
+        return from_sympy(found, lookup)
+    except DerivationError:  # a function that the graph does not have
+        return None
 
 
 def _zero(a: Scalar) -> bool:

@@ -1,6 +1,5 @@
 """Expressions of parameters -> numbers: in which order parameters follow from one another, what one is worth."""
 
-import math
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
@@ -38,10 +37,10 @@ def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[
 
 
 def number_of(expression: Expression, values: Mapping[str, Number]) -> Number | None:
-    """What an expression is worth with these values, or None where it has names besides or no value."""
-    if not expression.names <= values.keys() | {"pi"}:
+    """What an expression is worth with these values (`pi` among them); None with names besides, or without value."""
+    if not expression.names <= values.keys():
         return None
     try:
-        return expression.evaluate({**values, "pi": math.pi})
+        return expression.evaluate(values)
     except ExpressionError:
         return None

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from itertools import islice
 from typing import Any
 
 Path = tuple[str | int, ...]
@@ -36,15 +37,13 @@ class Finding:
     raw: Any = field(default=None, compare=False, repr=False)
 
 
-LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is offered: a hostile file must not cost minutes
+LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is compared: a hostile file must not cost minutes
 MOST_OFFERS = 50
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """ "did you mean 'forearm'?", or "" where nothing is near."""
-    words = [str(name) for name in known]
-    if len(word) > LONGEST_WORD or len(words) > MOST_WORDS:
-        return ""
+    words = [] if len(word) > LONGEST_WORD else sorted(islice(known, MOST_WORDS))
     close = get_close_matches(word, words, n=1, cutoff=0.6)
     close = close or [name for name in words if name.lower() == word.lower()]
     return f"did you mean '{close[0]}'?" if close else ""

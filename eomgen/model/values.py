@@ -19,11 +19,12 @@ def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -
     """
     given = {name: part.value for name, part in model.parameters.items() if part is not None}
     given |= _overridden(model, overrides or {})
-    values: dict[str, Number] = {}
+    values: dict[str, Number] = {"pi": math.pi}
     for name in in_order(given)[0]:
         expression = given[name]
-        if expression is not None and expression.names <= values.keys() | {"pi"}:
+        if expression is not None and expression.names <= values.keys():
             values[name] = _value(expression, values, f"parameters.{name}")
+    del values["pi"]
     return values
 
 
@@ -62,7 +63,7 @@ def start_values(
     Raises:
         MissingValues: a start needs parameters without values.
     """
-    lookup = {**exact_parameters(model, parameters), "t": 0}
+    lookup = {**exact_parameters(model, parameters), "t": 0, "pi": math.pi}
     q: dict[str, float] = {}
     u: dict[str, float] = {}
     for name, part in model.coordinates.items():
@@ -90,7 +91,7 @@ def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Express
 
 def _value(expression: Expression, values: Mapping[str, Any], where: str) -> Number:
     try:
-        return expression.evaluate({**values, "pi": math.pi})
+        return expression.evaluate(values)
     except ExpressionError as error:
         raise ModelError(f"'{expression.text}': {error.what}", where, error.mend) from error
 
@@ -98,7 +99,7 @@ def _value(expression: Expression, values: Mapping[str, Any], where: str) -> Num
 def _float(expression: Expression | None, values: Mapping[str, Any], where: str) -> float:
     if expression is None:
         return 0.0
-    missing = tuple(sorted(expression.names - values.keys() - {"pi"}))
+    missing = tuple(sorted(expression.names - values.keys()))
     if missing:
         raise MissingValues(missing, where)
     return float(_value(expression, values, where))

@@ -21,7 +21,9 @@ LAGRANGE = Law(
     r"\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{k}} - \frac{\partial T}{\partial q_{k}} = Q_{k}",
 )
 MATRICES = Law("M*a + c = Q", r"M a + c = Q")
-LAGRANGE_WITH_TIES = Law(f"{LAGRANGE.text} + (J^T*lam)_k", LAGRANGE.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}")
+LAGRANGE_WITH_TIES = Law(
+    f"{LAGRANGE.text} + (J^T*lam)_k", LAGRANGE.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}"
+)
 MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
 
 

@@ -94,8 +94,9 @@ def _force(system: System, force: Applied) -> list[Pair]:
     """The potential of a force, or what it is and its virtual work."""
     if force.potential is not None:
         return [(Name("V", force.name), force.potential)]
-    formulas = [f for number, load in enumerate(force.loads, start=1)
-                for f in _load(system, load, force.name if len(force.loads) == 1 else f"{force.name} {number}")]  # fmt: skip
+    formulas: list[Pair] = []
+    for number, load in enumerate(force.loads, start=1):
+        formulas += _load(system, load, force.name if len(force.loads) == 1 else f"{force.name} {number}")
     return formulas + _contributions(system, force.name, force_row(system.loads, force))
 
 

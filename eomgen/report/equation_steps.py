@@ -17,6 +17,7 @@ from eomgen.symbolic.normal_form import cancelled, common_factor, readable
 from eomgen.symbolic.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
+SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
 NAMED_PART = 160  # characters of a formula in which long parts have names
 QUOTIENT = 200  # characters of a solved acceleration in one line, numerator over denominator
 
@@ -47,7 +48,9 @@ def multiplier_forces(assembly: Assembly) -> tuple[Scalar, ...]:
     )
 
 
-def sides_of(assembly: Assembly, M: Sequence[Sequence[Scalar]], c: Sequence[Scalar], Q: Sequence[Scalar]) -> list[Sides]:
+def sides_of(
+    assembly: Assembly, M: Sequence[Sequence[Scalar]], c: Sequence[Scalar], Q: Sequence[Scalar]
+) -> list[Sides]:
     """M a + c = Q + J^T lam, row by row."""
     rows = []
     for k, force in enumerate(multiplier_forces(assembly)):
@@ -122,18 +125,19 @@ def _printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
     statements: list[Statement] = []
     for equation in equations:
         if type(equation.divisor) is Node or equation.divisor != 1:
-            statements.append(Prose(_divided(system, equation)))
+            statements.append(Prose(("For ", equation.speed, ", ", *_divided(system, equation.divisor), ":")))
         statements.append(Formula((equation.left, equation.right)))
     return statements
 
 
-def _divided(system: System, equation: Equation) -> tuple[Piece, ...]:
-    """What the equation was divided by, and that it must not vanish where it can."""
-    symbols = system.symbols
-    moving = isinstance(equation.divisor, Node) and depends_on(equation.divisor, symbols.q)
-    divisor: Piece = equation.divisor if isinstance(equation.divisor, Node) else str(equation.divisor)
-    words = " (where it is not zero):" if moving else ":"
-    return ("For ", equation.speed, ", divided by ", divisor, words)
+def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
+    """By what both sides were divided, and that it must not vanish where it can."""
+    if isinstance(divisor, Node):
+        moving = depends_on(divisor, system.symbols.q)
+        return ("divided by ", divisor, " (where that is not zero)" if moving else "")
+    if divisor.numerator == 1:
+        return (f"multiplied by {divisor.denominator}",)
+    return (f"divided by {divisor}",)
 
 
 def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
@@ -149,7 +153,8 @@ def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
 
 def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
     """The accelerations, where there are few and their formulas short: by Cramer's rule."""
-    if assembly.J or len(equations) > SOLVED:
+    length = sum(text_size(x) for e in equations for x in (e.left, e.right))
+    if assembly.J or len(equations) > SOLVED or length > SOLVED_LENGTH:
         return []
     a = assembly.symbols.a
     M = [[_coefficient(e.left, x) for x in a] for e in equations]

@@ -1,4 +1,4 @@
-"""Node -> LaTeX as a textbook sets it: \\frac{27}{2} M R^{2} \\dot{\\theta}^{2} \\cos^{2}\\theta, with its rendered width.
+"""Node -> LaTeX as a textbook sets it: \\frac{27}{2} M R^{2} \\dot{\\theta}^{2} \\cos^{2}\\theta, and how wide that is.
 
 Only amsmath and KaTeX's common ground is used. Factors are juxtaposed, functions last, quotients are fractions.
 Loops over an explicit stack, as the printing of text does.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 from eomgen.report.latex_names import symbol_latex
 from eomgen.symbolic.graph import Node, Number, Scalar
@@ -115,7 +116,7 @@ class Setter:
         parts = [] if c == 1 else [_number(c)]
         parts += [self.power(factor) for factor in sorted(found, key=lambda factor: _is_function(factor[0]))]
         tex = parts[0].tex
-        for before, part in zip(parts, parts[1:], strict=False):
+        for before, part in pairwise(parts):
             tex += _between(before.tex, part.tex) + part.tex
         return Set(tex, sum(part.width for part in parts), parts[0].hold if len(parts) == 1 else SUM)
 

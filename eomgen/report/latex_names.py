@@ -1,4 +1,4 @@
-"""Names of a model -> LaTeX: theta1' -> \\dot{\\theta}_{1}, k_max -> k_{\\mathrm{max}}, lam(B, 1) -> \\lambda_{\\mathrm{B},1}."""
+"""Names of a model -> LaTeX: theta1' -> \\dot{\\theta}_{1}, k_max -> k_{\\mathrm{max}}, lam(B, 1) -> \\lambda_{B,1}."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 
 SMALL = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi omega"
-    " varphi vartheta varepsilon"
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
+    " omega varphi vartheta varepsilon"
 ).split()
 LARGE = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
 GREEK = {name: rf"\{name}" for name in SMALL + LARGE} | {"epsilon": r"\varepsilon"}

@@ -37,9 +37,8 @@ def positions_step(system: System, reader: Reader) -> Step:
             formulas.append((Name("angle", link.name), link.angle))  # type: ignore[arg-type]
     for name, point in points_of_forces(system):
         formulas += components(system, "", name, point)
-    statements: list[Statement] = [Prose(("The mass centres, and the angles of the bodies against the x axis:"
-                                          if len(axes(system)) == 2 else "The mass centres:",)), *page(reader, formulas)]
-    return Step("positions", "Positions", tuple(statements))
+    angles = ", and the angles of the bodies against the x axis" if any(_turns(link) for link in motion.links) else ""
+    return Step("positions", "Positions", (Prose((f"The mass centres{angles}:",)), *page(reader, formulas)))
 
 
 def _turns(link: Link) -> bool:
@@ -65,7 +64,7 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
     """Velocities of the mass centres and angular velocities, by differentiation."""
     formulas: list[Pair] = []
     for energy in energies:
-        if not is_zero(mass_properties(system.scope, energy.body).m):
+        if not is_zero(mass_properties(system.scope, energy.body).m) and not at_rest(energy.velocity):
             of = f"{energy.body}.center"
             formulas += components(system, "v", of, energy.velocity)
             formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))
@@ -75,17 +74,22 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
     return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
 
 
+def at_rest(velocity: Vector) -> bool:
+    """True where every component is zero."""
+    return all(is_zero(x) for x in velocity)
+
+
 def spins(system: System, body: str, spin: Vector) -> list[Pair]:
     """The angular velocity of a body: one number in the plane, its components in body axes in space."""
     if len(axes(system)) == 2:
         return [] if is_zero(spin[2]) else [(Name("omega", body), spin[2])]
-    if all(is_zero(x) for x in spin):
+    if at_rest(spin):
         return []
     return [(Name(f"omega_{axis}", body), x) for axis, x in zip(AXES, spin, strict=True)]
 
 
 def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
-    """The constraints: their gaps and rates, and which of them the coordinates satisfy; nothing where there are none."""
+    """The constraints, with the gaps that must stay zero; no step where there are none."""
     if not system.ties.rows:
         return ()
     statements: list[Statement] = []

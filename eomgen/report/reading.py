@@ -9,14 +9,15 @@ from eomgen.report.statements import Omitted
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
 from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.normal_form import readable
+from eomgen.symbolic.normal_form import TooLarge, normal_form, readable
 from eomgen.symbolic.text import named_parts, text_size
 
 WORK = 2000  # products of terms that are multiplied out for one formula
 LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
-TRIED = 8000  # characters: what is longer by far will not become short
-BUDGET = 60_000  # characters of all formulas that did not become short, before no more are tried
+TRIED = 20_000  # characters: what is longer by far will not become short
+WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
+PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED = 40  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 6000  # characters of all named sub-expressions together, at most
 
@@ -26,7 +27,7 @@ class Reader:
 
     def __init__(self) -> None:
         self._known: dict[Scalar, Scalar | None] = {}
-        self._spent = 0
+        self._failures = 0
 
     def read(self, x: Scalar) -> Scalar | None:
         """x in its readable form; None where it is too long to print."""
@@ -38,11 +39,11 @@ class Reader:
 
     def _read(self, x: Scalar) -> Scalar | None:
         size = text_size(x)
-        if size <= TRIED and self._spent < BUDGET:
-            short = readable(x, WORK)
-            if text_size(short) <= LONGEST:
+        if size <= TRIED and self._failures < PATIENCE:
+            short = _written(x)
+            if short is not None and text_size(short) <= LONGEST:
                 return short
-            self._spent += size
+            self._failures += 1
         return x if size <= NESTED else None
 
     def shown(self, x: Scalar) -> Scalar | Omitted:
@@ -53,6 +54,14 @@ class Reader:
     def short(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Each in its readable form, or as it is where that is too long."""
         return tuple(x if (short := self.read(x)) is None else short for x in scalars)
+
+
+def _written(x: Scalar) -> Scalar | None:
+    """x multiplied out and written shortly; None where that takes too much work."""
+    try:
+        return readable(x, WORK) if len(normal_form(x, WORK).terms) <= WAVES else None
+    except TooLarge:
+        return None
 
 
 def omitted(*expressions: Scalar) -> Omitted:

@@ -206,6 +206,10 @@ class Graph:
             return self._scale_or_number(x.args[0], self._product(x.args[1], y))
         if y.op == "mul" and type(y.args[0]) is not Node:
             return self._scale_or_number(y.args[0], self._product(x, y.args[1]))
+        if x is y and x.op == "mul":
+            for k, f in (x.args, x.args[::-1]):
+                if f.op in ("sin", "cos") and type(k) is Node:  # (k sin)^2 = k^2 sin^2 meets k^2 cos^2
+                    return self._product(self.mul(k, k), self.held("mul", (f, f)))
         if x.op == "sqrt" and y.op == "sqrt":
             if x is y:
                 return x.args[0]

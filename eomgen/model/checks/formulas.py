@@ -10,12 +10,15 @@ from eomgen.model.findings import Finding, Path, nearest, whereabouts
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.units import Unit, parse_unit
 
+LONGEST_TRAIL = 10  # names of a ring that are shown
+
 
 def formulas(catalog: Catalog) -> Iterator[Finding]:
     """Names that are unknown or may not stand where they do, units that do not fit, parameters in a ring."""
     for leaf, expression in catalog.expressions:
         scope = "" if leaf.rule.scope == EVERYTHING else leaf.rule.scope
-        allowed = catalog.allowed[scope] | frozenset(getattr(leaf.rule, "also", ()))
+        also = getattr(leaf.rule, "also", ())
+        allowed = catalog.allowed[scope].union(also) if also else catalog.allowed[scope]
         if not expression.names <= allowed:
             for name, column in dict.fromkeys(expression.occurrences):
                 if name not in allowed:
@@ -32,7 +35,7 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     kind = catalog.symbols.get(base)
     where = whereabouts(leaf.path)
     if kind is None:
-        what, mend = f"unknown name '{name}' in {where}", nearest(name, sorted(allowed)) or _declare(catalog, name)
+        what, mend = f"unknown name '{name}' in {where}", nearest(name, allowed) or _declare(catalog, name)
     elif name != base and kind not in ("coordinate", "speed"):
         what, mend = f"a prime on what does not move: {name} ('{base}' is a {kind})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
@@ -95,6 +98,7 @@ def _rings(catalog: Catalog) -> Iterator[Finding]:
     values = {name: part.value if part else None for name, part in catalog.table("parameters").items()}
     for ring in in_order(values)[1]:
         path: Path = ("parameters", ring[0], "value")
-        trail = " -> ".join([*ring, ring[0]])
+        shown = ring if len(ring) <= LONGEST_TRAIL else [*ring[:LONGEST_TRAIL], "..."]
+        trail = " -> ".join([*shown, ring[0]])
         what = f"parameter '{ring[0]}' needs itself: {trail}" if len(ring) == 1 else f"parameters in a ring: {trail}"
         yield Finding(path, what, "give one of them a number")

@@ -16,7 +16,7 @@ ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to roun
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:
     """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
-    values: dict[str, Number] = {}
+    values: dict[str, Number] = {"pi": math.pi}
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
     for leaf, expression in catalog.expressions:
@@ -30,10 +30,10 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
 def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterator[Finding]:
     """Adds the value of a parameter to the values, or tells why it has none."""
     part = catalog.table("parameters")[name]
-    if part is None or part.value is None or not part.value.names <= values.keys() | {"pi"}:
+    if part is None or part.value is None or not part.value.names <= values.keys():
         return
     try:
-        values[name] = part.value.evaluate({**values, "pi": math.pi})
+        values[name] = part.value.evaluate(values)
     except ExpressionError as error:
         path, what = ("parameters", name, "value"), f"parameter '{name}': {error.what}"
         yield Finding(path, what, error.mend, error.column, error.length)

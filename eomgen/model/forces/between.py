@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, Scalar, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Pull, TwoPoints
 
@@ -26,3 +26,7 @@ class Between(Force):
         """A pull f(r, r')."""
         line = reach(scene, self.points)
         return line.pulled(scene.value_at(self.pull, {"r": line.length, "r'": line.rate}))
+
+    def potential(self, scene: Scene) -> Scalar | None:
+        """V = integral of f dr where f holds r and parameters only; None where it has no closed form."""
+        return scene.primitive(self.pull, "r", reach(scene, self.points).length)
