@@ -10,8 +10,7 @@ The names below are imported on first use, so that `import eomgen` costs nothing
 from importlib import import_module
 from typing import Any
 
-from eomgen.version import __version__
-
+from eomgen.version import __version__ as __version__
 
 _HOMES = {
     "answers": ("Answer", "solve"),

@@ -87,14 +87,19 @@ def table(answers: dict[str, Answer]) -> str:
     width = max((len(name) for name in answers), default=0)
     lines = []
     for name, answer in answers.items():
-        parts = [answer.exact, _number(answer) or None, answer.message]
-        first, *more = [part for part in parts if part is not None]
-        lines.append(f"{name:<{width}}  {'= ' if answer.answered else 'not answered: '}{first}")
-        for part in more:
-            lines.append(f"{'':<{width}}  {'' if part is answer.message else '= '}{part}")
-        if answer.answered:
-            lines[-1] += f"   [{answer.method}]"
-    return "\n".join(lines) + "\n"
+        first, *more = _lines(answer)
+        lines.append(f"{name:<{width}}  {first}")
+        lines += [f"{'':<{width}}  {line}" for line in more]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _lines(answer: Answer) -> list[str]:
+    """One answer, a line for each thing that is known of it."""
+    if not answer.answered:
+        return [f"not answered: {answer.message}"]
+    found = [f"= {part}" for part in (answer.exact, _number(answer)) if part]
+    found[-1] += f"   [{answer.method}]"
+    return [*found, f"({answer.message})"] if answer.message else found
 
 
 def _number(answer: Answer) -> str:
@@ -277,7 +282,7 @@ def _dot(a: Any, b: Any) -> Scalar:
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:
     if math.isfinite(value):
-        return replace(answer, value=float(value))
+        return replace(answer, value=float(value) + 0.0)  # -0 is 0
     return replace(answer, message=f"it has no finite value {where}")
 
 

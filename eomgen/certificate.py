@@ -26,7 +26,7 @@ from eomgen.symbolic.derivative import derivative, gradient, tangent
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import apply, transposed
+from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
 
 FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
 SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
@@ -74,6 +74,11 @@ class Certificate:
             lines.append(f"  {mark} {check.name} [{check.how}]" + (f": {check.detail}" if check.detail else ""))
         return "\n".join(lines)
 
+    def _repr_markdown_(self) -> str:
+        rows = [f"| {'✓' if c.ok else '✗'} | {c.name} | {c.how} | {c.detail} |" for c in self.checks]
+        head = f"**Certificate: {'holds' if self.ok else 'FAILS'}**\n\n| | what | how | |\n|---|---|---|---|"
+        return "\n".join([head, *rows])
+
     def as_dict(self) -> dict[str, Any]:
         """For `--json`."""
         rows = [{"name": c.name, "ok": c.ok, "how": c.how, "detail": c.detail} for c in self.checks]
@@ -114,8 +119,8 @@ def _rates(system: System, assembly: Assembly) -> Check:
         sum((n * w for n, w in zip(row, u, strict=True)), start=bias)
         for row, bias in zip(assembly.N, assembly.nu, strict=True)
     ]
-    names = [q.name for q in assembly.symbols.q]
-    return _compared("N u + nu are the rates of the coordinates", list(zip(rows, system.scope.rates, strict=True)), names)
+    pairs = list(zip(rows, system.scope.rates, strict=True))
+    return _compared("N u + nu are the rates of the coordinates", pairs, [q.name for q in assembly.symbols.q])
 
 
 def _routes(system: System, assembly: Assembly) -> Iterable[Check]:
@@ -143,7 +148,8 @@ def _mass_matrix(assembly: Assembly) -> Check:
         (assembly.M[i][j], derivative(derivative(assembly.T, assembly.symbols.u[i]), assembly.symbols.u[j]))
         for i in size for j in range(i + 1)
     ]  # fmt: skip
-    return _compared("M is symmetric and is the second derivative of T", pairs, [f"pair {k}" for k in range(len(pairs))])
+    labels = [f"pair {k}" for k in range(len(pairs))]
+    return _compared("M is symmetric and is the second derivative of T", pairs, labels)
 
 
 def _energy(system: System, assembly: Assembly) -> Check:
@@ -224,11 +230,12 @@ def _twists(system: System) -> Check:
             late, early = (evaluate(flat, values, arithmetic) for values in (after, before))
             rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
             here = evaluate(flat, state, arithmetic)
-            R_now = (tuple(here[0:3]), tuple(here[3:6]), tuple(here[6:9]))
-            spin = spin_between(R_now, (tuple(rates[0:3]), tuple(rates[3:6]), tuple(rates[6:9])))
-            velocity = apply(transposed(R_now), tuple(rates[9:12]))
+            R_now = matrix_of((here[0:3], here[3:6], here[6:9]))
+            spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
+            velocity = apply(transposed(R_now), vector_of(rates[9:12]))
             twist = evaluate((*link.twist.w, *link.twist.v), state, arithmetic)
-            if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in zip(twist, (*spin, *velocity), strict=True)):
+            pairs = zip(twist, (*spin, *velocity), strict=True)
+            if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in pairs):
                 return f"the twist of '{link.name}' is not the rate of its pose"
         return ""
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,30 +42,45 @@ class Verbs(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)  # in the order in which they are used
 
-    def main(self, args: Any = None, prog_name: str | None = None, *rest: Any, **extra: Any) -> Any:
-        if not extra.pop("standalone_mode", True):
-            return super().main(args, prog_name, *rest, standalone_mode=False, **extra)
+    def main(
+        self, args: Sequence[str] | None = None, prog_name: str | None = None, complete_var: str | None = None,
+        standalone_mode: bool = True, **extra: Any,
+    ) -> Any:  # fmt: skip
         words = list(sys.argv[1:] if args is None else args)
-        sys.exit(self._run(words, prog_name or "eomgen", extra))
+        name = prog_name or "eomgen"
+        if not standalone_mode:
+            return super().main(words, name, complete_var, standalone_mode=False, **extra)
+        sys.exit(self._run(words, name, complete_var, extra))
 
-    def _run(self, words: list[str], prog_name: str, extra: dict[str, Any]) -> int:
+    def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
         wants_json = "--json" in words
         try:
-            return super().main(words, prog_name, standalone_mode=False, **extra) or 0
+            return super().main(words, name, complete_var, standalone_mode=False, **extra) or 0
         except click.ClickException as error:
             error.show()
             return _told(error.exit_code, (Problem("", error.format_message()),), wants_json)
         except EomgenError as error:
-            click.echo(str(error), err=True)
-            return _told(error.exit_code, _problems(error), wants_json)
+            return self._failed(error.exit_code, _problems(error), wants_json)
+        except _Placed as error:
+            return self._failed(error.exit_code, error.problems, wants_json)
         except ModuleNotFoundError as error:
             if (error.name or "").split(".")[0] == "eomgen":
                 raise
             missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
-            click.echo(str(missing), err=True)
-            return _told(missing.exit_code, _problems(missing), wants_json)
+            return self._failed(missing.exit_code, _problems(missing), wants_json)
         except (click.Abort, KeyboardInterrupt):
             return INTERRUPTED
+
+    def _failed(self, code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
+        click.echo("\n\n".join(str(problem) for problem in problems), err=True)
+        return _told(code, problems, wants_json)
+
+
+class _Placed(Exception):
+    """What went wrong with a model, at its places in the file."""
+
+    def __init__(self, exit_code: int, problems: tuple[Problem, ...]) -> None:
+        self.exit_code, self.problems = exit_code, problems
 
 
 def _unknown_verb(name: str, verbs: list[str]) -> str:
@@ -126,10 +142,19 @@ def _deliver(outcome: Outcome, wants_json: bool, output: str | None = None) -> i
     return 3 if outcome.failed else 0
 
 
-def _model(path: str) -> Model:
-    from eomgen.model.reader import load, loads
+@contextmanager
+def _reading(path: str) -> Iterator[Model]:
+    """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
+    from eomgen.model.reader import load, loads, located
 
-    return loads(sys.stdin.buffer.read(), "<stdin>") if path == "-" else load(path)
+    data = sys.stdin.buffer.read() if path == "-" else None
+    try:
+        yield load(path) if data is None else loads(data, "<stdin>")
+    except EomgenError as error:
+        text = data if data is not None else Path(path).read_bytes() if os.access(path, os.R_OK) else b""
+        name = path if data is None else "<stdin>"
+        problems = tuple(located(problem, text, name) for problem in _problems(error))
+        raise _Placed(error.exit_code, problems) from error
 
 
 # -- the verbs -------------------------------------------------------------------------------------
@@ -168,7 +193,9 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
     """Validate a model; count its degrees of freedom."""
     from eomgen.verbs.check import check as checked
 
-    return _deliver(checked(_model(model)), wants_json, output)
+    with _reading(model) as declared:
+        outcome = checked(declared)
+    return _deliver(outcome, wants_json, output)
 
 
 @main.command()
@@ -185,7 +212,9 @@ def derive(
 
     chosen = format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
     wants_json = wants_json or chosen == "json"
-    outcome = derived(_model(model), method=method, format="json" if wants_json else chosen, certify=not no_certify)
+    with _reading(model) as declared:
+        form = "json" if wants_json else chosen
+        outcome = derived(declared, method=method, format=form, certify=not no_certify)
     return _deliver(outcome, wants_json, output)
 
 
@@ -195,7 +224,9 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve as solved
 
-    return _deliver(solved(_model(model)), wants_json, output)
+    with _reading(model) as declared:
+        outcome = solved(declared)
+    return _deliver(outcome, wants_json, output)
 
 
 @main.command()
@@ -214,7 +245,8 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
     """Integrate the motion from the start values."""
     from eomgen.verbs.simulate import simulate as simulated
 
-    outcome = simulated(_model(model), output=output, **options)
+    with _reading(model) as declared:
+        outcome = simulated(declared, output=output, **options)
     if output and not wants_json:
         click.echo(outcome.text, err=True, nl=False)
         return _deliver(type(outcome)("", failed=outcome.failed), False)
@@ -231,7 +263,8 @@ def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem
-    outcome = generated(_model(model), stem=stem, origin=Path(model).name, target=target, directory=output)
+    with _reading(model) as declared:
+        outcome = generated(declared, stem=stem, origin=Path(model).name, target=target, directory=output)
     return _deliver(outcome, wants_json)
 
 

@@ -20,7 +20,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.tree import branches_of
 from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters, numeric_parameters, start_values
+from eomgen.model.values import numeric_parameters, start_values
 from eomgen.simulation.integrate import SAMPLES, integrate
 from eomgen.simulation.trajectory import Trajectory
 
@@ -268,10 +268,8 @@ def state_vector(
     unknown = [name for name in start or {} if name not in names]
     if unknown:
         raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
-    model = equations.model
-    q, u = start_values(model, exact_parameters(model, parameters))
-    rates = {f"{name}'" if name in model.coordinates else name: value for name, value in u.items()}
-    values = {**q, **rates, **(start or {})}
+    q, u = start_values(equations.model, parameters)
+    values = {**q, **u, **(start or {})}
     return np.array([values[name] for name in names], dtype=float)
 
 

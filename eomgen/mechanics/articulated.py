@@ -1,8 +1,8 @@
 """Branches -> accelerations by articulated bodies: O(n) operations for a tree of n bodies.
 
 Inward, for each branch with column s:   d = s^T I s,  r = tau - s^T p,
-    I' = I - I s s^T I / d,   p' = p + I' b + I s r / d,   both carried to the parent;
-outward:   a = (r - (I s)^T A) / d,   A = X A_parent + b + s a.
+    I' = I - I s s^T I / d,   p' = p + I s r / d + I' b,   both carried to the parent;
+outward:   A' = X A_parent + b,   a = (r - (I s)^T A') / d,   A = A' + s a.
 Accelerations are (wd, acc of the joint point), working axes; b is what the joint adds at a = 0.
 Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §7.3.
 """
@@ -19,7 +19,20 @@ from eomgen.mechanics.tree import Branch
 from eomgen.mechanics.work import joint_forces, placeless_forces
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import IDENTITY, ZERO, Vector, apply, cross, dot, plus, times, transposed
+from eomgen.symbolic.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Vector,
+    apply,
+    cross,
+    matrix_of,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
 
 Six = list[Scalar]
 Matrix6 = list[list[Scalar]]
@@ -88,9 +101,8 @@ def _inward(
     inertia = [_matrix(branch) for branch in branches]
     eliminated: list[list[Elimination]] = [[] for _ in branches]
     for i in reversed(range(len(branches))):
-        branch, I, force = branches[i], inertia[i], p[i]  # noqa: E741
-        total = list(force)
-        shifted = [a + b for a, b in zip(total, _times(I, biases[i]), strict=True)]
+        branch, I, force = branches[i], inertia[i], p[i]
+        shifted = list(force)
         for k, (w, v) in branch.columns.items():
             s = [*w, *v]
             Is = _times(I, s)
@@ -99,25 +111,29 @@ def _inward(
             g = over(1, d)
             scaled = [g * x for x in Is]
             eliminated[i].append(Elimination(k, s, Is, d, r))
-            I = _downdated(I, Is, scaled)  # noqa: E741
+            I = _downdated(I, Is, scaled)
             shifted = [x + y * r for x, y in zip(shifted, scaled, strict=True)]
         if branch.parent != GROUND:
+            shifted = [x + y for x, y in zip(shifted, _times(I, biases[i]), strict=True)]
             _carry(branch, I, shifted, inertia[branch.parent], p[branch.parent])
     return eliminated
 
 
-def _outward(branches, eliminated, biases, base: Six, size: int) -> tuple[Scalar, ...]:
+def _outward(
+    branches: tuple[Branch, ...], eliminated: list[list[Elimination]], biases: list[Six], base: Six, size: int
+) -> tuple[Scalar, ...]:
+    """a, root first."""
     a: list[Scalar] = [0] * size
     reached: list[Six] = []
     for i, branch in enumerate(branches):
         A_p = base if branch.parent == GROUND else reached[branch.parent]
-        wd, acc = tuple(A_p[:3]), tuple(A_p[3:])
+        wd, acc = vector_of(A_p[:3]), vector_of(A_p[3:])
         A = [*_turn(branch, wd), *_turn(branch, plus(acc, cross(wd, branch.p)))]
-        solved = list(A)  # r already holds the bias b
+        solved = [x + y for x, y in zip(A, biases[i], strict=True)]
         for e in reversed(eliminated[i]):
             a[e.k] = (e.r - _dot(e.Is, solved)) * over(1, e.d)
             solved = [x + y * a[e.k] for x, y in zip(solved, e.s, strict=True)]
-        reached.append([x + y for x, y in zip(solved, biases[i], strict=True)])
+        reached.append(solved)
     return tuple(a)
 
 
@@ -126,13 +142,12 @@ def _matrix(branch: Branch) -> Matrix6:
     columns = []
     for j in range(6):
         unit = [int(i == j) for i in range(6)]
-        w = tuple(unit[:3])
-        wrench = inertia_wrench(branch.moments, tuple(unit[3:]), ((0, -w[2], w[1]), (w[2], 0, -w[0]), (-w[1], w[0], 0)))
+        wrench = inertia_wrench(branch.moments, vector_of(unit[3:]), rate_matrix(ZERO, vector_of(unit[:3])))
         columns.append([*wrench.tau, *wrench.f])
     return [[columns[j][i] for j in range(6)] for i in range(6)]
 
 
-def _downdated(I: Matrix6, u: Six, scaled: Six) -> Matrix6:  # noqa: E741
+def _downdated(I: Matrix6, u: Six, scaled: Six) -> Matrix6:
     """I - u u^T / d, symmetric: its upper half is computed once."""
     new = [row[:] for row in I]
     for i in range(6):
@@ -143,23 +158,23 @@ def _downdated(I: Matrix6, u: Six, scaled: Six) -> Matrix6:  # noqa: E741
     return new
 
 
-def _carry(branch: Branch, I: Matrix6, p: Six, parent_I: Matrix6, parent_p: Six) -> None:  # noqa: E741
+def _carry(branch: Branch, I: Matrix6, p: Six, parent_I: Matrix6, parent_p: Six) -> None:
     """Add X^T I X and X^T p to the parent, X = (E, 0; -E p~, E)."""
     if branch.E is not IDENTITY:
         R = transposed(branch.E)
         blocks = [[_congruent(R, _block(I, r, c)) for c in (0, 3)] for r in (0, 3)]
-        I = [[blocks[r // 3][c // 3][r % 3][c % 3] for c in range(6)] for r in range(6)]  # noqa: E741
-        p = [*apply(R, tuple(p[:3])), *apply(R, tuple(p[3:]))]
+        I = [[blocks[r // 3][c // 3][r % 3][c % 3] for c in range(6)] for r in range(6)]
+        p = [*apply(R, vector_of(p[:3])), *apply(R, vector_of(p[3:]))]
     moved = _moved(I, branch.p)
     for i in range(6):
         for j in range(i, 6):
             parent_I[i][j] = parent_I[j][i] = parent_I[i][j] + moved[i][j]
-    torque = plus(tuple(p[:3]), cross(branch.p, tuple(p[3:])))
+    torque = plus(vector_of(p[:3]), cross(branch.p, vector_of(p[3:])))
     for i, x in enumerate((*torque, *p[3:])):
         parent_p[i] = parent_p[i] + x
 
 
-def _moved(I: Matrix6, r: Vector) -> Matrix6:  # noqa: E741
+def _moved(I: Matrix6, r: Vector) -> Matrix6:
     """(1, r~; 0, 1) I (1, 0; -r~, 1): the same inertia about the point from which the present one is at r."""
     shift = [[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]]
     new = [row[:] for row in I]
@@ -176,16 +191,16 @@ def _moved(I: Matrix6, r: Vector) -> Matrix6:  # noqa: E741
     return out
 
 
-def _block(I: Matrix6, r: int, c: int):  # noqa: E741
-    return tuple(tuple(I[r + i][c + j] for j in range(3)) for i in range(3))
+def _block(I: Matrix6, r: int, c: int) -> Matrix:
+    return matrix_of((I[r + i][c + j] for j in range(3)) for i in range(3))
 
 
-def _congruent(R, block):
-    half = tuple(tuple(dot(row, column) for column in zip(*block, strict=True)) for row in R)
-    return tuple(tuple(dot(row, other) for other in R) for row in half)
+def _congruent(R: Matrix, block: Matrix) -> Matrix:
+    """R block R^T"""
+    return product(product(R, block), transposed(R))
 
 
-def _times(I: Matrix6, x: Six) -> Six:  # noqa: E741
+def _times(I: Matrix6, x: Six) -> Six:
     return [_dot(row, x) for row in I]
 
 

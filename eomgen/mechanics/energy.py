@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from eomgen.errors import ModelError, Problem
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System

@@ -138,7 +138,8 @@ def redundant_rows(ties: Ties) -> tuple[Redundant, ...]:
         return ()
     J = np.array(evaluate([x for row in ties.J for x in row], generic_state(ties), FLOAT))
     J = J.reshape(len(closing), len(ties.motion.scope.symbols.u))
-    found, basis, kept = [], np.zeros((0, J.shape[1])), []
+    found, basis = [], np.zeros((0, J.shape[1]))
+    kept: list[tuple[str, np.ndarray]] = []
     for row, line in zip(closing, J, strict=True):
         size = float(np.linalg.norm(line))
         left = line - basis.T @ (basis @ line)

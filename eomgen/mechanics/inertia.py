@@ -14,8 +14,7 @@ from eomgen.errors import ModelError, NotYet
 from eomgen.mechanics.kinematics import Link, Motion, spin_between
 from eomgen.mechanics.scope import Scope
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, dot
-
+from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
 
 HALF = Fraction(1, 2)
 
@@ -26,7 +25,7 @@ class MassProperties:
 
     m: Scalar
     com: Vector
-    I: Matrix  # noqa: E741
+    I: Matrix
 
 
 def mass_properties(scope: Scope, body: str) -> MassProperties:
@@ -84,7 +83,8 @@ def body_energies(motion: Motion) -> tuple[BodyEnergy, ...]:
     masses = [mass_properties(motion.scope, link.name) for link in motion.links]
     centers = [link.pose.point(mass.com) for link, mass in zip(motion.links, masses, strict=True)]
     turning = [_orientation(link) for link in motion.links]
-    rates = iter(motion.scope.time_derivative(tuple(x for pair in zip(centers, turning, strict=True) for v in pair for x in v)))
+    places = tuple(x for pair in zip(centers, turning, strict=True) for part in pair for x in part)
+    rates = iter(motion.scope.time_derivative(places))
     energies = []
     for link, mass, orientation in zip(motion.links, masses, turning, strict=True):
         velocity = (next(rates), next(rates), next(rates))
@@ -104,7 +104,7 @@ def _spin(link: Link, rates: list[Scalar]) -> Vector:
     """Angular velocity in body axes from the rates of the orientation [rad/s]."""
     if link.angle is not None:
         return (0, 0, rates[0])
-    return spin_between(link.pose.R, (rates[0:3], rates[3:6], rates[6:9]))  # type: ignore[arg-type]
+    return spin_between(link.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
 
 
 def spin_of(motion: Motion, link: Link) -> Vector:

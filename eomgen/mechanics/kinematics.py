@@ -220,12 +220,12 @@ def _twist(
     """Twist of the child at its origin, child's axes; a seat that moves by itself adds its rate."""
     R_CP = transposed(local.R)
     carried = (above.twist if above else Twist()).at(local.p)
-    seat_rate = scope.time_derivative(before.p)
+    seat_rate = scope.rate_of(before.p)
     at_joint = Twist(apply(R_CP, carried.w), apply(R_CP, plus(carried.v, seat_rate)))
     for rate, (w, v) in zip(s_rate, S, strict=True):
         at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
     moved = at_joint.at(times(-1, point))
-    drift = scope.time_derivative(point)  # a joint that slides along its own body
+    drift = scope.rate_of(point)  # a joint that slides along its own body
     return Twist(moved.w, minus(moved.v, drift))
 
 

@@ -17,7 +17,7 @@ from eomgen.mechanics.scope import primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, UniformField
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, Wrench, apply, cross, dot, plus, times, transposed
+from eomgen.symbolic.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,11 @@ class SystemScene:
 
     def velocity(self, place: Place) -> Vector:
         """d/dt of the position [m/s]."""
-        return self.motion.scope.time_derivative(self.position(place))  # type: ignore[return-value]
+        return self.motion.scope.rate_of(self.position(place))
+
+    def orientation(self, body: str) -> Matrix:
+        """R of the body in the ground."""
+        return self.motion.link(body).pose.R
 
     def angle(self, body: str) -> Scalar:
         angle = self.motion.link(body).angle
@@ -214,7 +218,7 @@ def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
         return []
     scope, rows = motion.scope, []
     for k, e in enumerate(link.joint.efforts()):
-        if e is None or e.drive is None and e.stiffness is None and e.damping is None:
+        if e is None or (e.drive is None and e.stiffness is None and e.damping is None):
             continue
         drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
         if motion.moves((*link.before.p, *link.point)):

@@ -20,7 +20,7 @@ from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.expressions import Call, Reference
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed
+from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
 
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
 _AXES = {"x": 0, "y": 1, "z": 2}
@@ -93,7 +93,7 @@ class Quantities:
         if frame in self.system.motion.index:
             R = self.system.motion.link(frame).pose.R
             w = apply(transposed(R), minus(w, self._spin(frame)))
-        return w if order == 1 else self.system.scope.with_accelerations(w)  # type: ignore[return-value]
+        return w if order == 1 else vector_of(self.system.scope.with_accelerations(w))
 
     def _spin(self, body: str) -> Vector:
         """Angular velocity in ground axes, from the twist; of the ground 0 [rad/s]."""
@@ -104,11 +104,15 @@ class Quantities:
 
     def angle(self, body: str, frame: str = GROUND) -> Scalar:
         """Angle of a body in the plane, against the ground or another body [rad]."""
+        return self._angle(body) - self._angle(frame)
+
+    def _angle(self, body: str) -> Scalar:
+        """Angle of a body against the ground's axes; of the ground 0 [rad]."""
         if self.system.scope.model.space != "plane":
             raise DerivationError(f"body '{body}' has no single angle in space")
-        links = self.system.motion.index
-        angles = [self.system.motion.link(name).angle if name in links else 0 for name in (body, frame)]
-        return angles[0] - angles[1]
+        angle = self.system.motion.link(body).angle if body in self.system.motion.index else 0
+        assert angle is not None, "in the plane every body has an angle"
+        return angle
 
     def turning(self, order: int, body: str, frame: str = GROUND) -> Scalar:
         """In the plane omega or epsilon, counter-clockwise positive; in space its magnitude."""
@@ -129,7 +133,7 @@ class Quantities:
         if order == 0:
             return vector
         rate = scope.time_derivative(vector)
-        return rate if order == 1 else scope.with_accelerations(rate)  # type: ignore[return-value]
+        return vector_of(rate if order == 1 else scope.with_accelerations(rate))
 
     def _place(self, point: str) -> Place:
         owner, _ = self.system.scope.model.resolve_point(point)

@@ -14,7 +14,7 @@ from eomgen.model.parts import Coordinate, Model
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.spatial import Vector
+from eomgen.symbolic.spatial import Vector, vector_of
 from eomgen.symbolic.symbols import Symbols
 
 
@@ -59,7 +59,7 @@ class Scope:
     def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
         """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""
         values = [self.value(e) for e in expressions or ()]
-        return tuple(values + [0] * (3 - len(values)))  # type: ignore[return-value]
+        return vector_of(values + [0] * (3 - len(values)))
 
     def time_derivative(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, u and t where a = 0: the part that stays when nothing accelerates."""
@@ -70,6 +70,10 @@ class Scope:
                 mend="let inputs act in forces and torques only; drive a coordinate by `motion`",
             )
         return tangent(outputs, self.flow)
+
+    def rate_of(self, vector: Vector) -> Vector:
+        """d/dt of a vector, 3, where a = 0."""
+        return vector_of(self.time_derivative(vector))
 
     def with_accelerations(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, u and t, the accelerations included: linear in a."""
@@ -101,7 +105,8 @@ def scope_of(model: Model) -> Scope:
     symbols = Symbols(graph, t, parameters, inputs, q, u, a)
     names: dict[str, Scalar] = {**parameters, **inputs, "t": t, "pi": graph.pi}
     names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
-    N, nu = [], []
+    N: list[tuple[Scalar, ...]] = []
+    nu: list[Scalar] = []
     speed = dict(zip(free, range(len(free)), strict=True))
     for name, coordinate in model.coordinates.items():
         if name in speed:

@@ -16,7 +16,6 @@ from eomgen.errors import NotYet
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import SystemScene, body_wrench
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import PointForce
 from eomgen.symbolic.derivative import jacobian, substituted, tangent
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
@@ -98,16 +97,17 @@ def ties_of(motion: Motion) -> Ties:
 def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
     scope = motion.scope
     wrenches = []
-    for place, push in row.pushes:
-        found = body_wrench(motion, PointForce(place, push))
+    for push in row.pushes:
+        found = body_wrench(motion, push)
         if found is not None:
             wrenches.append(found)
     if row.pushes:
-        moving_by_itself = tangent((row.gap,), {scope.symbols.t: 1})[0]
+        moving_by_itself = 0 if row.gap is None else tangent((row.gap,), {scope.symbols.t: 1})[0]
         velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=moving_by_itself)
     elif row.rate is not None:
         velocity = row.rate
     else:
+        assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         velocity = scope.time_derivative((row.gap,))[0]
     identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
     return Row(name, number, tuple(wrenches), velocity, row.gap, identical)

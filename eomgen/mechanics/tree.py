@@ -22,11 +22,13 @@ from eomgen.symbolic.spatial import (
     Vector,
     added,
     apply,
+    matrix_of,
     minus,
     plus,
     product,
     times,
     transposed,
+    vector_of,
 )
 
 Column = tuple[Vector, Vector]
@@ -54,8 +56,8 @@ class Moments:
     def moved(self, p: Vector) -> Moments:
         """About the point that sees the present origin at p: h + m p, J + p h^T + h p^T + m p p^T."""
         g = plus(self.h, times(self.m, p))  # p h^T + h p^T + m p p^T = p h^T + g p^T
-        J = tuple(tuple(self.J[i][j] + p[i] * self.h[j] + g[i] * p[j] for j in range(3)) for i in range(3))
-        return Moments(self.m, g, J)  # type: ignore[arg-type]
+        J = matrix_of((self.J[i][j] + p[i] * self.h[j] + g[i] * p[j] for j in range(3)) for i in range(3))
+        return Moments(self.m, g, J)
 
 
 @dataclass(frozen=True)
@@ -114,14 +116,14 @@ def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane:
     parent_axes = IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
     axes = link.pose.R if plane else IDENTITY
     E = IDENTITY if plane else transposed(link.local.R)
-    rate = scope.time_derivative(offset)
-    bias = scope.time_derivative(rate)
+    rate = scope.rate_of(offset)
+    bias = scope.rate_of(rate)
     directions = [apply(axes, w) for w, _ in link.S]
     w = w_bias = ZERO
     s_bias = scope.time_derivative(link.s_rate)
     for direction, (body_direction, _), s_rate, s_acc in zip(directions, link.S, link.s_rate, s_bias, strict=True):
         w = plus(w, times(s_rate, direction))
-        turning = apply(axes, scope.time_derivative(body_direction))
+        turning = apply(axes, scope.rate_of(body_direction))
         w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
     own_rate = apply(parent_axes, rate)
     return Branch(
@@ -137,7 +139,7 @@ def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, Column]:
     for symbol in symbols_of((*w, *v)):
         if symbol in speeds:
             rates = tangent((*w, *v), {symbol: 1})
-            columns[speeds[symbol]] = (rates[:3], rates[3:])
+            columns[speeds[symbol]] = (vector_of(rates[:3]), vector_of(rates[3:]))
     return dict(sorted(columns.items()))
 
 
@@ -155,14 +157,14 @@ def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Momen
         if k is None:
             continue
         m, h, J = moments[i].m, moments[i].h, moments[i].J
-        along = plane and 2 or k
-        kept_h = tuple(0 if j == along else h[j] for j in range(3))
-        kept_J = tuple(tuple(0 if i_ == j_ == along else J[i_][j_] for j_ in range(3)) for i_ in range(3))
-        moments[i] = Moments(0, kept_h, kept_J)  # type: ignore[arg-type]
+        along = 2 if plane else k
+        kept_h = vector_of(0 if j == along else h[j] for j in range(3))
+        kept_J = matrix_of((0 if i_ == j_ == along else J[i_][j_] for j_ in range(3)) for i_ in range(3))
+        moments[i] = Moments(0, kept_h, kept_J)
         if link.parent == GROUND:
             continue
-        d = tuple(row[k] for row in link.before.R)
-        line = Moments(m, times(h[k], d), tuple(times(J[k][k] * a, d) for a in d))  # type: ignore[arg-type]
+        d = vector_of(row[k] for row in link.before.R)
+        line = Moments(m, times(h[k], d), matrix_of(times(J[k][k] * a, d) for a in d))
         moments[link.parent] = moments[link.parent].plus(_flat(line.moved(offsets[i]), plane))
     return [
         Moments(b.m, apply(link.pose.R, b.h), b.J) if plane else b
@@ -173,11 +175,11 @@ def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Momen
 def _own_moments(motion: Motion, link: Link, plane: bool) -> Moments:
     body = mass_properties(motion.scope, link.name)
     half_trace = Fraction(1, 2) * (body.I[0][0] + body.I[1][1] + body.I[2][2])
-    J = tuple(tuple((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
+    J = matrix_of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
     if plane:
         J = ((body.I[2][2], 0, 0), ZERO, ZERO)
     com = minus(body.com, origin_of(motion, link))
-    return _flat(Moments(body.m, ZERO, J).moved(com), plane)  # type: ignore[arg-type]
+    return _flat(Moments(body.m, ZERO, J).moved(com), plane)
 
 
 def _flat(moments: Moments, plane: bool) -> Moments:
@@ -204,4 +206,4 @@ def _congruence(R: Matrix, J: Matrix) -> Matrix:
     """R J R^T for symmetric J, its symmetric half computed once."""
     half = product(R, J)
     upper = {(i, j): sum((half[i][k] * R[j][k] for k in range(3)), start=0) for i in range(3) for j in range(i, 3)}
-    return tuple(tuple(upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))  # type: ignore[return-value]
+    return matrix_of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))

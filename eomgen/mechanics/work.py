@@ -9,8 +9,7 @@ from eomgen.mechanics.loads import Applied, JointEffort, Loads, in_body_axes, in
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, UniformField
 from eomgen.symbolic.derivative import gradient, jacobian
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import dot
-
+from eomgen.symbolic.spatial import dot, vector_of
 
 
 def generalized_forces(loads: Loads) -> Row:
@@ -87,14 +86,15 @@ def load_row(loads: Loads, load: Load) -> Row:
 
 def _weighted(force, rows, size: int) -> Row:
     """force . d(position)/dq_k for each k."""
-    return tuple(dot(force, tuple(row[k] for row in rows)) for k in range(size))  # type: ignore[arg-type]
+    return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))
 
 
 def placeless_forces(loads: Loads) -> Row:
     """Q of what acts at no place: generalized forces and potentials of coordinates."""
     size = len(loads.motion.scope.symbols.u)
     rows = [load_row(loads, load) for load in loads.generalized]
-    rows += [from_potential(loads.motion, f.potential) for f in loads.applied if f.placeless]
+    energies = [force.potential for force in loads.applied if force.placeless]
+    rows += [from_potential(loads.motion, V) for V in energies if V is not None]
     return total(rows, size)
 
 

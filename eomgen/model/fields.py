@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.findings import Decimal, Finding, Path, nearest, shown, unknown_keys
+from eomgen.model.findings import Decimal, Finding, Path, article, nearest, shown, unknown_keys
 from eomgen.symbolic.expressions import Expression, as_expression, parse_equation
 from eomgen.symbolic.units import Unit, parse_unit
 
@@ -245,14 +245,14 @@ class NameRule:
     def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
-        found.append(Finding(path, f"the name of a {self.of} is needed here, not {shown(raw)}"))
+        found.append(Finding(path, f"the name of {article(self.of)} is needed here, not {shown(raw)}"))
         return None
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
-        return {"type": "string", "description": f"the name of a {self.of}"}
+        return {"type": "string", "description": f"the name of {article(self.of)}"}
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,13 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"did you mean '{close[0]}'?" if close else ""
 
 
+def article(kind: str) -> str:
+    """ "a rate", "an input"; time and a constant have none."""
+    if kind in ("time", "constant"):
+        return kind
+    return f"an {kind}" if kind[0] in "aiou" else f"a {kind}"
+
+
 def shown(raw: Any) -> str:
     """A value of the file in a message."""
     if isinstance(raw, Mapping):

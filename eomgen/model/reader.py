@@ -6,7 +6,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.findings import Decimal, Finding, shown
+from eomgen.model.findings import TABLES, Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import Index, Span, index_of
@@ -43,11 +43,21 @@ def loads(text: str | bytes, name: str = "<text>") -> Model:
     return _loads(data, name, "model")
 
 
+def located(problem: Problem, data: bytes, name: str) -> Problem:
+    """A problem that names a part of the model by its path ("bodies.arm.joint"), at that part's place in the text."""
+    path = tuple(problem.where.split("."))
+    if path[0] not in TABLES:
+        return problem
+    index = index_of(_text(data, name))
+    key = path if path in index.keys else path[:2]
+    return _problem(Finding(path, problem.what, problem.mend), index.nearest(key, key=True), index, name)
+
+
 def _loads(data: bytes, name: str, title: str) -> Model:
     text = _text(data, name)
     index = index_of(text)
     if index.deep is not None:
-        deep = Finding((), "not TOML that a model needs: a key with too many pieces", "a model has at most bodies.arm.joint")
+        deep = Finding((), "a key with too many pieces", "a model needs at most bodies.arm.joint")
         raise ModelError((_problem(deep, index.deep, index, name),))
     raw, twice = _table(text, index, name)
     found = _version(raw)

@@ -42,7 +42,7 @@ def derivation_of(system: System, assembly: Assembly, method: str) -> Derivation
     steps = (*setting_steps(system), *steps, *result.steps)
     return Derivation(
         model.name, model.about or "", model.source or "", model.space, method,
-        (*steps, notation_step(steps)), result.equations, result.definitions,
+        (*steps, notation_step(steps, system.scope.names)), result.equations, result.definitions,
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import elsewhere
-from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, shortened
+from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, holds_roots, shortened
 from eomgen.report.statements import Equation, Formula, Piece, Prose, Statement, Step
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
@@ -96,10 +96,9 @@ def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> lis
         left, right = reader.read(row.left), reader.read(row.right)
         if left is None or right is None or text_size(left) + text_size(right) > LONGEST:
             return None
-        divisor = common_factor((left, right), WORK)
-        if is_zero(divisor):
-            divisor = 1
-        equations.append(Equation(u, readable(left / divisor, WORK), readable(right / divisor, WORK), divisor))
+        roots = holds_roots(left) or holds_roots(right)
+        divisor = 1 if roots or (is_zero(left) and is_zero(right)) else common_factor((left, right), WORK)
+        equations.append(Equation(u, *reader.short((left / divisor, right / divisor)), divisor))
     return equations
 
 

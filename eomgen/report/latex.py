@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from eomgen.report.latex_lines import aligned, rows_of
@@ -35,9 +36,11 @@ PREAMBLE = r"""\documentclass{article}
 \usepackage{longtable}
 \usepackage[margin=25mm]{geometry}
 \setlength{\parindent}{0pt}
+\setlength{\LTleft}{0pt}
+\setlength{\LTright}{\fill}
 \allowdisplaybreaks
 """
-BLOCK = 12  # rows of one aligned block, which no page break can divide
+BLOCK = 8  # rows of one aligned block, which no page break can divide
 LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
     "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
@@ -194,11 +197,17 @@ def _symbol(setter: Setter, symbol: Node) -> str:
     return setter.set(symbol).tex
 
 
+def unit_latex(unit: str) -> str:
+    """kg*m^2 with its exponents raised."""
+    pieces = re.split(r"\^\(?(-?\d+)\)?", unit)
+    return "".join(f"$^{{{piece}}}$" if k % 2 else escaped(piece).replace("*", r"\,") for k, piece in enumerate(pieces))
+
+
 def _table(setter: Setter, table: Table) -> str:
     """A table that may go over pages."""
     head = " & ".join(escaped(cell) for cell in table.head)
     lines = [r"\begin{longtable}{@{}lp{85mm}ll@{}}", head + r" \\ \hline \endhead"]
     for row in table.rows:
-        cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
-        lines.append(" & ".join(cells) + r" \\")
+        words = (escaped(row.meaning), unit_latex(row.unit), escaped(row.value))
+        lines.append(" & ".join((f"${side_latex(setter, row.symbol)}$", *words)) + r" \\")
     return "\n".join([*lines, r"\end{longtable}"])

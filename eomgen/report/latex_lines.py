@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from eomgen.report.latex_math import Set, Setter, is_sum
+from eomgen.report.latex_math import FUNCTIONS, Set, Setter, is_sum
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.layout import Product
 
-LINE = 82.0  # characters
+LINE = 90.0  # characters
 NARROW = 24.0  # a left side that stands before the alignment
 
 
@@ -69,29 +67,47 @@ def pieces(setter: Setter, side: Set | Scalar, room: float) -> list[Set]:
 
 def _opened(setter: Setter, product: Product, term: Set, room: float) -> list[Set]:
     """A term that is too long for a line, broken inside the parentheses of its longest sum."""
-    sums = [base for base, exponent in (*product.numerator, *product.denominator) if is_sum(base)]
+    if product.denominator:
+        return _quotient(setter, product, term.tex[:2] if term.tex.startswith(("+", "-")) else "", room)
+    bases = [base for base, _ in product.numerator]
+    bases += [a for base in bases if base.op in FUNCTIONS for a in base.args if type(a) is Node]
+    sums = [base for base in bases if is_sum(base)]
     if not sums:
         return [term]
     longest = max(sums, key=lambda base: setter.set(base).width)
-    inside = setter.set(longest)
-    for begin, end, build in _places(setter, product, longest, inside, term):
-        parts = pieces(setter, longest, room - 4)
-        parts[0] = Set(build(begin, parts[0].tex), parts[0].width + 4)
-        parts[-1] = Set(parts[-1].tex + end, parts[-1].width + 4)
-        return parts
-    return [term]
-
-
-Builder = Callable[[str, str], str]
-
-
-def _places(setter: Setter, product: Product, longest: Node, inside: Set, term: Set) -> list[tuple[str, str, Builder]]:
-    """Where the sum stands in the term: what is before it, and what is after it; nothing inside a fraction."""
-    bracket = rf"\left({inside.tex}\right)"
-    if product.denominator or term.tex.count(bracket) != 1:
-        return []
+    bracket = rf"\left({setter.set(longest).tex}\right)"
+    if term.tex.count(bracket) != 1:
+        return [term]
     before, after = term.tex.split(bracket)
-    return [(before, rf"\bigr){after}", lambda begin, tex: rf"{begin}\bigl({tex}")]
+    parts = pieces(setter, longest, room / 2)
+    parts[0] = Set(rf"{before}\bigl({parts[0].tex}", term.width - setter.set(longest).width + parts[0].width)
+    parts[-1] = Set(rf"{parts[-1].tex}\bigr){after}", parts[-1].width + 2)
+    return parts
+
+
+def _quotient(setter: Setter, product: Product, sign: str, room: float) -> list[Set]:
+    """A quotient that is too long for a fraction, in which no line can end: (above) / (below)."""
+    c = abs(product.coefficient)
+    above = _factor_pieces(setter, Product(c.numerator, product.numerator, ()), room)
+    below = _factor_pieces(setter, Product(c.denominator, product.denominator, ()), room)
+    above[0] = Set(f"{sign}{above[0].tex}", above[0].width + len(sign))
+    joined = Set(rf"{above[-1].tex} \big/ {below[0].tex}", above[-1].width + below[0].width + 2)
+    return [*above[:-1], joined, *below[1:]]
+
+
+def _factor_pieces(setter: Setter, product: Product, room: float) -> list[Set]:
+    """A side of a quotient, in parentheses where it is more than one symbol."""
+    lone = product.coefficient == 1 and len(product.numerator) == 1
+    if lone and product.numerator[0][1] == 1 and is_sum(product.numerator[0][0]):
+        parts = pieces(setter, product.numerator[0][0], room / 2)
+    else:
+        term = setter.product(product)
+        parts = [term] if term.width <= room else _opened(setter, product, term, room)
+        if lone or not product.numerator:
+            return parts
+    parts[0] = Set(rf"\bigl({parts[0].tex}", parts[0].width + 1)
+    parts[-1] = Set(rf"{parts[-1].tex}\bigr)", parts[-1].width + 1)
+    return parts
 
 
 def _filled(parts: list[Set], room: float) -> list[str]:

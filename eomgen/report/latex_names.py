@@ -25,31 +25,37 @@ _NAME = re.compile(r"(?P<letters>[^\W\d_]+?)(?P<rest>[\d_].*)?")
 _MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
 
 
-def symbol_latex(name: str) -> str:
-    """A symbol of the formulas, primes and subscripts included."""
+def symbol_latex(name: str, base: str = "") -> str:
+    """A symbol of the formulas, dots and subscripts included.
+
+    Args:
+        base: how the name without its primes is set, where not by its own letters.
+    """
     multiplier = _MULTIPLIER.fullmatch(name)
     if multiplier:
         return rf"\lambda_{{{upright(multiplier['tie'])},{multiplier['row']}}}"
     bare = name.rstrip("'")
-    dots = len(name) - len(bare)
     letters, subscript = _parts(bare)
-    base = _letters(letters)
-    if dots:
-        base = f"{DOTS[dots]}{{{base}}}" if dots in DOTS else f"{base}^{{({dots})}}"
-    return f"{base}_{{{subscript}}}" if subscript else base
+    return _dotted(base or _letters(letters), len(name) - len(bare)) + (
+        f"_{{{subscript}}}" if subscript and not base else ""
+    )
+
+
+def _dotted(base: str, dots: int) -> str:
+    if not dots:
+        return base
+    return f"{DOTS[dots]}{{{base}}}" if dots in DOTS else f"{base}^{{({dots})}}"
 
 
 def notation(names: Iterable[str]) -> dict[str, str]:
-    """The LaTeX of each name; where two would look alike (theta1, theta_1), the later ones are spelt out."""
+    """The LaTeX of each name; where two would look alike (theta1, theta_1), the later one is spelt out."""
+    names = list(names)
     taken: dict[str, str] = {}
-    for name in names:
-        latex = symbol_latex(name)
-        if taken.get(latex, name) != name:
-            bare = name.rstrip("'")
-            dots = len(name) - len(bare)
-            latex = f"{DOTS[dots]}{{{upright(bare)}}}" if dots else upright(bare)
-        taken[latex] = name
-    return {name: latex for latex, name in taken.items()}
+    spelt: dict[str, str] = {}
+    for bare in dict.fromkeys(name.rstrip("'") for name in names):
+        if taken.setdefault(symbol_latex(bare), bare) != bare:
+            spelt[bare] = upright(bare)
+    return {name: symbol_latex(name, spelt.get(name.rstrip("'"), "")) for name in names}
 
 
 def upright(text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 from eomgen.report.statements import Entry, Formula, Meaning, Name, Partial, Prose, Rate, Statement, Step, Table
 
@@ -33,10 +33,17 @@ MEANINGS = {
 """letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""
 
 
-def notation_step(steps: Sequence[Step]) -> Step:
-    """The letters that the steps use."""
+def notation_step(steps: Sequence[Step], taken: Container[str]) -> Step:
+    """The letters that the steps use.
+
+    Args:
+        taken: the model's own names; where one of them is such a letter, the table says so.
+    """
     letters = {name.letter for step in steps for statement in step.statements for name in quantities(statement)}
-    rows = tuple(Meaning(Name(letter), *MEANINGS[letter]) for letter in MEANINGS if letter in letters)
+    rows = tuple(
+        Meaning(Name(letter), meaning + (f"; not the model's own {letter}" if letter in taken else ""), unit)
+        for letter, (meaning, unit) in MEANINGS.items() if letter in letters
+    )  # fmt: skip
     return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), rows),))
 
 

@@ -17,6 +17,7 @@ LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
 TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
+POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED = 40  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 6000  # characters of all named sub-expressions together, at most
@@ -41,6 +42,8 @@ class Reader:
         size = text_size(x)
         if size <= TRIED and self._failures < PATIENCE:
             short = _written(x)
+            if short is not None and size < text_size(short) and holds_roots(x):
+                short = x  # 1/2*k*(sqrt(...) - l)^2 is better left alone
             if short is not None and text_size(short) <= LONGEST:
                 return short
             self._failures += 1
@@ -62,6 +65,11 @@ def _written(x: Scalar) -> Scalar | None:
         return readable(x, WORK) if len(normal_form(x, WORK).terms) <= WAVES else None
     except TooLarge:
         return None
+
+
+def holds_roots(x: Scalar) -> bool:
+    """True where x holds functions other than sines and cosines."""
+    return any(node.op not in POLYNOMIAL for node in order((x,)))
 
 
 def omitted(*expressions: Scalar) -> Omitted:

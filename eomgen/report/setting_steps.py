@@ -93,24 +93,32 @@ def _coordinates(system: System) -> Step:
     """Coordinates, their rates and accelerations, and what moves as the model says."""
     model, symbols, scope = system.scope.model, system.symbols, system.scope
     values = exact_parameters(model)
-    rows = [
-        Meaning(q, part.about or "coordinate", _unit(part), _start(part, part.start, values))
-        for q, part in zip(symbols.q, model.coordinates.values(), strict=True)
-    ]
     free = {u.name.removesuffix("'"): (u, a) for u, a in zip(symbols.u, symbols.a, strict=True)}
-    for name, (u, a) in free.items():
-        part = model.coordinates[name]
+    rows: list[Meaning] = []
+    for q in symbols.q:
+        part = model.coordinates[q.name]
         unit = _unit(part)
-        rows.append(Meaning(u, f"rate of {name}", f"{unit}/s" if unit else "", _start(part, part.speed, values)))
-        rows.append(Meaning(a, f"acceleration of {name}", f"{unit}/s^2" if unit else ""))
+        rows.append(Meaning(q, part.about or "coordinate", unit, _start(part, part.start, values)))
+        if q.name in free:
+            u, a = free[q.name]
+            rows.append(Meaning(u, "its rate", _per(unit, "s"), _start(part, part.speed, values)))
+            rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
-    driven = [
-        Formula((Rate(q), rate)) for q, rate in zip(symbols.q, scope.rates, strict=True) if q.name not in free
-    ]
+    driven: list[Statement] = []
+    for q, rate in zip(symbols.q, scope.rates, strict=True):
+        if q.name not in free:
+            motion = model.coordinates[q.name].motion
+            driven += [] if motion is None else [Formula((q, scope.value(motion)))]
+            driven.append(Formula((Rate(q), rate)))
     if driven:
         statements += [Prose(("Driven coordinates move as given:",)), *driven]
     return Step("coordinates", "Coordinates", tuple(statements))
+
+
+def _per(unit: str, time: str) -> str:
+    """A unit per second: rad/s."""
+    return "" if not unit else f"{unit}/{time}" if "/" not in unit else f"({unit})/{time}"
 
 
 def _start(part, expression, values) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 
 from eomgen.report.statements import (
     Code,
@@ -131,18 +132,19 @@ def broken(text: str, indent: str, width: int) -> list[str]:
 
 
 def _break(text: str, start: int, end: int) -> int | None:
-    """Where to break text[start:end]: the last sign of the least depth in it; else the first one beyond it."""
-    best: tuple[int, int] | None = None
+    """Where to break: the last sign of the least depth before `end`, not too near the start; else the next one."""
+    signs = list(_signs(text, start))
+    within = [sign for sign in signs if sign[1] <= end]
+    if not within:
+        return signs[0][1] if signs else None
+    far = [sign for sign in within if sign[1] > start + (end - start) // 3]
+    return min(far or within, key=lambda sign: (sign[0], -sign[1]))[1]
+
+
+def _signs(text: str, start: int) -> Iterator[tuple[int, int]]:
+    """(depth in parentheses, place) of every = + - between blanks."""
     depth = 0
-    for i in range(start + 1, len(text)):
-        character = text[i]
-        if character in "([":
-            depth += 1
-        elif character in ")]":
-            depth -= 1
-        elif character in "+-=" and text[i - 1] == " " and text[i + 1 : i + 2] == " ":
-            if i > end:
-                return best[1] if best else i
-            if best is None or depth <= best[0]:
-                best = (depth, i)
-    return best[1] if best else None
+    for i in range(start + 1, len(text) - 1):
+        depth += (text[i] in "([") - (text[i] in ")]")
+        if text[i] in "+-=" and text[i - 1] == text[i + 1] == " ":
+            yield depth, i

@@ -15,6 +15,7 @@ from eomgen.simulation.trajectory import Phase, Status, Trajectory
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 SAMPLES = 1001
 MOST_STEPS = 10_000_000
+STANDING = 1e-12  # energy that moves, against all energy, below which it is rounding
 
 Function = Callable[[np.ndarray, np.ndarray], Any]
 
@@ -101,10 +102,12 @@ def integrate(
 
 
 def drift_of(T: np.ndarray, V: np.ndarray) -> float:
-    """max |E - E(0)| over max(T, |V - V(0)|), E = T + V; absolute where nothing moves."""
+    """max |E - E(0)| over max(T, |V - V(0)|), E = T + V; over |E(0)| where as good as nothing moves."""
     E = T + V
     moving = max(np.max(np.abs(T), initial=0.0), np.max(np.abs(V - V[:1]), initial=0.0))
-    return float(np.max(np.abs(E - E[:1]), initial=0.0) / (moving if moving > 0 else 1.0))
+    standing = np.max(np.abs(E), initial=0.0)
+    scale = moving if moving > STANDING * standing else standing
+    return float(np.max(np.abs(E - E[:1]), initial=0.0) / (scale if scale > 0 else 1.0))
 
 
 def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -17,6 +17,7 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.angles import circular
+from eomgen.symbolic.factors import coefficient, common_of_squares, same_number
 from eomgen.symbolic.node import Node, Scalar, collected, is_zero, linear_terms
 from eomgen.symbolic.numbers import Number, binary_folded_at, exact, exact_power, folded_at, root_of, tidy
 
@@ -106,11 +107,11 @@ class Graph:
         if x is y:
             return self.mul(2, x)
         if x.op == "mul" and y.op == "mul":
-            cx, fx = _coefficient(x)
-            cy, fy = _coefficient(y)
+            cx, fx = coefficient(x)
+            cy, fy = coefficient(y)
             if fx is fy:
                 return self.mul(tidy(cx + cy), fx)
-            merged = self._pythagoras(x, y)
+            merged = common_of_squares(x, y)
             if merged is not None:
                 return merged
         elif x.op == "mul" and x.args[1] is y and type(x.args[0]) is not Node:
@@ -134,8 +135,8 @@ class Graph:
         if x is y:
             return 0
         if x.op == "mul" or y.op == "mul":
-            cx, fx = _coefficient(x)
-            cy, fy = _coefficient(y)
+            cx, fx = coefficient(x)
+            cy, fy = coefficient(y)
             if fx is fy:
                 return self.mul(tidy(cx - cy), fx)
         if x.op == "add":  # (p + y) - y
@@ -159,15 +160,6 @@ class Graph:
         if ("sub", (y, x)) not in self._nodes:
             return self.held("sub", (x, y))
         return self.held("neg", (self.held("sub", (y, x)),))
-
-    def _pythagoras(self, x: Node, y: Node) -> Scalar | None:
-        """k when x + y is k sin(t)**2 + k cos(t)**2, else None."""
-        squares_x, squares_y = _squares(x), _squares(y)
-        for k, f in squares_x:
-            for other_k, g in squares_y:
-                if f.op != g.op and f.args[0] is g.args[0] and (k is other_k or _same_number(k, other_k)):
-                    return k
-        return None
 
     def mul(self, a: Scalar, b: Scalar) -> Scalar:
         if type(a) is not Node:
@@ -208,8 +200,9 @@ class Graph:
             return self._scale_or_number(y.args[0], self._product(x, y.args[1]))
         if x is y and x.op == "mul":
             for k, f in (x.args, x.args[::-1]):
-                if f.op in ("sin", "cos") and type(k) is Node:  # (k sin)^2 = k^2 sin^2 meets k^2 cos^2
-                    return self._product(self.mul(k, k), self.held("mul", (f, f)))
+                # (k sin)^2 = k^2 sin^2 meets k^2 cos^2
+                if f.op in ("sin", "cos") and type(k) is Node and k is not f:
+                    return self.mul(self.mul(k, k), self.held("mul", (f, f)))
         if x.op == "sqrt" and y.op == "sqrt":
             if x is y:
                 return x.args[0]
@@ -364,7 +357,7 @@ class Graph:
         """if_true where the condition (a comparison) holds, else if_false."""
         if type(condition) is not Node:
             return if_true if condition else if_false
-        if if_true is if_false or _same_number(if_true, if_false):
+        if if_true is if_false or same_number(if_true, if_false):
             return if_true
         if len({x.graph for x in (condition, if_true, if_false) if type(x) is Node}) > 1:
             return _united(Graph.select, condition, if_true, if_false)
@@ -389,29 +382,3 @@ def _united(operation: Callable[..., Scalar], *args: Scalar) -> Scalar:
     """The operation on constants and expressions of one graph, in that graph."""
     home = next(a.graph for a in args if type(a) is Node and a.graph is not CONSTANTS)
     return operation(home, *(home.adopted(a) for a in args))
-
-
-def _coefficient(x: Node) -> tuple[Number, Node]:
-    if x.op == "mul" and type(x.args[0]) is not Node:
-        return x.args[0], x.args[1]
-    return 1, x
-
-
-def _squares(x: Node) -> list[tuple[Scalar, Node]]:
-    """Every (k, f) such that x, a product of two, is k f**2 and f a sine or cosine."""
-    a, b = x.args
-    if a is b:
-        return [(1, a)] if a.op in ("sin", "cos") else []
-    found = []
-    for k, square in ((a, b), (b, a)):
-        if type(square) is Node and square.op == "mul" and square.args[0] is square.args[1]:
-            f = square.args[0]
-            if f.op in ("sin", "cos"):
-                found.append((k, f))
-    return found
-
-
-def _same_number(a: Scalar, b: Scalar) -> bool:
-    return type(a) is not Node and type(b) is not Node and a == b
-
-

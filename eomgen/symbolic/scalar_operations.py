@@ -12,7 +12,7 @@ from math import isqrt
 from typing import Any
 
 from eomgen.symbolic import functions
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Number
 
 Scalar = Any
 
@@ -128,11 +128,11 @@ def _function(name: str, args: tuple[Scalar, ...], pi: Scalar) -> Scalar:
     return functions.function(name, *(a + zero for a in args))
 
 
-def _exact_value(name: str, args: tuple[int | Fraction, ...]) -> int | Fraction | None:
+def _exact_value(name: str, args: tuple[Number, ...]) -> Number | None:
     """The function's value where it is an exact number for every arithmetic, else None."""
     a = args[0]
     if name == "abs":
-        return abs(a)
+        return -a if a < 0 else a
     if name == "sign":
         return (a > 0) - (a < 0)
     if name in ("min", "max"):

@@ -7,7 +7,9 @@ expression; nothing here asks which. A twist has its angular part first; a wrenc
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 Scalar = Any
@@ -16,6 +18,18 @@ Matrix = tuple[Vector, Vector, Vector]
 
 ZERO: Vector = (0, 0, 0)
 IDENTITY: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+def vector_of(components: Iterable[Scalar]) -> Vector:
+    """The vector with these three components."""
+    x, y, z = components
+    return (x, y, z)
+
+
+def matrix_of(rows: Iterable[Iterable[Scalar]]) -> Matrix:
+    """The matrix with these three rows of three."""
+    first, second, third = (vector_of(row) for row in rows)
+    return (first, second, third)
 
 
 def dot(a: Vector, b: Vector) -> Scalar:
@@ -56,7 +70,7 @@ def transposed(R: Matrix) -> Matrix:
 def product(A: Matrix, B: Matrix) -> Matrix:
     """A B"""
     columns = transposed(B)
-    return tuple(tuple(dot(row, column) for column in columns) for row in A)  # type: ignore[return-value]
+    return matrix_of((dot(row, column) for column in columns) for row in A)
 
 
 def added(A: Matrix, B: Matrix) -> Matrix:
@@ -165,16 +179,14 @@ class Inertia:
 
     m: Scalar
     h: Vector
-    I: Matrix  # noqa: E741 - the standard letter
+    I: Matrix
 
     @staticmethod
     def about_center(m: Scalar, com: Vector, I_com: Matrix) -> Inertia:
         """From the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
         h = times(m, com)
-        shift = tuple(
-            tuple((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3)
-        )
-        return Inertia(m, h, added(I_com, shift))  # type: ignore[arg-type]
+        shift = matrix_of(((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
+        return Inertia(m, h, added(I_com, shift))
 
     def momentum(self, xi: Twist) -> Wrench:
         """I xi: angular momentum about the origin and linear momentum.
@@ -188,7 +200,5 @@ class Inertia:
 
     def kinetic_energy(self, xi: Twist) -> Scalar:
         """T = (m v.v + w.I w) / 2 + w.(h x v) [J], the twist at the origin in body axes."""
-        from fractions import Fraction
-
         momentum = self.momentum(xi)
         return Fraction(1, 2) * xi.power(momentum)

@@ -64,7 +64,7 @@ def _parts(node: Node, products: list[Product]) -> list[Node]:
 def _sum_text(products: list[Product], printed: Printed) -> tuple[str, int]:
     if len(products) == 1 and products[0].coefficient > 0:
         return _product_text(products[0], printed)
-    pieces = []
+    pieces: list[str] = []
     for product in products:
         sign = "-" if product.coefficient < 0 else "+"
         pieces.append(f" {sign} " if pieces else sign.replace("+", ""))
@@ -74,7 +74,8 @@ def _sum_text(products: list[Product], printed: Printed) -> tuple[str, int]:
 
 def _product_text(product: Product, printed: Printed) -> tuple[str, int]:
     """The text of |coefficient| * numerator / denominator."""
-    c = abs(product.coefficient)
+    c = product.coefficient
+    c = -c if c < 0 else c
     above = [_power_text(factor, printed) for factor in product.numerator]
     below = [_power_text(factor, printed) for factor in product.denominator]
     if not above and not below:

@@ -15,8 +15,8 @@ def derive(model: Model, *, method: str, format: str, certify: bool) -> Outcome:
     proof = "" if certificate is None else str(certificate)
     failed = "" if certificate is None or certificate.ok else "the certificate FAILS: do not trust this result"
     if format == "json":
-        payload = equations_payload(equations) | {"certificate": certificate and certificate.as_dict()}
-        return Outcome("", payload, failed)
+        checks = None if certificate is None else certificate.as_dict()
+        return Outcome("", equations_payload(equations, checks), failed)
     text = equations.render(format)
     return Outcome(_with_proof(text, proof, failed, format), {}, failed)
 

@@ -17,7 +17,7 @@ from eomgen.version import __version__
 
 def doctor() -> Outcome:
     """What this machine can do."""
-    rows = [("eomgen", __version__), ("python", platform.python_version())]
+    rows: list[tuple[str, str | None]] = [("eomgen", __version__), ("python", platform.python_version())]
     for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs"):
         try:
             rows.append((package, metadata.version(package)))

@@ -6,7 +6,7 @@ from functools import cache
 from eomgen.model.arithmetic import in_order
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
-from eomgen.model.findings import Finding, Path, nearest, whereabouts
+from eomgen.model.findings import Finding, Path, article, nearest, whereabouts
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.units import Unit, parse_unit
 
@@ -37,19 +37,13 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     if kind is None:
         what, mend = f"unknown name '{name}' in {where}", nearest(name, allowed) or _declare(catalog, name)
     elif name != base and kind not in ("coordinate", "speed"):
-        what, mend = f"a prime on what does not move: {name} ('{base}' is a {kind})", f"write {base}"
+        what, mend = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
-        what, mend = f"'{name}' means nothing: '{base}' is a {kind}", "a coordinate has '' and ', a speed '"
+        what, mend = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed '"
     else:
         kind = {"": kind, "'": "rate", "''": "acceleration"}[name[len(base) :]] if kind == "coordinate" else kind
-        what, mend = f"'{name}' ({_a(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
+        what, mend = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
     return Finding(leaf.path, what, mend, column, len(name))
-
-
-def _a(kind: str) -> str:
-    if kind in ("time", "constant"):
-        return kind
-    return f"an {kind}" if kind[0] in "aiu" else f"a {kind}"
 
 
 def _declare(catalog: Catalog, name: str) -> str:

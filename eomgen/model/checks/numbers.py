@@ -8,7 +8,7 @@ from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, in_order, number_of
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Finding, shown, whereabouts
+from eomgen.model.findings import Finding, Path, shown, whereabouts
 from eomgen.symbolic.expressions import Expression
 
 ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
@@ -58,17 +58,25 @@ def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:
 
 
 def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
-    if catalog.model.space == "plane":
-        return
     for name, body in catalog.table("bodies").items():
-        if body is None or body.measured or body.inertia is None or len(body.inertia) not in (3, 6):
+        if body is None or body.inertia is None:
             continue
+        path: Path = ("bodies", name, "inertia")
         moments = [number_of(e, values) for e in body.inertia]
-        if None not in moments and not _possible([float(x) for x in moments if x is not None]):
-            told = ", ".join(f"{float(x):g}" for x in moments if x is not None)
-            what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
-            mend = "a principal moment is at most the sum of the others; measured = true waives this for published data"
-            yield Finding(("bodies", name, "inertia"), what, mend)
+        negative = [k for k, x in enumerate(moments[:3]) if x is not None and x < 0]
+        for k in negative:
+            what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"
+            yield Finding(path if len(moments) == 1 else (*path, k), what)
+        if not negative and not body.measured and catalog.model.space == "space" and len(moments) in (3, 6):
+            yield from _triangle(name, path, [float(x) for x in moments if x is not None], len(moments))
+
+
+def _triangle(name: str, path: Path, moments: list[float], count: int) -> Iterator[Finding]:
+    if len(moments) == count and not _possible(moments):
+        told = ", ".join(f"{x:g}" for x in moments)
+        what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
+        mend = "a principal moment is at most the sum of the others; measured = true waives this for published data"
+        yield Finding(path, what, mend)
 
 
 def _possible(moments: list[float]) -> bool:

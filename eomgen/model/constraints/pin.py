@@ -5,9 +5,10 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow, axes_of
-from eomgen.model.forces.load import Place, Scene
+from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
+from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
-from eomgen.symbolic.spatial import dot, minus, times
+from eomgen.symbolic.spatial import apply, cross, dot, matrix_of, minus, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,16 +26,46 @@ class Pin(Constraint):
     axis: SpaceDirection | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start."""
+        """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
+
+        With an axis in space also n_P . e = 0 for the two directions e of the first body across the axis.
+        """
         first, *others = (scene.place(point) for point in self.points)
         if not others:
-            position = scene.position(first)
-            others = [(None, tuple(scene.start(x) for x in position))]  # type: ignore[list-item]
-        return tuple(row for other in others for row in _held_together(scene, first, other))
+            x, y, z = scene.position(first)
+            others = [(None, (scene.start(x), scene.start(y), scene.start(z)))]
+        rows = []
+        for other in others:
+            rows += _held_together(scene, first, other)
+            if self.axis is not None and not scene.plane:
+                rows += _kept_in_line(scene, (first[0], other[0]), unit(scene.vector(self.axis)))
+        return tuple(rows)
 
 
-def _held_together(scene: Scene, first: Place, other: Place) -> tuple[TieRow, ...]:
+def _held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
     gap = minus(scene.position(first), scene.position(other))
-    return tuple(
-        TieRow(((first, e), (other, times(-1, e))), dot(e, gap)) for e in axes_of(scene)
-    )  # fmt: skip
+    return [
+        TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap)) for e in axes_of(scene)
+    ]  # fmt: skip
+
+
+def _kept_in_line(scene: Scene, bodies: tuple[str | None, str | None], axis: Vector) -> list[TieRow]:
+    """n . e = 0: n the axis fixed in the second body, e across it in the first; the couple on the first is e x n."""
+    e_1, e_2 = across(axis)
+    n = carried(scene, bodies[1], axis)
+    rows = []
+    for direction in (e_1, e_2):
+        e = carried(scene, bodies[0], direction)
+        couple = cross(e, n)
+        pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
+        rows.append(TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e)))
+    return rows
+
+
+def carried(scene: Scene, body: str | None, direction: Vector) -> Vector:
+    """A direction given in ground axes at the start, as the body carries it along, ground axes."""
+    if body is None:
+        return direction
+    R = scene.orientation(body)
+    at_start = matrix_of((scene.start(x) for x in row) for row in R)
+    return apply(R, apply(transposed(at_start), direction))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.model.forces.load import Place, Scalar, Scene, Vector
+from eomgen.model.forces.load import Couple, PointForce, Scalar, Scene, Vector
 
 
 @dataclass(frozen=True)
@@ -12,12 +12,12 @@ class TieRow:
     """One scalar row of a constraint.
 
     Args:
-        pushes: (place, force in ground axes) for a unit of the row's multiplier; empty for an equation.
+        pushes: forces and couples on the bodies for a unit of the row's multiplier; empty for an equation.
         gap: phi(q, t), 0 when the tie holds; None where only the velocity row is given.
         rate: the row of an equation given in rates, 0 when it holds; None elsewhere.
     """
 
-    pushes: tuple[tuple[Place, Vector], ...]
+    pushes: tuple[PointForce | Couple, ...]
     gap: Scalar | None
     rate: Scalar | None = None
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
 from eomgen.symbolic.functions import over, sqrt
@@ -39,8 +39,5 @@ class Support(Constraint):
         n = tuple(over(x, size) for x in n)
         place = scene.place(self.point)
         position = scene.position(place)
-        if self.at is None:
-            origin = tuple(scene.start(x) for x in position)
-        else:
-            origin = scene.ground_place(self.at)
-        return (TieRow(((place, n),), dot(n, minus(position, origin))),)  # type: ignore[arg-type]
+        origin = tuple(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
+        return (TieRow((PointForce(place, n),), dot(n, minus(position, origin))),)  # type: ignore[arg-type]

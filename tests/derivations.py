@@ -1,0 +1,124 @@
+"""Derivations of every model that this version derives, and ways to read printed formulas back."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from eomgen.errors import NotYet
+from eomgen.model.reader import load, loads
+from eomgen.pipeline import Equations, derive
+from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.graph import Node, Scalar
+
+MODELS = Path(__file__).parent.parent / "models"
+PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])
+LARGE = ("arm7", "chain20")
+
+# closing ties, a driven coordinate, inputs, springs, and names that look alike or are special in a markup language
+LOOP = r"""
+eomgen = 1
+name = "Loop & 50% of_everything"
+space = "plane"
+about = "A $test$ of #all {kinds} \\ with <b>markup</b> | pipes *and* stars ~^"
+source = "none_of_them"
+[parameters]
+m = { value = 1, unit = "kg", about = "mass of the _crank_ & more" }
+theta_1 = 1.0
+l_max = { value = 40, unit = "cm" }
+k = {}
+T = 0.1
+Omega = 2
+[coordinates]
+theta1 = { start = 0.3, unit = "rad" }
+phi = 0.5
+x_c = { start = 0.1, unit = "m" }
+lambda = { motion = "theta_1*sin(Omega*t)" }
+[inputs]
+F = { value = "5*sin(2*t)", unit = "N" }
+[bodies.crank_a]
+shape = { kind = "rod", mass = "m", length = "l_max" }
+joint = { kind = "revolute", at = [0, 0], point = "start", angle = "theta1", stiffness = "k", torque = "F*l_max" }
+[bodies.bar]
+shape = { kind = "rod", mass = "2*m", length = "theta_1" }
+joint = { kind = "revolute", on = "crank_a.end", point = "start", angle = "phi - theta1" }
+[bodies.slider]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x_c" }
+[bodies.table]
+mass = 1
+inertia = "m*l_max^2"
+joint = { kind = "revolute", at = [3, 0], angle = "lambda" }
+[constraints.B]
+kind = "pin"
+points = ["bar.end", "slider.center"]
+[constraints.eq]
+kind = "equation"
+rate = "theta1' - 2*phi'*cos(theta1)"
+[forces.push]
+kind = "force"
+point = "slider.center"
+force = ["-F*sign(x_c')*abs(x_c)", 0]
+[forces.spring]
+kind = "spring"
+points = ["crank_a.center", "slider.center"]
+stiffness = "k"
+length = "l_max"
+[forces.drag]
+kind = "couple"
+body = "bar"
+couple = "-T*phi'*max(phi', 0)^2"
+[forces.pot]
+kind = "potential"
+energy = "k*exp(-phi)*atan2(phi, 2)/sqrt(1 + theta1^2)^3"
+"""
+
+
+@cache
+def equations(name: str, method: str = "lagrange") -> Equations:
+    """The equations of a model by its file's stem, or of LOOP."""
+    model = loads(LOOP) if name == "loop" else load(next(path for path in PATHS if path.stem == name))
+    return derive(model, method)
+
+
+@cache
+def derivable() -> tuple[str, ...]:
+    """The stems of the models that this version derives, and LOOP."""
+    found = ["loop"]
+    for path in PATHS:
+        try:
+            derive(load(path))
+        except NotYet:
+            continue
+        found.append(path.stem)
+    return tuple(found)
+
+
+def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
+    """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier."""
+    symbols = equations.graph.symbols
+    own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *symbols.u, *symbols.a)
+    names: dict[str, Any] = {symbol.name: symbol for symbol in own}
+    multipliers = {symbol.name: symbol for symbol in symbols.lam}
+    expression = parse(text, references=True, longest=2_000_000)
+    lookup = {**names, "pi": symbols.graph.pi, **(also or {})}
+    return expression.evaluate(lookup, call=lambda call: multipliers[str(call)])
+
+
+def residuals(equations: Equations) -> list[Scalar]:
+    """M a + c - Q - J^T lam of each speed."""
+    graph = equations.graph
+    rows = []
+    for k in range(len(graph.symbols.u)):
+        row = sum((m * a for m, a in zip(graph.M[k], graph.symbols.a, strict=True)), start=graph.c[k] - graph.Q[k])
+        ties = (J[k] * lam for J, lam in zip(graph.J, graph.symbols.lam, strict=True))
+        rows.append(row - sum(ties, start=0))
+    return rows
+
+
+def symbols_named(equations: Equations) -> dict[str, Node]:
+    """Every symbol of the equations by its name."""
+    s = equations.graph.symbols
+    own = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    return {symbol.name: symbol for symbol in own}

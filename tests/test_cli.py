@@ -1,0 +1,400 @@
+"""The command line: what goes where, exit codes, JSON, files whole or not at all, and quick help."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen import pipeline
+from eomgen.certificate import Certificate, Check
+from eomgen.cli import LATER, main
+from eomgen.codegen.build import compiler
+from eomgen.version import __version__
+
+ROOT = Path(__file__).parent.parent
+MODELS = ROOT / "models"
+PENDULUM = str(MODELS / "double_pendulum.toml")
+BEAM = str(MODELS / "gerber_beam.toml")
+SEED = str(MODELS / "seeds" / "ch22_p1.toml")
+VERBS = ["new", "check", "derive", "solve", "simulate", "codegen", "schema", "doctor"]
+
+FALL = """
+eomgen = 1
+name = "runaway"
+space = "plane"
+[parameters]
+k = 1.0
+[coordinates]
+x = { start = 1, speed = 1 }
+[bodies.block]
+mass = 1
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "k*x^3" }
+[outputs]
+x_dd = "x''"
+never = { value = "x", at = "x = 2" }
+"""
+
+
+def run(*words: str, text: str | None = None):
+    result = CliRunner().invoke(main, list(words), input=text)
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def started(*words: str, **more) -> subprocess.CompletedProcess:
+    """The command as a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **more.pop("env", {})}
+    return subprocess.run(
+        [sys.executable, "-m", "eomgen", *words], capture_output=True, text=True, env=environment, check=False, **more
+    )
+
+
+# -- help and imports ------------------------------------------------------------------------------
+
+
+def test_help_answers_in_a_fifth_of_a_second_of_cpu():
+    """`eomgen --help` < 0.2 s of CPU; the best of three, since others share the machine."""
+    spent = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        result = started("--help")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        assert result.returncode == 0
+    assert min(spent) < 0.2
+    assert [line.split()[0] for line in result.stdout.splitlines()[-8:]] == VERBS
+
+
+def test_importing_eomgen_and_its_command_line_imports_nothing_heavy():
+    """No sympy, numpy, scipy, matplotlib or pydantic until a verb needs them."""
+    code = "import sys, eomgen, eomgen.cli; print([m for m in sys.modules if '.' not in m])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert not {"sympy", "numpy", "scipy", "matplotlib", "pydantic"} & set(eval(done.stdout))
+
+
+def test_the_public_names_are_sorted_and_all_there():
+    """eomgen.X for every X of __all__."""
+    assert eomgen.__all__ == sorted(eomgen.__all__)
+    for name in eomgen.__all__:
+        assert getattr(eomgen, name) is not None
+    assert {"load", "loads", "derive", "solve", "simulate", "Model", "ModelError"} <= set(eomgen.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        eomgen.nothing  # noqa: B018
+
+
+def test_the_version_is_told_once_and_everywhere_the_same():
+    """pyproject, eomgen.__version__ and `eomgen --version`."""
+    assert f'version = "{__version__}"' in (ROOT / "pyproject.toml").read_text() or "dynamic" in (
+        ROOT / "pyproject.toml"
+    ).read_text()
+    assert run("--version").stdout.strip() == f"eomgen, version {__version__}"
+    assert eomgen.__version__ == __version__
+
+
+# -- conventions -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check", PENDULUM), ("check", BEAM), ("derive", SEED), ("derive", SEED, "--no-certify"), ("solve", SEED),
+        ("simulate", PENDULUM, "--time", "0.1"), ("schema",), ("doctor",), ("check", "no/such/file"), ("nonsense",),
+        ("simulate", PENDULUM, "--set", "q=1"), ("derive", BEAM),
+    ],
+    ids=lambda words: " ".join(Path(word).stem for word in words),
+)  # fmt: skip
+def test_with_json_stdout_is_one_json_object_with_its_schema_version(words):
+    """`--json` on every verb, errors too."""
+    result = run(*words, "--json")
+    payload = json.loads(result.stdout)
+    assert payload["schema_version"] == 1
+    assert (result.exit_code in (1, 2, 3) and "error" in payload) or words == ("solve", SEED) or result.exit_code == 0
+    if "error" in payload:
+        assert payload["error"]["exit_code"] == result.exit_code
+        assert payload["error"]["problems"][0]["what"]
+        assert result.stderr
+
+
+def test_new_and_codegen_have_json_too(tmp_path, monkeypatch):
+    """The files that were written are named."""
+    monkeypatch.chdir(tmp_path)
+    assert json.loads(run("new", "mine", "--json").stdout) == {"schema_version": 1, "file": "mine.toml"}
+    payload = json.loads(run("codegen", "mine.toml", "--target", "numpy", "-o", "code", "--json").stdout)
+    assert all(Path(name).is_file() for name in payload["files"])
+
+
+def test_only_the_result_is_on_stdout():
+    """The same text with a failure as without it: messages go to stderr."""
+    result = run("solve", SEED)
+    assert result.exit_code == 3
+    assert "not answered: N_A" in result.stderr
+    assert result.stdout.startswith("kinetic_energy  = 6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "word"),
+    [
+        (("check", PENDULUM), 0, ""),
+        (("check", "no/such/model.toml"), 2, "does not exist"),
+        (("chek", PENDULUM), 2, "Did you mean 'check'?"),
+        (("derive", PENDULUM, "--method", "magic"), 2, "'magic' is not one of"),
+        (("simulate", PENDULUM, "--set", "m3=1"), 2, "there is no parameter 'm3'"),
+        (("simulate", PENDULUM, "--set", "m1"), 2, "write --set m=2"),
+        (("simulate", PENDULUM, "--set", "m1=two"), 2, "unknown name 'two'"),
+        (("simulate", PENDULUM, "--start", "theta3=1"), 2, "did you mean 'theta"),
+        (("simulate", PENDULUM, "--time", "nan"), 2, "makes no sense"),
+        (("simulate", PENDULUM, "--rtol", "-1"), 2, "tolerances"),
+        (("simulate", PENDULUM, "-o", "run.xlsx"), 2, "endings are .csv, .npz"),
+        (("derive", BEAM), 3, "clamp"),
+        (("simulate", BEAM), 3, "clamp"),
+        *((((verb, PENDULUM)), 2, "comes with a later version") for verb in LATER),
+    ],
+)
+def test_the_exit_code_says_what_kind_of_thing_went_wrong(words, code, word):
+    """0 ok, 1 the model, 2 usage, 3 derivation or run (4: see below)."""
+    result = run(*words)
+    assert result.exit_code == code
+    assert word in result.stderr
+
+
+def test_a_missing_tool_is_exit_code_4(monkeypatch):
+    """The user asked for C by name, and there is no compiler."""
+    monkeypatch.setenv("CC", "/nowhere/cc")
+    result = run("simulate", PENDULUM, "--target", "c", "--time", "0.1")
+    assert result.exit_code == 4
+    assert "no C compiler" in result.stderr
+
+
+def test_a_missing_package_is_exit_code_4(monkeypatch):
+    """No traceback where a dependency was not installed."""
+    monkeypatch.setitem(sys.modules, "eomgen.verbs.check", None)
+    monkeypatch.setitem(sys.modules, "numpy", None)
+    with monkeypatch.context() as patch:
+        patch.delitem(sys.modules, "eomgen.verbs.check")
+        patch.delitem(sys.modules, "eomgen.mechanics.freedom", raising=False)
+        result = run("check", PENDULUM)
+    assert result.exit_code == 4
+    assert "the package 'numpy' is not installed" in result.stderr
+
+
+def test_output_goes_into_a_file_whole_its_folder_made(tmp_path):
+    """-o FILE holds what stdout would; nothing else is left in the folder."""
+    path = tmp_path / "deep" / "er" / "answer.txt"
+    result = run("solve", SEED, "-o", str(path))
+    assert result.stdout == ""
+    assert path.read_text() == run("solve", SEED).stdout
+    assert [entry.name for entry in path.parent.iterdir()] == ["answer.txt"]
+
+
+def test_a_file_that_cannot_be_written_is_said_and_nothing_is_left(tmp_path):
+    """A folder that is a file: exit 3, no traceback."""
+    (tmp_path / "file").write_text("precious")
+    for words in (("solve", SEED), ("derive", SEED), ("simulate", PENDULUM, "--time", "0.1")):
+        result = run(*words, "-o", str(tmp_path / "file" / "x.csv"))
+        assert result.exit_code == 3
+        assert "cannot be" in result.stderr
+    assert (tmp_path / "file").read_text() == "precious"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_ctrl_c_is_quiet(monkeypatch):
+    """Exit code 130, no traceback."""
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pipeline, "derive", interrupted)
+    result = run("derive", PENDULUM)
+    assert result.exit_code == 130
+    assert "Traceback" not in result.stderr
+
+
+def test_a_reader_that_went_away_is_no_error_message():
+    """`eomgen schema | head -1` prints one line and nothing on stderr."""
+    command = f"{sys.executable} -m eomgen schema | head -c 1"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert (done.stdout, done.stderr) == ("{", "")
+
+
+def test_nothing_is_coloured():
+    """NO_COLOR and FORCE_COLOR alike: no escape codes."""
+    for setting in ({"NO_COLOR": "1"}, {"FORCE_COLOR": "1"}):
+        done = started("check", "no/such", env=setting)
+        assert "\x1b" not in done.stdout + done.stderr
+
+
+def test_a_model_is_read_from_stdin_too():
+    """`eomgen check -`; errors name <stdin>."""
+    assert run("check", "-", text=FALL).exit_code == 0
+    result = run("check", "-", text=FALL.replace("k*x^3", "kk*x^3"))
+    assert result.exit_code == 1
+    assert "<stdin>:" in result.stderr
+
+
+def test_an_error_under_json_carries_its_place(tmp_path):
+    """file, line, column, what, excerpt, mend of every problem."""
+    path = tmp_path / "bad.toml"
+    path.write_text(FALL.replace("k*x^3", "k*y^3"))
+    result = run("check", str(path), "--json")
+    (problem,) = json.loads(result.stdout)["error"]["problems"]
+    assert (problem["file"], problem["line"]) == (str(path), 11)
+    assert problem["excerpt"].splitlines()[1].strip() == "^"
+    assert "'y'" in problem["what"]
+
+
+def test_the_same_bytes_come_out_of_every_run():
+    """Hash seeds differ from process to process; the derivation does not."""
+    outputs = {started("derive", SEED, "--json", env={"PYTHONHASHSEED": seed}).stdout for seed in "12"}
+    assert len(outputs) == 1
+
+
+# -- the verbs -------------------------------------------------------------------------------------
+
+
+def test_the_starter_model_derives_solves_and_simulates(tmp_path, monkeypatch):
+    """eomgen new NAME, and on with it; a file that is there is never overwritten."""
+    monkeypatch.chdir(tmp_path)
+    assert run("new", "mine").stdout == "mine.toml\n"
+    assert eomgen.load("mine.toml").name == "mine"
+    assert run("derive", "mine.toml").exit_code == 0
+    assert run("solve", "mine.toml").exit_code == 0
+    assert run("simulate", "mine.toml", "--time", "1").exit_code == 0
+    Path("mine.toml").write_text("precious")
+    result = run("new", "mine")
+    assert (result.exit_code, Path("mine.toml").read_text()) == (2, "precious")
+    assert "is there already" in result.stderr
+
+
+def test_check_tells_the_degrees_of_freedom_both_ways():
+    """By rank beside the count by formula."""
+    lines = run("check", PENDULUM).stdout.splitlines()
+    assert "degrees of freedom: 2 by rank" in lines
+    assert "count by formula: 2 = 3*2 (bodies) - 4 (joints)" in lines
+
+
+def test_check_accepts_what_it_cannot_count_yet():
+    """Exit 0, and the kind is named."""
+    result = run("check", BEAM)
+    assert result.exit_code == 0
+    assert "degrees of freedom: not counted yet (clamp)" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("ending", "mark"), [("tex", r"\begin{document}"), ("md", "# "), ("json", "{"), ("txt", "Rolling")]
+)
+def test_the_ending_of_the_file_chooses_the_format(ending, mark, tmp_path):
+    """derive -o x.tex writes LaTeX; --format says otherwise."""
+    path = tmp_path / f"x.{ending}"
+    assert run("derive", SEED, "-o", str(path)).exit_code == 0
+    assert mark in path.read_text()
+    assert run("derive", SEED, "-o", str(path), "--format", "markdown").exit_code == 0
+    assert path.read_text().startswith("#")
+
+
+def test_derive_shows_its_certificate_in_every_format():
+    """The certificate is part of the result."""
+    assert "certificate: holds" in run("derive", SEED).stdout
+    assert "% certificate: holds" in run("derive", SEED, "--format", "latex").stdout
+    assert "certificate: holds" in run("derive", SEED, "--format", "markdown").stdout
+    assert json.loads(run("derive", SEED, "--json").stdout)["certificate"]["ok"] is True
+    assert "certificate" not in run("derive", SEED, "--no-certify").stdout
+    assert json.loads(run("derive", SEED, "--json", "--no-certify").stdout)["certificate"] is None
+
+
+@pytest.mark.parametrize("format", ["text", "latex", "markdown", "json"])
+def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(format, monkeypatch):
+    """The result is still there, and marked."""
+    failing = Certificate((Check("two and two are four", False, "fingers", "five"),))
+    monkeypatch.setattr(pipeline, "certify", lambda *_: failing)
+    result = run("derive", SEED, "--format", format)
+    assert result.exit_code == 3
+    assert "FAILS" in result.stderr
+    assert "theta" in result.stdout and "two and two are four" in result.stdout
+    if format == "json":
+        assert json.loads(result.stdout)["certificate"]["ok"] is False
+    else:
+        assert "the certificate FAILS: do not trust this result" in result.stdout
+
+
+def test_solve_gives_every_output_in_the_fixed_shape():
+    """{name: {exact, value, unit, method, message}}; what cannot be answered has nulls, and exit 3."""
+    result = run("solve", SEED, "--json")
+    outputs = json.loads(result.stdout)["outputs"]
+    assert result.exit_code == 3
+    assert list(outputs) == ["kinetic_energy", "Q_theta", "theta_dd", "omega_disc", "N_A"]
+    assert all(list(answer) == ["exact", "value", "unit", "method", "message"] for answer in outputs.values())
+    assert (outputs["N_A"]["exact"], outputs["N_A"]["value"]) == (None, None)
+    assert "reactions" in outputs["N_A"]["message"]
+    assert outputs["Q_theta"]["exact"] == "6*M*R*g*sin(theta)"
+
+
+def test_simulate_summarises_on_stdout_or_writes_files(tmp_path):
+    """CSV and NPZ hold the trajectory, --plot a picture; with -o the summary goes to stderr."""
+    summary = run("simulate", PENDULUM, "--time", "1", "--samples", "5")
+    assert "Reached t = 1 s." in summary.stdout and "Energy drift" in summary.stdout
+    for ending in ("csv", "npz"):
+        path, picture = tmp_path / f"run.{ending}", tmp_path / f"{ending}.png"
+        result = run("simulate", PENDULUM, "--time", "1", "--samples", "5", "-o", str(path), "--plot", str(picture))
+        assert (result.exit_code, result.stdout) == (0, "")
+        assert "Reached t = 1 s." in result.stderr
+        assert picture.read_bytes().startswith(b"\x89PNG")
+    assert len((tmp_path / "run.csv").read_text().splitlines()) == 6
+
+
+def test_parameters_and_starts_are_set_from_the_command_line():
+    """--set and --start take numbers and expressions; parameters stand in starts."""
+    words = ("--set", "m1=1/2", "--start", "theta1=pi/3", "--start", "theta2'=2*l1", "--time", "0")
+    payload = json.loads(run("simulate", PENDULUM, *words, "--json").stdout)
+    assert payload["start"]["theta1"] == pytest.approx(1.0471975511965976)
+    assert payload["start"]["theta2'"] == 2
+    assert payload["trajectory"]["t"] == [0.0]
+
+
+def test_a_run_that_ends_early_gives_what_there_is_and_exit_code_3(tmp_path):
+    """x'' = x^3 with x(0) = x'(0) = 1 reaches infinity in finite time: an outcome with a message, not an exception."""
+    model, path = tmp_path / "runaway.toml", tmp_path / "run.csv"
+    model.write_text(FALL)
+    result = run("simulate", str(model), "-o", str(path))
+    assert result.exit_code == 3
+    assert "Stopped at t = " in result.stderr
+    assert len(path.read_text().splitlines()) > 10
+
+
+@pytest.mark.skipif(compiler() is None, reason="no C compiler")
+def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
+    """cc -std=c99 -Wall -Wextra -pedantic -Werror; the self-test returns 0."""
+    result = run("codegen", PENDULUM, "--target", "c", "-o", str(tmp_path))
+    names = ["double_pendulum_rhs.c", "double_pendulum_rhs.h", "test_vectors.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert result.stdout.split() == [str(tmp_path / name) for name in names]
+    command = [str(compiler()), "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-DEOMGEN_SELFTEST", "-o", "t"]
+    subprocess.run([*command, names[0], "-lm"], cwd=tmp_path, check=True)
+    subprocess.run(["./t"], cwd=tmp_path, check=True)
+
+
+def test_the_schema_fits_the_models():
+    """What `eomgen schema` prints is a JSON Schema that every model of models/ fits."""
+    jsonschema = pytest.importorskip("jsonschema")
+    import tomllib
+
+    schema = json.loads(run("schema").stdout)
+    validator = jsonschema.Draft202012Validator(schema)
+    validator.check_schema(schema)
+    for path in MODELS.rglob("*.toml"):
+        assert not list(validator.iter_errors(tomllib.loads(path.read_text()))), path
+
+
+def test_doctor_names_what_is_there_and_what_is_missing(monkeypatch):
+    """Without a compiler: what still works."""
+    monkeypatch.setenv("CC", "/nowhere/cc")
+    result = run("doctor")
+    assert result.exit_code == 0
+    assert "C compiler    not found: equations run in numpy" in result.stdout

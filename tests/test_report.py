@@ -1,0 +1,271 @@
+"""What a derivation prints is true: every printed formula reads back and is the function that it says."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from derivations import LARGE, derivable, equations, read_back, residuals, symbols_named
+
+from eomgen.errors import UsageError
+from eomgen.pipeline import METHODS
+from eomgen.report import ALL, rendered
+from eomgen.report.latex import symbols_in
+from eomgen.report.notation import MEANINGS, quantities
+from eomgen.report.payload import equations_payload
+from eomgen.report.statements import Derivation, Formula, Name, Partial, Rate, Step
+from eomgen.report.text import WIDTH, broken
+from eomgen.symbolic.derivative import gradient
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.graph import Node
+from eomgen.symbolic.text import to_text
+
+GOLDEN = Path(__file__).parent / "golden"
+SMALL = tuple(name for name in derivable() if name not in LARGE)
+FORMATS = tuple(member.name for member in ALL)
+
+KINETIC_ENERGIES = {
+    "ch17_p3": "1/6*M*l^2*theta'^2",
+    "ch18_p4": "4*M*x'^2 + 6*M*l*cos(phi)*x'*phi' + 4*M*l^2*phi'^2",
+    "ch22_p1": "6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2",
+    "ch22_p2": "2*M*l^2*theta'^2 + M*r^2*theta'^2 + M*r'^2",
+    "ch22_p5": "3*M*x'^2 + 6*M*R*cos(theta)*x'*theta' + 8*M*R^2*theta'^2",
+}
+
+
+def step(derivation: Derivation, key: str) -> Step:
+    return next(step for step in derivation.steps if step.key == key)
+
+
+def printed_equations(name: str, method: str) -> list[tuple[str, str]]:
+    """(left, right) of each equation of motion in the rendered text, continued lines joined."""
+    text = rendered(equations(name, method).derivation, "text")
+    section = re.split(r"\n\n\d+\. ", text.split("Equations of motion\n")[1])[0]
+    joined = re.sub(r"\n {8}", " ", section.split("The constraints, differentiated")[0])
+    lines = [line.strip() for line in joined.splitlines() if line.startswith("    ")]
+    return [(left, right) for left, right in (line.split(" = ") for line in lines)]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", SMALL)
+def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
+    """divisor (left - right) = M a + c - Q - J^T lam"""
+    derived = equations(name, method)
+    printed = printed_equations(name, method)
+    assert len(printed) == len(derived.derivation.equations) == len(derived.graph.symbols.u)
+    pairs = [
+        (equation.divisor * (read_back(left, derived) - read_back(right, derived)), residual)
+        for (left, right), equation, residual
+        in zip(printed, derived.derivation.equations, residuals(derived), strict=True)
+    ]  # fmt: skip
+    assert equal_at_random_states(pairs).equal
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name):
+    """dT/du, d/dt dT/du and dT/dq of T = sum of the bodies' T, all as printed"""
+    derived = equations(name)
+    total = next(f for f in step(derived.derivation, "kinetic_energy").statements[::-1] if isinstance(f, Formula))
+    T = read_back(to_text(total.sides[1]), derived)
+    pairs = [(T, derived.graph.T)]
+    for formula in _derivatives(derived.derivation):
+        of, x = formula.sides
+        momentum = of.of if isinstance(of, Rate) else of
+        expected = gradient(T, (momentum.by,))[0]
+        if isinstance(of, Rate):
+            expected = derived.system.scope.with_accelerations((expected,))[0]
+        pairs.append((read_back(to_text(x), derived), expected))
+    assert len(pairs) == 1 + 3 * len(derived.graph.symbols.u)
+    assert equal_at_random_states(pairs).equal
+
+
+def _derivatives(derivation: Derivation) -> list[Formula]:
+    steps = [step for step in derivation.steps if step.key == "derivatives"]
+    return [f for step in steps for f in step.statements if isinstance(f, Formula)]
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_printed_generalized_forces_are_those_of_the_equations(name):
+    """Q(theta) as printed = Q of the equations"""
+    derived = equations(name)
+    formulas = [f for f in step(derived.derivation, "work").statements if isinstance(f, Formula)]
+    total = [f.sides[1] for f in formulas if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q"
+             and f.sides[0].of == ""]  # fmt: skip
+    pairs = [(read_back(to_text(x), derived), Q) for x, Q in zip(total, derived.graph.Q, strict=True)]
+    assert equal_at_random_states(pairs).equal
+
+
+@pytest.mark.parametrize("name", [name for name in SMALL if name != "loop"])
+def test_printed_accelerations_solve_the_printed_equations(name):
+    """M a = Q - c with a as printed (over the printed determinant)"""
+    derived = equations(name)
+    solved = [s for s in derived.derivation.steps if s.key == "solved"]
+    if not solved:
+        assert len(derived.graph.symbols.u) != 1, "one equation is always solved"
+        return
+    formulas = [f for f in solved[0].statements if isinstance(f, Formula)]
+    a = derived.graph.symbols.a
+    if len(formulas) == len(a):
+        values, scale = [f.sides[1] for f in formulas], 1
+    else:
+        scale, values = formulas[0].sides[1], [f.sides[1] for f in formulas[1:]]
+    rows = [
+        (sum((m * x for m, x in zip(row, values, strict=True)), start=0), scale * force)
+        for row, force in zip(derived.graph.M, derived.graph.forcing, strict=True)
+    ]
+    assert equal_at_random_states(rows).equal
+
+
+@pytest.mark.parametrize("name", KINETIC_ENERGIES)
+def test_kinetic_energies_come_out_term_by_term_as_a_textbook_prints_them(name):
+    """T = 6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2, in the text and in JSON"""
+    derived = equations(name)
+    terms = sorted(KINETIC_ENERGIES[name].split(" + "))
+    text = re.sub(r"\n {8}", " ", rendered(derived.derivation, "text"))
+    printed = re.search(r"^    T = (.*)$", text, re.M)
+    assert printed is not None and sorted(printed[1].split(" + ")) == terms
+    assert sorted(equations_payload(derived)["kinetic_energy"].split(" + ")) == terms
+
+
+@pytest.mark.parametrize("name", derivable())
+def test_the_payload_reads_back_as_the_equations(name):
+    """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back"""
+    derived = equations(name)
+    data = json.loads(json.dumps(equations_payload(derived)))
+    graph, also = derived.graph, {}
+    for symbol, text in data.get("definitions", []):
+        assert symbol not in symbols_named(derived)
+        also[symbol] = read_back(text, derived, also)
+    pairs = [
+        (read_back(text, derived, also), x)
+        for key, rows in (("kinematic_matrix", graph.N), ("mass_matrix", graph.M), ("constraint_jacobian", graph.J))
+        for texts, row in zip(data[key], rows, strict=True) for text, x in zip(texts, row, strict=True)
+    ]  # fmt: skip
+    for key, vector in (("kinematic_bias", graph.nu), ("forcing", graph.forcing), ("velocity_bias", graph.sigma),
+                        ("constraint_bias", graph.gamma), ("gaps", graph.phi)):  # fmt: skip
+        texts = data[key]
+        assert [text is None for text in texts] == [x is None for x in vector]
+        pairs += [(read_back(t, derived, also), x) for t, x in zip(texts, vector, strict=True) if t is not None]
+    pairs += [(read_back(data["kinetic_energy"], derived, also), graph.T)]
+    pairs += [(read_back(data["potential_energy"], derived, also), graph.V)]
+    pairs += [(read_back(data["generalized_forces"][u], derived, also), Q)
+              for u, Q in zip(data["speeds"], graph.Q, strict=True)]  # fmt: skip
+    for equation, residual in zip(data["equations"], residuals(derived), strict=True):
+        left, right = equation.split(" = ")
+        pairs.append((read_back(left, derived, also) - read_back(right, derived, also), residual))
+    assert equal_at_random_states(pairs).equal
+
+
+def test_the_payload_has_the_keys_that_others_rely_on():
+    """Names and shapes of DESIGN 5"""
+    data = equations_payload(equations("loop"), {"ok": True})
+    assert data["schema_version"] == 1
+    assert data["coordinates"] == ["theta1", "phi", "x_c", "lambda"]
+    assert data["speeds"] == ["theta1'", "phi'", "x_c'"]
+    assert data["unknowns"] == ["theta1''", "phi''", "x_c''", "lam(B, 1)", "lam(B, 2)", "lam(eq, 1)"]
+    assert data["parameters"]["l_max"] == 0.4 and data["parameters"]["k"] is None
+    assert data["inputs"] == {"F": "5*sin(2*t)"}
+    assert data["kinematic_matrix"][3] == ["0", "0", "0"]
+    assert data["kinematic_bias"][3] == "theta_1*Omega*cos(t*Omega)"
+    assert data["gaps"][2] is None and data["gaps"][1] is not None
+    assert data["certificate"] == {"ok": True}
+    assert equations_payload(equations("loop"))["certificate"] is None
+    assert "definitions" not in data
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", derivable())
+def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
+    """symbols of the formulas are rows of a table or defined; letters are in the notation"""
+    derivation = equations(name, method).derivation
+    named = {row.symbol.name for row in derivation.nomenclature if isinstance(row.symbol, Node)}
+    named |= {symbol.name for symbol, _ in derivation.definitions} | {"D"}
+    letters = {row.symbol.letter for row in derivation.nomenclature if isinstance(row.symbol, Name)}
+    for part in derivation.steps:
+        for statement in part.statements:
+            assert {symbol.name for symbol in symbols_in(statement)} <= named
+            assert {quantity.letter for quantity in quantities(statement)} <= letters
+    assert all(row.meaning for row in derivation.nomenclature)
+    assert letters <= MEANINGS.keys()
+
+
+@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("name", derivable())
+def test_rendering_is_the_same_on_every_run_and_stays_readable(name, format):
+    """No report is longer than a short chapter, whatever the size of the model"""
+    text = rendered(equations(name).derivation, format)
+    assert text == rendered(equations(name).derivation, format)
+    assert len(text) < 80_000
+    assert text.endswith("\n")
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_what_is_too_long_to_print_is_said_with_its_size(name):
+    """operations, and where to get them"""
+    text = rendered(equations(name).derivation, "text")
+    assert re.search(r"The equations take \d{4} operations and are too long to print", text)
+    assert equations(name).derivation.equations == ()
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_text_fits_a_page_of_a_hundred_columns(name):
+    """a piece that cannot be broken may stand out; nothing else"""
+    for line in rendered(equations(name).derivation, "text").splitlines():
+        assert len(line) <= WIDTH or not re.search(r" [-+=] ", line.strip()[2:])
+
+
+def test_a_long_formula_is_broken_before_signs_of_the_least_depth():
+    """a + (b + c) breaks before the outer plus"""
+    assert broken("T = aaaa*(bbb + ccc) + dddd", "  ", 24) == ["  T = aaaa*(bbb + ccc)", "    + dddd"]
+    assert broken("T = aaaa*(bbb + ccc)", "  ", 18) == ["  T = aaaa*(bbb", "    + ccc)"]
+    assert broken("T = short", "  ", 40) == ["  T = short"]
+
+
+def test_a_divisor_that_can_vanish_is_said_to():
+    """m r^2 theta'' + ... over m r holds where r is not zero"""
+    text = rendered(equations("elastic_pendulum").derivation, "text")
+    assert "divided by m*r (where that is not zero)" in text
+
+
+def test_a_letter_that_is_also_a_name_of_the_model_is_told_apart():
+    """LOOP has a parameter T beside the kinetic energy T"""
+    text = rendered(equations("loop").derivation, "text")
+    assert "not the model's own T" in text
+
+
+def test_values_are_shown_in_the_units_of_the_user():
+    """40 cm, not 0.4 cm"""
+    assert re.search(r"l_max +parameter +cm +40\n", rendered(equations("loop").derivation, "text"))
+
+
+def test_momenta_by_the_printed_letters_are_partial_derivatives():
+    """dT/dtheta' is printed by its own sign"""
+    formula = _derivatives(equations("ch22_p1").derivation)[0]
+    assert isinstance(formula.sides[0], Partial)
+    text = rendered(equations("ch22_p1").derivation, "text")
+    assert "    dT/dtheta' = 12*M*R^2*theta' + 27*M*R^2*cos(theta)^2*theta'\n" in text
+
+
+def test_an_unknown_format_is_refused_with_those_that_there_are():
+    with pytest.raises(UsageError, match="unknown format 'pdf'") as error:
+        rendered(equations("ch22_p1").derivation, "pdf")
+    assert "text, latex, markdown, json" in str(error.value)
+
+
+def test_json_steps_carry_every_formula_as_text():
+    """json.loads(render) = title, method, steps, equations"""
+    data = json.loads(rendered(equations("ch22_p1").derivation, "json"))
+    assert data["schema_version"] == 1 and data["method"] == "lagrange"
+    keys = [part["key"] for part in data["steps"]]
+    assert keys == ["data", "freedom", "coordinates", "positions", "velocities", "constraints", "kinetic_energy",
+                    "work", "derivatives", "equations", "solved", "notation"]  # fmt: skip
+    equation = data["equations"][0]
+    assert equation["divisor"] == "3*M*R" and equation["right"] == "2*g*sin(theta)"
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "ch22_p1"])
+def test_the_text_of_a_derivation_is_the_golden_one(name):
+    """tests/golden: read it, and write it anew where a change is meant"""
+    assert rendered(equations(name).derivation, "text") == (GOLDEN / f"{name}.txt").read_text()
