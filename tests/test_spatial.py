@@ -1,4 +1,4 @@
-"""Pose, Twist, Wrench and Inertia run unchanged over floats, exact numbers, the graph and sympy, with the same values."""
+"""Pose, Twist, Wrench and Inertia run unchanged over floats, fractions, the graph and sympy, with the same values."""
 
 from __future__ import annotations
 
@@ -54,10 +54,8 @@ class Exact:
 
     def rotation(self) -> Matrix:
         """About a random axis of rational unit length, by an angle whose sine and cosine are rational."""
-        n = self.rng.choice(((2, 3, 6), (1, 2, 2), (4, 4, 7), (2, -6, 9), (-8, 1, 4)))
-        length = {(2, 3, 6): 7, (1, 2, 2): 3, (4, 4, 7): 9, (2, -6, 9): 11, (-8, 1, 4): 9}[n]
-        a, b = self.rng.choice(((3, 4), (-5, 12), (8, -15)))
-        c = {3: 5, -5: 13, 8: 17}[a]
+        *n, length = self.rng.choice(((2, 3, 6, 7), (1, 2, 2, 3), (4, 4, 7, 9), (2, -6, 9, 11), (-8, 1, 4, 9)))
+        a, b, c = self.rng.choice(((3, 4, 5), (-5, 12, 13), (8, -15, 17)))
         axis = vector_of(self.scalar(Fraction(x, length)) for x in n)
         return rotation(axis, self.scalar(Fraction(a, c)), self.scalar(Fraction(b, c)))
 

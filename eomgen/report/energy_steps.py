@@ -116,7 +116,7 @@ def _contributions(system: System, name: str, row: tuple[Scalar, ...]) -> list[P
 def _effort(system: System, effort: JointEffort) -> list[Pair]:
     """A joint's spring, and the virtual work of its drive and damper."""
     name = f"joint of {effort.body}"
-    formulas = [] if is_zero(effort.potential) else [(Name("V", name), effort.potential)]
+    formulas: list[Pair] = [] if is_zero(effort.potential) else [(Name("V", name), effort.potential)]
     if is_zero(effort.drive):
         return formulas
     return formulas + _contributions(system, name, effort_row(system.motion, effort))

@@ -91,6 +91,7 @@ def equations_of(
 
 def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
+    graph = assembly.symbols.graph
     equations = []
     for u, row in zip(assembly.symbols.u, sides, strict=True):
         left, right = reader.read(row.left), reader.read(row.right)
@@ -98,7 +99,8 @@ def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> lis
             return None
         roots = holds_roots(left) or holds_roots(right)
         divisor = 1 if roots or (is_zero(left) and is_zero(right)) else common_factor((left, right), WORK)
-        equations.append(Equation(u, *reader.short((left / divisor, right / divisor)), divisor))
+        left, right = reader.short((graph.div(left, divisor), graph.div(right, divisor)))
+        equations.append(Equation(u, left, right, divisor))
     return equations
 
 
@@ -162,7 +164,7 @@ def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -
     if is_zero(determinant):
         return []
     numerators = [readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))]
-    quotients = [cancelled(x / determinant, WORK) for x in numerators]
+    quotients = [cancelled(assembly.symbols.graph.div(x, determinant), WORK) for x in numerators]
     if all(text_size(x) <= QUOTIENT for x in quotients):
         return [Step("solved", "Accelerations", tuple(Formula(pair) for pair in zip(a, quotients, strict=True)))]
     if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:

@@ -140,7 +140,7 @@ def equations_latex(derivation: Derivation) -> str:
     formulas += [Formula((equation.left, equation.right)) for equation in derivation.equations]
     if not formulas:
         return r"$$\text{The equations are too long to print.}$$"
-    rows = [row for formula in formulas for row in rows_of(setter, list(formula.sides))]
+    rows = [row for formula in formulas for row in rows_of(setter, [_side(setter, side) for side in formula.sides])]
     return f"$${aligned(rows)}$$"
 
 

@@ -1,0 +1,234 @@
+"""LaTeX compiles as pasted and shows in KaTeX: balanced, amsmath's common ground only, no user's text is markup."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from derivations import derivable, equations
+
+from eomgen.pipeline import METHODS
+from eomgen.report import rendered
+from eomgen.report.latex import equations_latex, unit_latex
+from eomgen.report.latex_lines import LINE, pieces, rows_of
+from eomgen.report.latex_math import Setter
+from eomgen.report.latex_names import escaped, notation, symbol_latex
+from eomgen.report.markdown import escaped as escaped_markdown
+from eomgen.report.statements import Omitted
+from eomgen.symbolic.functions import cos, sin, sqrt
+from eomgen.symbolic.graph import Graph, Scalar
+
+GOLDEN = Path(__file__).parent / "golden"
+MATHEMATICS = set(
+    r"""begin end left right bigl bigr big frac tfrac sqrt sum partial cdot quad leq lvert rvert dot ddot dddot text
+    mathrm mathsf operatorname sin cos tan sinh cosh tanh arcsin arccos arctan ln min max times pi
+    alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi rho sigma tau upsilon phi chi psi omega
+    varphi vartheta Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega""".split()
+)
+"""commands that amsmath and KaTeX both know"""
+
+
+def tex(x: Scalar) -> str:
+    return Setter().set(x).tex
+
+
+def names(text: str) -> list[Scalar]:
+    graph = Graph()
+    return [graph.symbol(name) for name in text.split()]
+
+
+def balanced(text: str) -> bool:
+    """Braces close, and environments and \\left \\right nest."""
+    opened: list[str] = []
+    for token in re.finditer(r"\\(begin|end)\{(\w+)\}|\\left(?![a-z])|\\right(?![a-z])|(?<!\\)[{}]", text):
+        piece = token[0]
+        if piece.startswith(r"\begin"):
+            opened.append(token[2])
+        elif piece in (r"\left", "{"):
+            opened.append(piece)
+        else:
+            expected = token[2] if piece.startswith(r"\end") else {r"\right": r"\left", "}": "{"}[piece]
+            if not opened or opened.pop() != expected:
+                return False
+    return not opened
+
+
+def formulas(markdown: str) -> list[str]:
+    """Everything between dollars."""
+    displays = re.findall(r"\$\$(.*?)\$\$", markdown, re.S)
+    rest = re.sub(r"\$\$.*?\$\$", "", markdown, flags=re.S).replace(r"\$", "")
+    return displays + re.findall(r"\$([^$\n]+)\$", rest)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", derivable())
+def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
+    """every command is known to both, every brace and environment closes, only aligned and cases are used"""
+    found = formulas(rendered(equations(name, method).derivation, "markdown"))
+    found += formulas(equations_latex(equations(name, method).derivation))
+    assert found
+    for formula in found:
+        assert balanced(formula), formula
+        assert set(re.findall(r"\\([a-zA-Z]+)", formula)) <= MATHEMATICS, formula
+        assert set(re.findall(r"\\begin\{(\w+)\}", formula)) <= {"aligned", "cases"}
+        rows = re.sub(r"\\begin\{cases\}.*?\\end\{cases\}", "", formula, flags=re.S).split(r"\\")
+        assert all(row.count("&") <= 1 for row in rows)
+        assert all(row.count(r"\left") == row.count(r"\right") for row in rows)
+
+
+@pytest.mark.parametrize("name", derivable())
+def test_documents_are_balanced(name):
+    assert balanced(rendered(equations(name).derivation, "latex"))
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no LaTeX on this machine")
+@pytest.mark.parametrize("name", ["double_pendulum", "loop", "arm3"])
+def test_a_document_compiles_as_it_stands(name, tmp_path):
+    """pdflatex ends without an error, whatever stands in the user's names and remarks"""
+    (tmp_path / "a.tex").write_text(rendered(equations(name).derivation, "latex"))
+    run = subprocess.run(
+        ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "a.tex"],
+        cwd=tmp_path, capture_output=True, text=True,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout[-2000:]
+    assert "Overfull" not in run.stdout
+
+
+def test_a_kinetic_energy_is_set_as_in_a_textbook():
+    """27/2 M R^2 theta'^2 cos^2 theta: juxtaposed, functions last"""
+    M, R, theta, rate = names("M R theta theta'")
+    T = 27 * M * R * R * cos(theta) * cos(theta) * rate * rate / 2
+    assert tex(T) == r"\frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta"
+
+
+@pytest.mark.parametrize(
+    ("make", "expected"),
+    [
+        (lambda a, b: a - 2 * b, "a - 2 b"),
+        (lambda a, b: -(a + b) * a, r"- a \left(a + b\right)"),
+        (lambda a, b: a / (2 * b), r"\frac{a}{2 b}"),
+        (lambda a, b: (a + b) / b, r"\frac{a + b}{b}"),
+        (lambda a, b: sin(a - b), r"\sin\left(a - b\right)"),
+        (lambda a, b: sin(a) * b, r"b \sin a"),
+        (lambda a, b: cos(2 * a) * cos(2 * a), r"\cos^{2}\left(2 a\right)"),
+        (lambda a, b: sqrt(a + b), r"\sqrt{a + b}"),
+        (lambda a, b: a.graph.call("exp", a) * a.graph.call("exp", a), r"\left(e^{a}\right)^{2}"),
+        (lambda a, b: (a + b) * (a + b), r"\left(a + b\right)^{2}"),
+        (lambda a, b: 2 * sqrt(a) * b, r"2 b \sqrt{a}"),
+        (lambda a, b: a.graph.pow(2, b) * 3, r"3 \cdot 2^{b}"),
+        (lambda a, b: a.graph.pow(a + b, b), r"\left(a + b\right)^{b}"),
+        (lambda a, b: a.graph.call("abs", a), r"\left\lvert a \right\rvert"),
+        (lambda a, b: a.graph.call("atan2", a, b), r"\operatorname{atan2}\left(a, b\right)"),
+        (lambda a, b: a.graph.select(a.graph.call("less", a, b), 1, b),
+         r"\begin{cases} 1 & a < b \\ b & \text{otherwise} \end{cases}"),
+    ],
+)  # fmt: skip
+def test_each_operation_is_set_by_its_own_rule(make, expected):
+    assert tex(make(*names("a b"))) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("theta", r"\theta"),
+        ("theta'", r"\dot{\theta}"),
+        ("theta1''", r"\ddot{\theta}_{1}"),
+        ("m1", "m_{1}"),
+        ("k_max", r"k_{\mathrm{max}}"),
+        ("tau1", r"\tau_{1}"),
+        ("lambda", r"\lambda"),
+        ("lam(B, 1)", r"\lambda_{\mathrm{B},1}"),
+        ("Ixx1", r"\mathrm{Ixx}_{1}"),
+        ("x_1_2", "x_{1,2}"),
+        ("θ2'", r"\dot{\theta}_{2}"),
+        ("_", r"\mathrm{\_}"),
+    ],
+)
+def test_names_are_set_with_greek_letters_subscripts_and_dots(name, expected):
+    assert symbol_latex(name) == expected
+
+
+def test_two_names_that_would_look_alike_are_told_apart_everywhere():
+    """theta1 and theta_1, and their rates"""
+    found = notation(["theta_1", "theta1", "theta1'", "theta_1''"])
+    assert found == {
+        "theta_1": r"\theta_{1}", "theta1": r"\mathrm{theta1}",
+        "theta1'": r"\dot{\mathrm{theta1}}", "theta_1''": r"\ddot{\theta}_{1}",
+    }  # fmt: skip
+    assert len(set(found.values())) == len(found)
+
+
+@pytest.mark.parametrize("name", derivable())
+def test_no_two_symbols_of_a_derivation_look_alike(name):
+    derived = equations(name)
+    s = derived.graph.symbols
+    symbols = [x.name for x in (*s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)]
+    found = notation(symbols)
+    assert len(set(found.values())) == len(symbols)
+
+
+def test_a_users_text_is_never_markup():
+    """each special character stands for itself"""
+    assert escaped(r"50% of #1 & {a_b}^$\x$ ~<>") == (
+        r"50\% of \#1 \& \{a\_b\}\textasciicircum{}\$\textbackslash{}x\$ \textasciitilde{}\textless{}\textgreater{}"
+    )
+    assert escaped_markdown("a|b *c* <b> $x$\n# d") == r"a\|b \*c\* \<b\> \$x\$ \# d"
+    assert unit_latex("kg*m^2/s^-3") == r"kg\,m$^{2}$/s$^{-3}$"
+    assert unit_latex("m/s^2") == "m/s$^{2}$"
+
+
+def test_long_sums_are_broken_before_their_signs():
+    """each row is about LINE wide, and the rows together are the whole"""
+    symbols = names(" ".join(f"x{i}" for i in range(60)))
+    total = sum(symbols[1:], start=symbols[0])
+    setter = Setter()
+    rows = rows_of(setter, [setter.set(symbols[0]), total])
+    assert len(rows) > 2
+    assert all(row.startswith(r"&\quad + ") for row in rows[1:])
+    assert all(sum(part.width for part in pieces(setter, total, LINE) if part.tex in row.split(" + ")) < LINE
+               for row in rows)  # fmt: skip
+    joined = " ".join(row.replace(r"&\quad", "").replace("&=", "=").strip() for row in rows)
+    assert joined == f"x_{{0}} = {setter.set(total).tex}"
+
+
+def test_a_long_factor_is_broken_inside_its_parentheses():
+    """\\bigl( ... \\bigr): a \\left( may not be closed on another line"""
+    symbols = names(" ".join(f"x{i}" for i in range(60)))
+    product = symbols[0] * sum(symbols[2:], start=symbols[1])
+    rows = rows_of(Setter(), [product])
+    assert len(rows) > 1
+    assert r"\left" not in "".join(rows)
+    assert rows[0].count(r"\bigl(") == rows[-1].count(r"\bigr)") == 1
+
+
+def test_a_long_quotient_is_written_on_lines():
+    """a fraction cannot be broken: (above) / (below)"""
+    symbols = names(" ".join(f"x{i}" for i in range(60)))
+    quotient = sum(symbols[2:], start=symbols[1]) / (symbols[0] + 1)
+    rows = rows_of(Setter(), [quotient])
+    assert len(rows) > 1 and r"\frac" not in "".join(rows) and r"\bigr) \big/ \bigl(" in rows[-1]
+
+
+def test_notebooks_get_the_equations_in_one_display():
+    """$$ aligned $$, and an honest word where they are too long"""
+    found = equations("ch22_p1")._repr_latex_()
+    assert found.startswith("$$\\begin{aligned}") and found.endswith("\\end{aligned}$$")
+    assert r"4 R \ddot{\theta} + 9 R \ddot{\theta} \cos^{2}\theta" in found
+    assert "too long" in equations("chain20")._repr_latex_()
+
+
+def test_nothing_is_left_out_in_silence():
+    """Omitted stands for its size"""
+    from eomgen.report.latex import side_latex
+    from eomgen.report.text import side_text
+
+    assert side_text(Omitted(1033)) == "(1033 operations, not printed)"
+    assert "1033 operations" in side_latex(Setter(), Omitted(1033))
+
+
+def test_the_document_is_the_golden_one():
+    """tests/golden: read it, and write it anew where a change is meant"""
+    assert rendered(equations("ch22_p1").derivation, "latex") == (GOLDEN / "ch22_p1.tex").read_text()
