@@ -22,7 +22,7 @@ from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.maximal import free_body_accelerations
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces
-from eomgen.symbolic.derivative import derivative, gradient, tangent
+from eomgen.symbolic.derivative import gradient, jacobian, tangent
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar
@@ -142,13 +142,13 @@ def _routes(system: System, assembly: Assembly) -> Iterable[Check]:
 
 
 def _mass_matrix(assembly: Assembly) -> Check:
-    size = range(len(assembly.M))
-    pairs = [(assembly.M[i][j], assembly.M[j][i]) for i in size for j in range(i)]
-    pairs += [
-        (assembly.M[i][j], derivative(derivative(assembly.T, assembly.symbols.u[i]), assembly.symbols.u[j]))
-        for i in size for j in range(i + 1)
-    ]  # fmt: skip
-    labels = [f"pair {k}" for k in range(len(pairs))]
+    u = assembly.symbols.u
+    curvature = jacobian(gradient(assembly.T, u), u)
+    pairs, labels = [], []
+    for i, row in enumerate(assembly.M):
+        for j in range(i + 1):
+            pairs += [(row[j], assembly.M[j][i]), (row[j], curvature[i][j])]
+            labels += [f"M[{u[i].name}, {u[j].name}]"] * 2
     return _compared("M is symmetric and is the second derivative of T", pairs, labels)
 
 

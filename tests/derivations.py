@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import runpy
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from eomgen.errors import NotYet
+from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.pipeline import Equations, derive
 from eomgen.symbolic.expressions import parse
@@ -78,14 +80,22 @@ energy = "k*exp(-phi)*atan2(phi, 2)/sqrt(1 + theta1^2)^3"
 @cache
 def equations(name: str, method: str = "lagrange") -> Equations:
     """The equations of a model by its file's stem, or of LOOP."""
-    model = loads(LOOP) if name == "loop" else load(next(path for path in PATHS if path.stem == name))
-    return derive(model, method)
+    return derive(model_called(name), method)
+
+
+def model_called(name: str) -> Model:
+    """A model by its file's stem; LOOP; or "chain5", which is long enough to need named sub-expressions."""
+    if name == "loop":
+        return loads(LOOP)
+    if name == "chain5":
+        return loads(runpy.run_path(str(MODELS / "chain.py"))["chain"](5))
+    return load(next(path for path in PATHS if path.stem == name))
 
 
 @cache
 def derivable() -> tuple[str, ...]:
-    """The stems of the models that this version derives, and LOOP."""
-    found = ["loop"]
+    """The stems of the models that this version derives, and those written here."""
+    found = ["loop", "chain5"]
     for path in PATHS:
         try:
             derive(load(path))

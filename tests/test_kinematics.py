@@ -9,10 +9,12 @@ import pytest
 from moving import at, equal, rate, state_of, written
 
 from eomgen.errors import DerivationError, ModelError, NotYet
+from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.kinematics import velocity_of
 from eomgen.mechanics.loads import SystemScene
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.expressions import parse
 
 DRIVEN = """
 [parameters]
@@ -34,8 +36,6 @@ def driven(law: str) -> System:
 
 def value(system: System, text: str):
     """A text in the model's names as a scalar of its graph."""
-    from eomgen.symbolic.expressions import parse
-
     return parse(text).evaluate(system.scope.names)
 
 
@@ -125,7 +125,8 @@ def test_eliminated_coordinates_and_declared_speeds_wait_for_a_later_version():
     dependent = GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0",
                                 coordinate="r = { dependent = true }")  # fmt: skip
     tie = '[constraints.c]\nkind = "equation"\ngap = "r - q"\n'
-    for text in (dependent + tie, dependent.replace("r = { dependent = true }", "r = 0.1\n[speeds]\nw1 = \"q' + r'\"\nw2 = \"r'\"")):
+    declared = "r = 0.1\n[speeds]\nw1 = \"q' + r'\"\nw2 = \"r'\""
+    for text in (dependent + tie, dependent.replace("r = { dependent = true }", declared)):
         with pytest.raises(NotYet) as caught:
             written(text)
         assert caught.value.exit_code == 3 and caught.value.mend
@@ -209,8 +210,6 @@ acceleration = [0, -9.81]
 @pytest.mark.parametrize("order", list(permutations(BODIES)), ids="-".join)
 def test_the_order_in_which_bodies_are_declared_changes_nothing(order):
     """M and Q - c are the same functions of q, u and the parameters."""
-    from eomgen.mechanics.formulations import recursive
-
     results = []
     for names in (tuple(BODIES), order):
         system = written(AROUND.format(bodies="".join(BODIES[name] for name in names)))
@@ -266,7 +265,7 @@ joint = { kind = "placed", at = [0, "L*cos(phi)"], angle = "phi - pi/2" }
 
 
 def test_a_rolling_disc_touches_with_a_point_at_rest():
-    """x = R theta, turning clockwise: v = 0 below, R theta' in the middle, 2 R theta' above; a = R theta'^2 up below."""
+    """x = R theta, clockwise: v = 0 below, R theta' in the middle, 2 R theta' above; a = R theta'^2 up below."""
     system = written("""
 [parameters]
 m = 1.0
@@ -281,7 +280,7 @@ joint = { kind = "placed", at = ["R*theta", "R"], angle = "-theta" }
     here = {system.symbols.q[0]: value(system, "pi/3")}  # then the points are below and above
     expected = {"below": (0, 0, 0), "center": ("R*theta'", 0, 0), "above": ("2*R*theta'", 0, 0)}
     for name, velocity in expected.items():
-        found = substituted(kinematics(system, f"disc.{name.replace('below', 'below')}")[1], here)
+        found = substituted(kinematics(system, f"disc.{name}")[1], here)
         assert equal(found, [value(system, str(x)) for x in velocity]), name
     acceleration = substituted(kinematics(system, "disc.below")[2], here)
     assert equal(acceleration, (0, value(system, "R*theta'^2"), 0))
@@ -344,11 +343,11 @@ joint = { kind = "revolute", on = "inner", angle = "phi" }
 
 
 def test_three_hinges_turn_a_wheel_by_eulers_equations():
-    """w = (psi' sin(theta) sin(phi) + theta' cos(phi), psi' sin(theta) cos(phi) - theta' sin(phi), psi' cos(theta) + phi')."""
+    """Angular velocity of the wheel in its own axes (Goldstein, Classical Mechanics, 3rd ed., eq. 4.87)."""
     system = written(GYROSCOPE, "space")
-    w = ("psi'*sin(theta)*sin(phi) + theta'*cos(phi)", "psi'*sin(theta)*cos(phi) - theta'*sin(phi)",
+    expected = ("psi'*sin(theta)*sin(phi) + theta'*cos(phi)", "psi'*sin(theta)*cos(phi) - theta'*sin(phi)",
          "psi'*cos(theta) + phi'")  # fmt: skip
-    assert equal(system.motion.link("wheel").twist.w, [value(system, x) for x in w])
+    assert equal(system.motion.link("wheel").twist.w, [value(system, x) for x in expected])
 
 
 def test_three_hinges_and_the_three_angles_of_eulers_are_one_orientation():

@@ -16,7 +16,7 @@ from eomgen.report.latex import symbols_in
 from eomgen.report.notation import MEANINGS, quantities
 from eomgen.report.payload import equations_payload
 from eomgen.report.statements import Derivation, Formula, Name, Partial, Rate, Step
-from eomgen.report.text import WIDTH, broken
+from eomgen.report.text import WIDTH, broken, formula_text
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node
@@ -54,11 +54,15 @@ def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
     derived = equations(name, method)
     printed = printed_equations(name, method)
-    assert len(printed) == len(derived.derivation.equations) == len(derived.graph.symbols.u)
+    named, also = derived.derivation.definitions, {}
+    for (symbol, text), _ in zip(printed, named, strict=False):
+        also[symbol] = read_back(text, derived, also)
+    assert [symbol.name for symbol, _ in named] == list(also)
+    assert len(derived.derivation.equations) == len(derived.graph.symbols.u)
     pairs = [
-        (equation.divisor * (read_back(left, derived) - read_back(right, derived)), residual)
+        (equation.divisor * (read_back(left, derived, also) - read_back(right, derived, also)), residual)
         for (left, right), equation, residual
-        in zip(printed, derived.derivation.equations, residuals(derived), strict=True)
+        in zip(printed[len(named):], derived.derivation.equations, residuals(derived), strict=True)
     ]  # fmt: skip
     assert equal_at_random_states(pairs).equal
 
@@ -229,10 +233,29 @@ def test_a_divisor_that_can_vanish_is_said_to():
     assert "divided by m*r (where that is not zero)" in text
 
 
+@pytest.mark.parametrize("name", derivable())
+def test_no_decimal_stands_in_an_exact_formula(name):
+    """a formula of a derivation holds whole numbers and fractions only"""
+    for part in equations(name).derivation.steps:
+        for statement in part.statements:
+            if isinstance(statement, Formula):
+                assert not any(isinstance(side, float) for side in statement.sides)
+                assert not re.search(r"\d\.\d", formula_text(statement))
+
+
 def test_a_letter_that_is_also_a_name_of_the_model_is_told_apart():
     """LOOP has a parameter T beside the kinetic energy T"""
     text = rendered(equations("loop").derivation, "text")
     assert "not the model's own T" in text
+
+
+def test_long_equations_are_printed_with_named_parts():
+    """z1, z2, ... stand before the equations that use them, and are no names of the model"""
+    derived = equations("chain5")
+    assert len(derived.derivation.definitions) > 20
+    assert not {symbol.name for symbol, _ in derived.derivation.definitions} & symbols_named(derived).keys()
+    text = rendered(derived.derivation, "text")
+    assert text.index("\n    z1 = ") < text.index("\n    z2 = ") < text.index("q5'' = ")
 
 
 def test_values_are_shown_in_the_units_of_the_user():

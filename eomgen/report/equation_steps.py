@@ -79,7 +79,7 @@ def equations_of(
             count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
             return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
         equations, definitions = found
-        statements.append(Prose(("With the names",)))
+        statements.append(Prose(("In their shortest form, the terms without accelerations on the right, with the names",)))
         statements += [Formula(pair) for pair in definitions]
     statements += _printed(system, equations)
     statements += _closing(reader, assembly)
@@ -107,8 +107,7 @@ def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> lis
 def _named(assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
     """The shortest form of the equations with named sub-expressions; None where even that is too long."""
     graph = assembly.symbols.graph
-    bias = [-f for f in assembly.forcing]
-    sides = sides_of(assembly, assembly.M, bias, [0] * len(bias))
+    sides = sides_of(assembly, assembly.M, [0] * len(assembly.M), assembly.forcing)
     taken = {node.name for node in _symbols(assembly)}
     found: Shortened | None = shortened(graph, [x for row in sides for x in (row.left, row.right)], NAMED_PART, taken)
     if found is None:

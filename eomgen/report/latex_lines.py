@@ -87,7 +87,7 @@ def _opened(setter: Setter, product: Product, term: Set, room: float) -> list[Se
 
 def _quotient(setter: Setter, product: Product, sign: str, room: float) -> list[Set]:
     """A quotient that is too long for a fraction, in which no line can end: (above) / (below)."""
-    c = abs(product.coefficient)
+    c = max(product.coefficient, -product.coefficient)
     above = _factor_pieces(setter, Product(c.numerator, product.numerator, ()), room)
     below = _factor_pieces(setter, Product(c.denominator, product.denominator, ()), room)
     above[0] = Set(f"{sign}{above[0].tex}", above[0].width + len(sign))

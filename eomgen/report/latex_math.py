@@ -100,7 +100,7 @@ class Setter:
 
     def product(self, product: Product) -> Set:
         """|coefficient| * numerator / denominator."""
-        c = abs(product.coefficient)
+        c = max(product.coefficient, -product.coefficient)
         if not product.denominator:
             return self._juxtaposed(c, product.numerator)
         above = self._juxtaposed(c.numerator, product.numerator)

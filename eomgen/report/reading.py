@@ -19,8 +19,8 @@ TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 PATIENCE = 60  # formulas that did not become short, before no more are tried
-NAMED = 40  # sub-expressions with a name of their own, at most
-NAMED_LENGTH = 6000  # characters of all named sub-expressions together, at most
+NAMED = 80  # sub-expressions with a name of their own, at most
+NAMED_LENGTH = 8000  # characters of all named sub-expressions together, at most
 
 
 class Reader:
