@@ -79,7 +79,7 @@ def equations_of(
             count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
             return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
         equations, definitions = found
-        statements.append(Prose(("In their shortest form, the terms without accelerations on the right, with the names",)))
+        statements.append(Prose(("In their shortest form, what does not accelerate on the right, with the names",)))
         statements += [Formula(pair) for pair in definitions]
     statements += _printed(system, equations)
     statements += _closing(reader, assembly)

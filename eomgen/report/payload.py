@@ -19,7 +19,7 @@ from eomgen.report.statements import Derivation
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import text_size, to_text, with_definitions
 
-LARGEST = 1_000_000  # characters of all expressions together that are written out in full
+LARGEST = 16_000_000  # characters of all expressions together that are written out in full
 NAMED_PART = 200  # characters of a text in which long parts have names
 
 
@@ -38,7 +38,7 @@ def equations_payload(equations: Derived, certificate: dict[str, Any] | None = N
     """The equations of motion as plain data, ready for JSON.
 
     Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
-    would be longer than a megabyte, long and repeated parts stand under `definitions`, [[name, text], ...], each before
+    would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each before
     its use.
 
     Args:

@@ -12,6 +12,7 @@ from eomgen.mechanics.kinematics import Link, spin_between
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.joints import ALL
 from eomgen.model.joints.orientation import SEQUENCES
+from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.spatial import apply, matrix_of, rotation, transposed
 
 SEAT = 'at = [0.1, 0.2, 0.3], turned = { axis = [1, 1, 0], angle = "pi/3" }'
@@ -172,7 +173,7 @@ def test_the_complement_is_all_that_the_joint_can_carry(kind, space, fields):
 @built
 def test_a_pose_turns_without_stretching(kind, space, fields):
     """R R^T = 1 for any length of the axis that was written."""
-    system, link = system_with(kind, space, fields)
+    _, link = system_with(kind, space, fields)
     R = link.local.R
     products = [sum((a * b for a, b in zip(x, y, strict=True)), start=0) for x in R for y in R]
     assert equal(products, [1, 0, 0, 0, 1, 0, 0, 0, 1])
@@ -188,8 +189,6 @@ def test_every_drive_belongs_to_a_variable(kind, space, fields):
 @pytest.mark.parametrize(("kind", "space", "fields"), [case for case in BUILT if case[1] == PLANE])
 def test_in_the_plane_the_turn_is_the_angle_of_the_pose(kind, space, fields):
     """R = Rot(z, turn)"""
-    from eomgen.symbolic.functions import cos, sin
-
     system, link = system_with(kind, space, fields)
     angle = link.joint.turn(link.s, system.scope.value)
     R = rotation((0, 0, 1), cos(angle), sin(angle))

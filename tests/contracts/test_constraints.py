@@ -1,0 +1,405 @@
+"""What every tie promises: its rows are the rates of its gaps, and its forces do no virtual work."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from moving import State, at, equal, state_of, written
+
+import eomgen
+from eomgen.errors import NotYet
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import Row
+from eomgen.model.constraints import ALL
+from eomgen.symbolic.derivative import gradient, tangent
+from eomgen.symbolic.evaluation import fifty_digits
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import ZERO, apply, cross, plus
+
+PLANE, SPACE = "plane", "space"
+EXAMPLES = {
+    "pin": {
+        PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "second.P", "cart.P"]',
+                'points = ["first.P", "G"]'],
+        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]'],
+    },
+    "support": {
+        PLANE: ['point = "first.P", normal = [3, 4], at = [1, 2]', 'point = "second.P", normal = [0, 1]',
+                'point = "cart.P", normal = ["l", "-2*l"], at = "G"'],
+        SPACE: ['point = "first.P", normal = [1, 2, 2], at = [1, 2, 3]', 'point = "cart.P", normal = [0, 1, 1], at = "G"'],
+    },
+    "clamp": {PLANE: ['point = "first.P"', 'points = ["first.P", "second.P"]']},
+    "guide": {PLANE: ['point = "first.P", along = [1, 0]']},
+    "slider": {PLANE: ['point = "second.P", on = "first"']},
+    "link": {
+        PLANE: ['points = ["first.P", "second.P"]', 'points = ["first.P", "G"], length = "l"'],
+        SPACE: ['points = ["first.P", "second.P"], length = "2*l"'],
+    },
+    "rolling": {PLANE: ['body = "second", line = { at = [0, 0], normal = [0, 1] }, radius = 0.3']},
+    "skate": {PLANE: ['point = "first.P", along = [1, 0]']},
+    "string": {PLANE: ['path = ["first.P", { at = [0, 3], radius = 0, slip = true }, "second.P"]']},
+    "gear": {PLANE: ['bodies = ["first", "second"], ratio = -2']},
+    "equation": {
+        PLANE: ['gap = "a*cos(b) - l"', 'gap = "b - l*sin(w*t)"', "rate = \"a' - 2*b*b'\"", "rate = \"a'*cos(b) - b'*sin(b) - l*t\""],
+        SPACE: ['gap = "a^2 + b^2 - s^2"'],
+    },
+    "motion": {PLANE: ['coordinate = "a", value = "l*sin(w*t)"']},
+}  # fmt: skip
+CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
+BUILT = {tie.kind for tie in ALL if tie.works}
+built = pytest.mark.parametrize(
+    ("kind", "space", "fields"), [c for c in CASES if c[0] in BUILT],
+    ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES if k in BUILT],
+)  # fmt: skip
+
+BODIES = {
+    PLANE: """
+[points]
+G = [2, 1]
+[bodies.first]
+mass = "m"
+center = ["l/2", 0]
+inertia = "m*l^2"
+points = { P = ["l", "l/3"], A = [0, 0], B = ["l", 0] }
+line = ["A", "B"]
+joint = { kind = "revolute", angle = "a" }
+[bodies.second]
+mass = "2*m"
+inertia = "m*l^2"
+points = { P = ["l", "-l/5"] }
+joint = { kind = "planar", x = "s", y = "r", angle = "b" }
+[bodies.cart]
+mass = "m"
+inertia = 1
+points = { P = ["l", "l"] }
+joint = { kind = "prismatic", at = ["l*sin(w*t)", 0], axis = [3, 4], displacement = "s" }
+""",
+    SPACE: """
+[points]
+G = [2, 1, 0.5]
+[bodies.first]
+mass = "m"
+center = ["l/2", 0, 0]
+inertia = ["m*l^2", "m*l^2", "m*l^2"]
+points = { P = ["l", "l/3", "l/4"] }
+joint = { kind = "revolute", axis = [1, 2, 2], angle = "a" }
+[bodies.second]
+mass = "2*m"
+inertia = ["m*l^2", "m*l^2", "m*l^2"]
+points = { P = ["l", "-l/5", "l"] }
+joint = { kind = "placed", at = ["s", "r", "a*b"], angle = "b", axis = [0, 3, 4] }
+[bodies.cart]
+mass = "m"
+inertia = [1, 1, 1]
+points = { P = ["l", "l", 0] }
+joint = { kind = "prismatic", at = ["l*sin(w*t)", 0, 0], axis = [3, 0, 4], displacement = "s" }
+""",
+}
+HEAD = """
+[parameters]
+m = 1.2
+l = 0.7
+w = 1.3
+[coordinates]
+a = 0.3
+b = 0.5
+s = 0.2
+r = 0.4
+"""
+
+
+def system_with(kind: str, space: str, fields: str) -> System:
+    """Three bodies, one of them on a seat that moves by itself, and the tie."""
+    return written(HEAD + BODIES[space] + f'[constraints.tie]\nkind = "{kind}"\n{fields.replace(", line", "; line")}', space)
+
+
+def test_every_kind_of_tie_has_examples_here():
+    """A tie that is added to ALL is held to the contract."""
+    assert {tie.kind for tie in ALL} == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("kind", [tie.kind for tie in ALL if not tie.works])
+def test_a_tie_that_is_not_built_ends_in_an_honest_message(kind):
+    """Exit 3 with the kind and the place, never a wrong answer."""
+    space, fields = next(iter(EXAMPLES[kind].items()))
+    with pytest.raises(NotYet, match=f"'{kind}' are not built yet") as caught:
+        system_with(kind, space, fields[0])
+    assert caught.value.exit_code == 3 and caught.value.where == "constraints.tie"
+
+
+def row_times(row: tuple[Scalar, ...], x: tuple[Scalar, ...], start: Scalar) -> Scalar:
+    return sum((a * b for a, b in zip(row, x, strict=True)), start=start)
+
+
+@built
+def test_the_tie_closes(kind, space, fields):
+    """None of the examples is satisfied by the coordinates: every row closes and no row of J is 0."""
+    ties = system_with(kind, space, fields).ties
+    assert ties.rows and ties.closing == ties.rows
+    assert [row.label for row in ties.closing] == [f"lam(tie, {k})" for k in range(1, len(ties.rows) + 1)]
+
+
+@built
+def test_the_rows_are_the_rates_of_the_gaps(kind, space, fields):
+    """J u + sigma = dphi/dt, as exact functions."""
+    system = system_with(kind, space, fields)
+    ties, u = system.ties, system.symbols.u
+    for row, sigma, phi in zip(ties.J, ties.sigma, ties.phi, strict=True):
+        if phi is not None:
+            assert equal((row_times(row, u, sigma),), system.scope.time_derivative((phi,)))
+
+
+@built
+def test_gamma_is_what_stays_of_the_rate_of_the_rows(kind, space, fields):
+    """J a + gamma = d/dt (J u + sigma), J' u and sigma' included."""
+    system = system_with(kind, space, fields)
+    ties, symbols = system.ties, system.symbols
+    for J, sigma, gamma in zip(ties.J, ties.sigma, ties.gamma, strict=True):
+        velocity = row_times(J, symbols.u, sigma)
+        assert equal((row_times(J, symbols.a, gamma),), system.scope.with_accelerations((velocity,)))
+
+
+@built
+def test_a_gap_may_be_left_out_only_where_the_rate_is_given(kind, space, fields):
+    """phi is None for the rows of a velocity tie alone."""
+    system = system_with(kind, space, fields)
+    assert all((row.gap is None) == ("rate" in fields) for row in system.ties.rows)
+
+
+def power_row(system: System, row: Row) -> tuple[Scalar, ...]:
+    """B^T W of a row: the generalized force of a unit lam, from its wrenches and the bodies' columns."""
+    total: list[Scalar] = [0] * len(system.symbols.u)
+    for body, wrench in row.wrenches:
+        B = system.motion.B[system.motion.index[body]]
+        for k in range(len(total)):
+            total[k] = total[k] + row_times((*wrench.tau, *wrench.f), tuple(line[k] for line in B), 0)
+    return tuple(total)
+
+
+@built
+def test_the_force_of_a_tie_is_dual_to_the_motion_that_it_forbids(kind, space, fields):
+    """J^T = sum over bodies of B^T W, and J = (dphi/dq) N: what pushes along n forbids motion along n."""
+    system = system_with(kind, space, fields)
+    for row, J in zip(system.ties.closing, system.ties.J, strict=True):
+        if row.wrenches:
+            assert equal(J, power_row(system, row))
+        if row.gap is not None:
+            assert equal(J, gradient(row.gap, system.symbols.q))  # every coordinate is free here: N = 1
+
+
+def virtual_velocities(system: System, state: State) -> np.ndarray:
+    """A basis of the u with J u = 0, one in each column."""
+    J = np.array([at(row, state) for row in system.ties.J])
+    _, values, V = np.linalg.svd(J)
+    return V[np.sum(values > 1e-9) :].T
+
+
+@built
+def test_a_tie_does_no_virtual_work(kind, space, fields):
+    """J u = 0 implies (J^T lam) . u = 0: the wrenches against twists of the bodies, for any lam."""
+    system = system_with(kind, space, fields)
+    state = state_of(system)
+    free = virtual_velocities(system, state)
+    assert free.shape[1] >= 1
+    forces = np.array([at(power_row(system, row), state) for row in system.ties.closing if row.wrenches])
+    lam = np.random.default_rng(1).normal(size=len(forces))
+    if len(forces):
+        assert lam @ forces @ free == pytest.approx(np.zeros(free.shape[1]), abs=1e-13)
+
+
+@built
+def test_a_tie_that_moves_by_itself_has_the_power_of_its_own_motion(kind, space, fields):
+    """sigma = dphi/dt at u = 0, so that J u + sigma = 0 gives (J^T lam) . u = - lam . sigma."""
+    system = system_with(kind, space, fields)
+    for sigma, phi in zip(system.ties.sigma, system.ties.phi, strict=True):
+        if phi is not None:
+            assert equal((sigma,), tangent((phi,), {system.symbols.t: 1}))
+
+
+INNER = [c for c in CASES if c[0] in BUILT and c[2].count(".P") >= 2]
+
+
+@pytest.mark.parametrize(("kind", "space", "fields"), INNER, ids=[f"{k}-{s}-{f[:50]}" for k, s, f in INNER])
+def test_a_tie_between_bodies_pushes_equally_on_both(kind, space, fields):
+    """sum F = 0, and the moments about the ground's origin differ by gap x F: none when the points meet."""
+    system = system_with(kind, space, fields)
+    for row in system.ties.rows:
+        F, M = ZERO, ZERO
+        for body, wrench in row.wrenches:
+            pose = system.motion.link(body).pose
+            f = apply(pose.R, wrench.f)
+            F, M = plus(F, f), plus(M, plus(apply(pose.R, wrench.tau), cross(pose.p, f)))
+        assert equal(F, ZERO)
+        places = [system.motion.position(system.motion.place(f"{body}.P")) for body, _ in row.wrenches]
+        (body, wrench), gap = row.wrenches[0], [a - b for a, b in zip(*places, strict=True)]
+        push = apply(system.motion.link(body).pose.R, wrench.f)
+        assert equal(M, cross((gap[0], gap[1], gap[2]), push))
+
+
+SLOPE = """
+[parameters]
+m = 2.0
+g = 10.0
+[coordinates]
+x = 0.0
+y = 0.0
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[constraints.slope]
+kind = "support"
+point = "block.origin"
+normal = [-3, 4]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def multipliers(system: System, values: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
+    """(a, lam) of M a = forcing + J^T lam, J a + gamma = 0 at a state; what is not named is 0."""
+    assembly = recursive.assemble(system)
+    symbols = system.symbols
+    state = {s: fifty_digits().number(0) for s in (*symbols.q, *symbols.u, symbols.t)}
+    by_name = symbols.parameters | {s.name: s for s in (*symbols.q, *symbols.u)}
+    state |= {by_name[name]: fifty_digits().number(1) * value for name, value in values.items()}
+    M, J = (np.array([at(row, state) for row in rows]) for rows in (assembly.M, assembly.J))
+    n, k = len(M), len(J)
+    right = np.concatenate([at(assembly.forcing, state), -at(assembly.gamma, state)])
+    solved = np.linalg.solve(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right)
+    return solved[:n], solved[n:]
+
+
+def test_a_slope_pushes_along_its_normal_with_the_weights_share():
+    """lam = m g cos(alpha) > 0, tan(alpha) = 3/4, and the block slides down with g sin(alpha)."""
+    a, lam = multipliers(written(SLOPE), {"m": 2, "g": 10})
+    assert lam == pytest.approx([2 * 10 * 4 / 5])
+    assert a == pytest.approx([-10 * 3 / 5 * 4 / 5, -10 * 3 / 5 * 3 / 5])
+
+
+def test_the_side_of_the_normal_turns_the_sign_of_the_push():
+    """With the normal into the slope the same force is a push of - m g cos(alpha)."""
+    _, lam = multipliers(written(SLOPE.replace("[-3, 4]", "[3, -4]")), {"m": 2, "g": 10})
+    assert lam == pytest.approx([-2 * 10 * 4 / 5])
+
+
+def test_only_the_direction_of_a_normal_counts():
+    """A support pushes with a unit vector, so lam is a force in newtons."""
+    _, lam = multipliers(written(SLOPE.replace("[-3, 4]", "[-30, 40]")), {"m": 2, "g": 10})
+    assert lam == pytest.approx([2 * 10 * 4 / 5])
+
+
+def test_a_pin_gives_the_force_on_the_first_body_named():
+    """A mass hung on a held one: the hinge pulls the first-named lower mass up, lam_y = + m2 g."""
+    system = written("""
+[parameters]
+m = 2.0
+g = 10.0
+[coordinates]
+x = 0.0
+y = 0.0
+[bodies.held]
+shape = { kind = "particle", mass = "3*m" }
+joint = { kind = "fixed" }
+[bodies.lower]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[constraints.hook]
+kind = "pin"
+points = ["lower.origin", "held.origin"]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""")
+    a, lam = multipliers(system, {"m": 2, "g": 10})
+    assert a == pytest.approx([0, 0]) and lam == pytest.approx([0, 2 * 10])
+
+
+def test_a_pendulum_in_two_coordinates_pulls_with_weight_and_centripetal_force():
+    """At the lowest point with speed v: lam = m (g + v^2/l) for a gap along the rod, phi = -y - l."""
+    system = written("""
+[parameters]
+m = 2.0
+g = 10.0
+l = 0.5
+[coordinates]
+x = 0.0
+y = -0.5
+[bodies.bob]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[constraints.rod]
+kind = "equation"
+gap = "sqrt(x^2 + y^2) - l"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""")
+    a, lam = multipliers(system, {"m": 2, "g": 10, "l": 0.5, "y": -0.5, "x'": 3})
+    assert a == pytest.approx([0, 9 / 0.5])
+    assert lam == pytest.approx([-2 * (10 + 9 / 0.5)])  # phi grows outwards, the rod pulls inwards
+
+
+IDENTICAL = """
+[parameters]
+m = 1.0
+l = 0.7
+[coordinates]
+theta = 0.3
+[bodies.ladder]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "placed", at = [0, "l*cos(theta)"], angle = "theta - pi/2" }
+"""
+
+
+def test_rows_that_the_coordinates_satisfy_carry_a_reaction_and_close_nothing():
+    """A ladder placed on wall and floor: both supports are identical, J has no row."""
+    system = written(IDENTICAL + """
+[constraints.wall]
+kind = "support"
+point = "ladder.start"
+normal = [1, 0]
+[constraints.floor]
+kind = "support"
+point = "ladder.end"
+normal = [0, 1]
+at = [0, 0]
+""")
+    assert [row.identical for row in system.ties.rows] == [True, True]
+    assert all(row.wrenches for row in system.ties.rows)
+    assert system.ties.closing == () and system.ties.J == () and system.symbols.lam == ()
+
+
+def test_a_gap_that_stays_open_is_no_identical_row():
+    """phi = const != 0 is not satisfied, though its rate is 0: the row must not be dropped in silence."""
+    text = IDENTICAL + '[constraints.wall]\nkind = "support"\npoint = "ladder.start"\nnormal = [1, 0]\nat = [-1, 0]\n'
+    (row,) = written(text).ties.rows
+    assert not row.identical
+
+
+def test_a_tie_of_coordinates_has_no_wrench():
+    """An equation gives dphi/dq directly; its lam is a generalized force."""
+    system = system_with("equation", PLANE, 'gap = "a*cos(b) - l"')
+    (row,) = system.ties.rows
+    assert row.wrenches == ()
+    assert equal(system.ties.J[0], gradient(row.gap, system.symbols.q))
+
+
+def test_a_pin_of_n_bodies_is_n_minus_1_hinges():
+    """2 (n - 1) rows in the plane, the first body in each of them."""
+    system = system_with("pin", PLANE, EXAMPLES["pin"][PLANE][2])
+    assert [[body for body, _ in row.wrenches] for row in system.ties.rows] == [
+        ["first", "second"], ["first", "second"], ["first", "cart"], ["first", "cart"],
+    ]  # fmt: skip
+
+
+def test_one_point_alone_is_held_where_it_stands_at_the_start():
+    """phi = p - p(start), so phi = 0 at the start values whatever they are."""
+    system = system_with("pin", PLANE, 'points = ["first.P"]')
+    model = eomgen.loads(f'eomgen = 1\nname = "t"\nspace = "plane"\n{HEAD + BODIES[PLANE]}')
+    starts = (model.coordinates[q.name].start for q in system.symbols.q)
+    state = {q: fifty_digits().number(e.evaluate({})) for q, e in zip(system.symbols.q, starts, strict=True)}
+    state |= {p: fifty_digits().number(3) for p in system.symbols.parameters.values()}
+    state[system.symbols.t] = fifty_digits().number(0)
+    assert at(system.ties.phi, state) == pytest.approx([0, 0], abs=1e-15)

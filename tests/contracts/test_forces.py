@@ -1,0 +1,453 @@
+"""What every force promises: work and potential agree, inner forces balance, dampers take power."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from moving import at, equal, state_of, written
+
+import eomgen
+from eomgen.errors import NotYet
+from eomgen.mechanics.formulations import projection
+from eomgen.mechanics.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.system import System
+from eomgen.mechanics.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
+from eomgen.model.forces import ALL
+from eomgen.model.forces.load import Couple, PointForce, UniformField
+from eomgen.symbolic.evaluation import fifty_digits
+from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus
+
+PLANE, SPACE = "plane", "space"
+TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
+EXAMPLES = {
+    "gravity": {
+        PLANE: ['acceleration = [0.1, "-g"]', 'acceleration = ["g*sin(w*t)", "-g"]',
+                'acceleration = [0, "-g"], bodies = ["lower"]'],
+        SPACE: ['acceleration = ["g/3", "g/5", "-g"]', 'acceleration = [0, 0, "-g"], bodies = ["upper"]'],
+    },
+    "force": {
+        PLANE: ['point = "lower.P", force = ["k*l", "-c*b\'"]', 'point = "lower.P", force = ["tau", 2], axes = "lower"',
+                'point = "lower.P", force = ["k*a", 2], axes = "upper"'],
+        SPACE: ['point = "lower.P", force = [1, "tau", "k*b"]', 'point = "upper.P", force = [1, 2, 3], axes = "lower"'],
+    },
+    "couple": {
+        PLANE: ['body = "lower", couple = "k - c*b\'"', 'body = "upper", couple = "tau"'],
+        SPACE: ['body = "lower", couple = [1, "tau", "k*b"]', 'body = "lower", couple = [1, 2, 3], axes = "upper"'],
+    },
+    "distributed": {
+        PLANE: ['body = "lower", between = ["origin", "P"], intensity = [1, "-k"]',
+                'body = "lower", between = ["P", "R"], intensities = [[0, "-k"], [2, "c*a\'"]]'],
+        SPACE: ['body = "upper", between = ["origin", "P"], intensities = [[1, 2, "k"], [0, 0, 0]]'],
+    },
+    "spring": {
+        PLANE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = "start"',
+                f'{TWO}, stiffness = "k", length = "l", along = [3, 4]', f'{TWO}, stiffness = "k*t", length = "l*t"'],
+        SPACE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = 0, along = [1, 2, 2]'],
+    },
+    "damper": {
+        PLANE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c"', f'{TWO}, damping = "c", along = [3, 4]'],
+        SPACE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c", along = [1, 2, 2]'],
+    },
+    "torsion_spring": {
+        PLANE: ['bodies = ["upper", "lower"], stiffness = "k", rest = 0.1', 'body = "lower", stiffness = "k"'],
+    },
+    "torsion_damper": {
+        PLANE: ['bodies = ["upper", "lower"], damping = "c"', 'body = "lower", damping = "c"'],
+    },
+    "between": {
+        PLANE: [f'{TWO}, pull = "k*l^2/r^2"', f'{GROUND}, pull = "k*(r - l)"', f'{TWO}, pull = "c*r\'*r"'],
+        SPACE: [f'{TWO}, pull = "k*l^2/r^2"', f'{TWO}, pull = "k*r + c*r\'"'],
+    },
+    "potential": {
+        PLANE: ['energy = "k*a^2*cos(b)"', 'energy = "k*l*a*sin(w*t)"'],
+        SPACE: ['energy = "k*l*(a - b)^4"'],
+    },
+    "generalized": {
+        PLANE: ['coordinate = "b", value = "tau - c*b\'^3"'],
+        SPACE: ['coordinate = "a", value = "k*b"'],
+    },
+}  # fmt: skip
+CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
+BUILT = {force.kind for force in ALL if force.works}
+built = pytest.mark.parametrize(
+    ("kind", "space", "fields"), [c for c in CASES if c[0] in BUILT],
+    ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES if k in BUILT],
+)  # fmt: skip
+
+HEAD = """
+[parameters]
+m = 1.2
+l = 0.7
+g = 9.81
+k = 5.0
+c = 0.4
+w = 1.3
+[coordinates]
+a = 0.3
+b = 0.5
+[inputs]
+tau = "sin(2*t)"
+"""
+BODIES = {
+    PLANE: """
+[points]
+G = [2, 1]
+[bodies.upper]
+mass = "m"
+center = ["l/2", "l/9"]
+inertia = "m*l^2"
+points = { P = ["l", "l/3"], R = ["-l/2", "l"] }
+joint = { kind = "revolute", angle = "a" }
+[bodies.lower]
+mass = "2*m"
+center = ["l/3", 0]
+inertia = "m*l^2"
+points = { P = ["l", "-l/5"], R = [0, "l"] }
+joint = { kind = "revolute", on = "upper.P", angle = "b" }
+[bodies.clock]
+mass = "m"
+inertia = 1
+joint = { kind = "placed", at = ["l*sin(w*t)", "g*t + k + c"] }
+""",
+    SPACE: """
+[points]
+G = [2, 1, 0.5]
+[bodies.upper]
+mass = "m"
+center = ["l/2", "l/9", 0]
+inertia = ["m*l^2", "m*l^2", "m*l^2"]
+points = { P = ["l", "l/3", "l/4"], R = ["-l/2", "l", "l/5"] }
+joint = { kind = "revolute", axis = [1, 2, 2], angle = "a" }
+[bodies.lower]
+mass = "2*m"
+center = ["l/3", 0, "l/7"]
+inertia = ["m*l^2", "m*l^2", "m*l^2"]
+points = { P = ["l", "-l/5", 0] }
+joint = { kind = "revolute", on = "upper.P", axis = [0, 3, 4], angle = "b" }
+[bodies.clock]
+mass = "m"
+inertia = [1, 1, 1]
+joint = { kind = "placed", at = ["l*sin(w*t)", "g*t + k + c", 0] }
+""",
+}
+NO_FORCE = '[forces]\nnone = { kind = "generalized", coordinate = "a", value = "0*(tau + k + c)" }\n'  # names are used
+
+
+def system_with(kind: str, space: str, fields: str) -> System:
+    """Two bodies that hang on one another, and the force."""
+    return written(HEAD + BODIES[space] + f"{NO_FORCE}F = {{ kind = \"{kind}\", {fields} }}\n", space)
+
+
+def applied(system: System):
+    """The force."""
+    (force,) = (f for f in system.loads.applied if f.name == "F")
+    return force
+
+
+def work_row(loads: Loads, force) -> tuple[Scalar, ...]:
+    """Q by virtual work of the loads, whether or not there is a potential."""
+    return total([load_row(loads, load) for load in force.loads], len(loads.motion.scope.symbols.u))
+
+
+def test_every_kind_of_force_has_examples_here():
+    """A force that is added to ALL is held to the contract."""
+    assert {force.kind for force in ALL} == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("kind", [force.kind for force in ALL if not force.works])
+def test_a_force_that_is_not_built_ends_in_an_honest_message(kind):
+    """Exit 3 with the kind and the place, never a wrong answer."""
+    space, fields = next(iter(EXAMPLES[kind].items()))
+    with pytest.raises(NotYet, match=f"'{kind}' are not derived yet") as caught:
+        system_with(kind, space, fields[0])
+    assert caught.value.exit_code == 3 and caught.value.where == "forces.F"
+
+
+@built
+def test_the_potential_and_the_work_of_the_loads_agree(kind, space, fields):
+    """-N^T dV/dq = sum F . dp/dq + sum M . dw/du, where a force has a potential and a place."""
+    system = system_with(kind, space, fields)
+    force = applied(system)
+    if force.potential is None or force.placeless:
+        assert force.placeless or kind not in ("gravity", "spring", "torsion_spring")
+        return
+    assert equal(from_potential(system.motion, force.potential), work_row(system.loads, force))
+
+
+@built
+def test_virtual_work_and_wrenches_on_twists_agree(kind, space, fields):
+    """Q_k = sum F . dp/dq_k = sum over bodies of B^T W"""
+    system = system_with(kind, space, fields)
+    assert equal(generalized_forces(system.loads), projection.force_side(system.loads))
+
+
+@built
+def test_a_force_acts(kind, space, fields):
+    """Q is not 0 at a random state."""
+    system = system_with(kind, space, fields)
+    assert np.abs(at(force_row(system.loads, applied(system)), state_of(system))).max() > 1e-6
+
+
+Resultant = tuple[Vector, Vector]
+
+
+def resultant(system: System, loads, about: Vector) -> Resultant:
+    """(force, moment about a point of the ground) of forces and couples, ground axes."""
+    F, M = ZERO, ZERO
+    for load in loads:
+        if isinstance(load, Couple):
+            M = plus(M, in_ground_axes(system.motion, load.couple, load.axes))
+        else:
+            f = in_ground_axes(system.motion, load.force, load.axes)
+            F = plus(F, f)
+            M = plus(M, cross(minus(system.motion.position(load.place), about), f))
+    return F, M
+
+
+ABOUT = ("0.3*l", "-1.7", "g")
+
+
+def ground_point(system: System) -> Vector:
+    """Some point of the ground."""
+    x, y, z = (parse(text).evaluate(system.scope.names) for text in ABOUT)
+    return (x, y, z)
+
+
+BETWEEN_POINTS, BETWEEN_BODIES = ("spring", "damper", "between"), ("torsion_spring", "torsion_damper")
+INNER = [case for case in CASES if case[0] in BETWEEN_POINTS or (case[0] in BETWEEN_BODIES and "bodies" in case[2])]
+
+
+@pytest.mark.parametrize(("kind", "space", "fields"), INNER, ids=[f"{k}-{s}-{f[:60]}" for k, s, f in INNER])
+def test_inner_forces_sum_to_zero(kind, space, fields):
+    """sum F = 0, and about any ground point sum (M + r x F) = 0: what acts between two acts on both."""
+    system = system_with(kind, space, fields)
+    loads = applied(system).loads
+    F, M = resultant(system, loads, ground_point(system))
+    assert equal(F, ZERO)
+    if "along" in fields:  # the stretch is measured, and the pull acts, along a fixed direction: a couple stays
+        first, second = (system.motion.position(load.place) for load in loads)
+        M = minus(M, cross(minus(first, second), loads[0].force))
+    assert equal(M, ZERO)
+
+
+EFFORTS = 'torque = "tau", stiffness = "k", rest = 0.2, damping = "c"'
+PUSHED = EFFORTS.replace("torque", "force")
+JOINTS = [
+    (PLANE, f'kind = "revolute", on = "base", at = [1, 2], angle = "b", {EFFORTS}'),
+    (PLANE, f'kind = "prismatic", on = "base", axis = [3, 4], displacement = "b", {PUSHED}'),
+    (SPACE, f'kind = "revolute", on = "base.P", axis = [1, 2, 2], angle = "b - a", point = "P", {EFFORTS}'),
+    (SPACE, f'kind = "prismatic", on = "base", axis = [0, 3, 4], angle = 0.3, displacement = "b", {PUSHED}'),
+]
+
+
+def system_with_joint(space: str, joint: str) -> System:
+    inertia, P, axis = ("1", "[1, 2]", "") if space == PLANE else ("[1, 1, 1]", "[1, 2, 3]", "axis = [2, 1, 2], ")
+    return written(HEAD + f"""
+[bodies.base]
+mass = "m"
+inertia = {inertia}
+points = {{ P = {P} }}
+joint = {{ kind = "revolute", {axis}angle = "a" }}
+[bodies.child]
+mass = "m*l*w*g"
+inertia = {inertia}
+points = {{ P = {P} }}
+joint = {{ {joint} }}
+{NO_FORCE}""", space)  # fmt: skip
+
+
+@pytest.mark.parametrize(("space", "joint"), JOINTS)
+def test_the_effort_of_a_joint_is_an_inner_force(space, joint):
+    """Its wrenches on child and parent have no resultant and no moment about any ground point."""
+    system = system_with_joint(space, joint)
+    F, M = ZERO, ZERO
+    for body, wrench in joint_wrenches(system.motion, system.loads.efforts[0]):
+        pose = system.motion.link(body).pose
+        f, tau = apply(pose.R, wrench.f), apply(pose.R, wrench.tau)
+        F, M = plus(F, f), plus(M, plus(tau, cross(minus(pose.p, ground_point(system)), f)))
+    assert equal((*F, *M), (*ZERO, *ZERO))
+
+
+@pytest.mark.parametrize(("space", "joint"), JOINTS)
+def test_the_wrenches_of_a_joint_do_the_work_of_its_effort(space, joint):
+    """sum of W . xi over child and parent = effort * s'; and Q = effort ds/dq."""
+    system = system_with_joint(space, joint)
+    (effort,) = system.loads.efforts
+    link = system.motion.link("child")
+    power = sum((system.motion.link(b).twist.power(W) for b, W in joint_wrenches(system.motion, effort)), start=0)
+    assert equal((power,), (effort.effort * link.s_rate[0],))
+    u = system.symbols.u
+    work = sum((Q * x for Q, x in zip(effort_row(system.motion, effort), u, strict=True)), start=0)
+    assert equal((work,), (power,))
+
+
+DAMPERS = [case for case in CASES if "damper" in case[0]]
+
+
+@pytest.mark.parametrize(("kind", "space", "fields"), DAMPERS, ids=[f"{k}-{s}-{f[:60]}" for k, s, f in DAMPERS])
+def test_dampers_take_power(kind, space, fields):
+    """sum F . v + M . w <= 0 at every state, and < 0 where the damper moves."""
+    system = system_with(kind, space, fields)
+    row = force_row(system.loads, applied(system))
+    power = sum((Q * u for Q, u in zip(row, system.symbols.u, strict=True)), start=0)
+    taken = [at((power,), state_of(system, seed))[0] for seed in range(20)]
+    assert max(taken) <= 0 and min(taken) < -1e-6
+
+
+def test_a_straight_damper_takes_c_times_the_rate_squared():
+    """P = -c l'^2, l the distance of its points, whatever moves its ends."""
+    system = system_with("damper", PLANE, f'{TWO}, damping = "c"')
+    scene = SystemScene(system.motion)
+    ends = [load.place for load in applied(system).loads]
+    gap = minus(scene.position(ends[1]), scene.position(ends[0]))
+    velocity = minus(scene.velocity(ends[1]), scene.velocity(ends[0]))
+    power = sum((dot(load.force, scene.velocity(load.place)) for load in applied(system).loads), start=0)
+    c = system.symbols.parameters["c"]
+    assert equal((power * dot(gap, gap),), (-c * dot(gap, velocity) * dot(gap, velocity),))
+
+
+DISTRIBUTED = [(space, fields) for kind, space, fields in CASES if kind == "distributed"]
+
+
+@pytest.mark.parametrize(("space", "fields"), DISTRIBUTED)
+def test_a_distributed_load_has_the_resultant_of_its_integral(space, fields):
+    """F = int q ds, M = int r x q ds from A to B, by quadrature that is exact for linear intensities."""
+    system = system_with("distributed", space, fields)
+    force = system.scope.model.forces["F"]
+    scene, state = SystemScene(system.motion), state_of(system, 3)
+    about = ground_point(system)
+    A, B = (at(system.motion.position(scene.place(f"{force.body}.{name}")), state) for name in force.between)
+    q = [at(scene.vector(x), state) for x in force.intensities or (force.intensity, force.intensity)]
+    length, origin = np.linalg.norm(B - A), at(about, state)
+    F, M = np.zeros(3), np.zeros(3)
+    for node, weight in zip(*np.polynomial.legendre.leggauss(4), strict=True):
+        x = (node + 1) / 2
+        intensity = (1 - x) * q[0] + x * q[1]
+        F += weight / 2 * length * intensity
+        M += weight / 2 * length * np.cross((1 - x) * A + x * B - origin, intensity)
+    found = resultant(system, applied(system).loads, about)
+    assert at(found[0], state) == pytest.approx(F, rel=1e-12, abs=1e-12)
+    assert at(found[1], state) == pytest.approx(M, rel=1e-12, abs=1e-12)
+
+
+def test_the_weights_of_the_bodies_add_up_to_the_weight_of_all():
+    """Gravity on upper, on lower and on the rest is gravity on all: V and Q alike."""
+    whole = system_with("gravity", PLANE, 'acceleration = [0, "-g"]')
+    names = ("upper", "lower", "clock")
+    some = [system_with("gravity", PLANE, f'acceleration = [0, "-g"], bodies = ["{name}"]') for name in names]
+
+    def numbers(system: System) -> np.ndarray:
+        force = applied(system)
+        return at((*force_row(system.loads, force), force.potential), state_of(system))
+
+    assert sum(numbers(system) for system in some) == pytest.approx(numbers(whole), rel=1e-13)
+
+
+def test_gravity_is_a_force_m_g_at_the_centre_of_the_named_bodies():
+    """F = m g, and no moment about the mass centre."""
+    system = system_with("gravity", PLANE, 'acceleration = [0, "-g"], bodies = ["lower"]')
+    (load,) = applied(system).loads
+    p = system.symbols.parameters
+    assert load.place[0] == "lower" and equal(load.place[1], (p["l"] / 3, 0, 0))
+    assert equal(load.force, (0, -2 * p["m"] * p["g"], 0))
+
+
+def test_gravity_on_all_is_a_field():
+    """A uniform field, which formulations may put into the acceleration of the ground."""
+    (load,) = applied(system_with("gravity", PLANE, 'acceleration = [0, "-g"]')).loads
+    assert isinstance(load, UniformField)
+
+
+@pytest.mark.parametrize("axes", ["upper", "lower"])
+def test_a_force_in_the_axes_of_a_body_turns_with_it(axes):
+    """f_ground = R f_body; at rest in the ground's axes otherwise."""
+    system = system_with("force", PLANE, f'point = "lower.P", force = [3, "k"], axes = "{axes}"')
+    (load,) = applied(system).loads
+    k = system.symbols.parameters["k"]
+    turned = apply(system.motion.link(axes).pose.R, (3, k, 0))
+    assert equal(in_ground_axes(system.motion, load.force, load.axes), turned)
+    body, wrench = body_wrench(system.motion, load)
+    assert body == "lower" and equal(apply(system.motion.link(body).pose.R, wrench.f), turned)
+
+
+@pytest.mark.parametrize("space", [PLANE, SPACE])
+def test_a_linear_pull_between_two_points_is_a_spring(space):
+    """between with f(r) = k (r - l) has the Q and the power of a spring of length l."""
+    spring = system_with("spring", space, f'{TWO}, stiffness = "k", length = "l"')
+    between = system_with("between", space, f'{TWO}, pull = "k*(r - l)"')
+    rows = [at(work_row(s.loads, applied(s)), state_of(s)) for s in (spring, between)]
+    assert rows[1] == pytest.approx(rows[0], rel=1e-13)
+
+
+def test_a_pull_draws_its_points_together():
+    """Attraction is positive: the force on the first point is along the line to the second."""
+    system = system_with("between", PLANE, f'{TWO}, pull = "k"')
+    first, second = applied(system).loads
+    line = minus(system.motion.position(second.place), system.motion.position(first.place))
+    state = state_of(system)
+    assert at((dot(first.force, line),), state)[0] > 0 > at((dot(second.force, line),), state)[0]
+
+
+@pytest.mark.parametrize("law", ["k*(r - l)", "k*l^2/r^2", "k*l/r"])
+def test_a_pull_of_the_distance_alone_is_the_slope_of_its_potential(law):
+    """V = int f dr, so that dV/dr = f: energy is conserved and is reported."""
+    system = system_with("between", PLANE, f'{TWO}, pull = "{law}"')
+    force = applied(system)
+    assert force.potential is not None
+    assert equal(from_potential(system.motion, force.potential), work_row(system.loads, force))
+
+
+@pytest.mark.parametrize("law", ["c*r'", "k*r*sin(w*t)", "k*a", "tau*r"])
+def test_a_pull_of_anything_else_has_no_potential(law):
+    """Rates, time, coordinates and inputs in the law: it may do work on a closed path."""
+    assert applied(system_with("between", PLANE, f'{TWO}, pull = "{law}"')).potential is None
+
+
+def test_a_spring_is_slack_at_its_start_when_its_length_says_so():
+    """length = "start": no force at the start values."""
+    system = system_with("spring", PLANE, f'{GROUND}, stiffness = "k", length = "start"')
+    state = state_of(system)
+    for q, start in zip(system.symbols.q, (Fraction(3, 10), Fraction(1, 2)), strict=True):
+        state[q] = fifty_digits().number(start)
+    (force, _) = (load.force for load in applied(system).loads)
+    assert at(force, state) == pytest.approx([0, 0, 0], abs=1e-15)
+
+
+@pytest.mark.parametrize("fields", ['along = [3, 4]', 'along = [30, 40]', 'along = ["3*l", "4*l"]'])
+def test_only_the_direction_of_along_counts(fields):
+    """n = along / |along|; the stretch is n . (p2 - p1) - l, so V is the same for any length of `along`."""
+    system = system_with("spring", PLANE, f'{TWO}, stiffness = "k", length = "l", {fields}')
+    first, second = (system.motion.position(load.place) for load in applied(system).loads)
+    p = system.symbols.parameters
+    stretch = at((dot(minus(second, first), (3, 4, 0)), p["l"], p["k"]), state_of(system))
+    expected = stretch[2] * (stretch[0] / 5 - stretch[1]) ** 2 / 2
+    assert at((applied(system).potential,), state_of(system)) == pytest.approx([expected], rel=1e-13)
+
+
+def test_torsion_acts_on_the_second_body_against_the_first():
+    """Couple -k (theta2 - theta1 - rest) on the second, its opposite on the first, counter-clockwise positive."""
+    system = system_with("torsion_spring", PLANE, 'bodies = ["upper", "lower"], stiffness = "k", rest = "1/7"')
+    b, k = system.symbols.q[1], system.symbols.parameters["k"]
+    couples = {load.body: load.couple[2] for load in applied(system).loads}
+    stretch = b - Fraction(1, 7)
+    assert equal((couples["lower"], couples["upper"]), (-k * stretch, k * stretch))
+
+
+def test_a_force_in_a_fixed_direction_does_the_work_of_a_potential():
+    """F . p: Q of a constant force at a point is the slope of F . p."""
+    system = system_with("force", PLANE, 'point = "lower.P", force = [3, "-k"]')
+    force = applied(system)
+    (load,) = force.loads
+    assert isinstance(load, PointForce)
+    V = -dot(load.force, system.motion.position(load.place))
+    assert equal(from_potential(system.motion, V), force_row(system.loads, force))
+
+
+def test_a_model_names_the_force_that_needs_accelerations():
+    """A force may hold rates and time, not accelerations."""
+    with pytest.raises(eomgen.EomgenError, match="accelerations"):
+        system_with("couple", PLANE, 'body = "lower", couple = "a\'\'"')
