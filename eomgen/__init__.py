@@ -25,7 +25,8 @@ _HOMES = {
         "Unknown",
     ),
     "model.reader": ("load", "loads"),
-    "pipeline": ("Equations", "derive", "simulate"),
+    "equations": ("Equations",),
+    "pipeline": ("derive", "simulate"),
     "simulation.trajectory": ("Trajectory",),
 }  # fmt: skip
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}

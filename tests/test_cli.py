@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import eomgen
-from eomgen import pipeline
+from eomgen import equations
 from eomgen.certificate import Certificate, Check
 from eomgen.cli import LATER, main
 from eomgen.codegen.build import compiler
@@ -313,7 +313,7 @@ def test_derive_shows_its_certificate_in_every_format():
 def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(format, monkeypatch):
     """The result is still there, and marked."""
     failing = Certificate((Check("two and two are four", False, "fingers", "five"),))
-    monkeypatch.setattr(pipeline, "certify", lambda *_: failing)
+    monkeypatch.setattr(equations, "certify", lambda *_: failing)
     result = run("derive", SEED, "--format", format)
     assert result.exit_code == 3
     assert "FAILS" in result.stderr

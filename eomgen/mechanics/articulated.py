@@ -9,13 +9,15 @@ Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §7.3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eomgen.mechanics.armature import armature_bias, armature_mass
+from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.kinematics import GROUND, Motion
 from eomgen.mechanics.loads import Loads
 from eomgen.mechanics.recursion import applied_wrenches, inertia_wrench, rate_matrix
-from eomgen.mechanics.tree import Branch
+from eomgen.mechanics.system import System
+from eomgen.mechanics.tree import Branch, branches_of
 from eomgen.mechanics.work import joint_forces, placeless_forces
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar, is_zero
@@ -55,6 +57,14 @@ def applies(motion: Motion, branches: tuple[Branch, ...]) -> bool:
     owned = [k for branch in branches for k in branch.columns]
     coupled = any(i != j for i, j, _ in armature_mass(motion))
     return sorted(owned) == list(range(size)) and size > 0 and not coupled
+
+
+def with_accelerations(system: System, assembly: Assembly) -> Assembly:
+    """The assembly with explicit accelerations, where articulated bodies give them."""
+    branches = branches_of(system.motion)
+    if assembly.J or not applies(system.motion, branches):
+        return assembly
+    return replace(assembly, accelerations=accelerations(system.loads, branches))
 
 
 def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, ...]:

@@ -9,6 +9,7 @@ from eomgen.mechanics.loads import Loads, loads_of
 from eomgen.mechanics.scope import Scope, scope_of
 from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model
+from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.symbols import Symbols
 
 
@@ -23,6 +24,11 @@ class System:
     @property
     def scope(self) -> Scope:
         return self.motion.scope
+
+    @property
+    def inputs(self) -> dict[str, Scalar]:
+        """The model's own expression of each input, in t and parameters."""
+        return {name: self.scope.value(part.value) for name, part in self.scope.model.inputs.items()}
 
     @property
     def symbols(self) -> Symbols:

@@ -21,13 +21,14 @@ PLANE, SPACE = "plane", "space"
 EXAMPLES = {
     "pin": {
         PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "second.P", "cart.P"]',
-                'points = ["first.P", "G"]'],
+                'points = ["first.P", "cart.P"]'],
         SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]'],
     },
     "support": {
         PLANE: ['point = "first.P", normal = [3, 4], at = [1, 2]', 'point = "second.P", normal = [0, 1]',
                 'point = "cart.P", normal = ["l", "-2*l"], at = "G"'],
-        SPACE: ['point = "first.P", normal = [1, 2, 2], at = [1, 2, 3]', 'point = "cart.P", normal = [0, 1, 1], at = "G"'],
+        SPACE: ['point = "first.P", normal = [1, 2, 2], at = [1, 2, 3]',
+                'point = "cart.P", normal = [1, 1, 1], at = "G"'],
     },
     "clamp": {PLANE: ['point = "first.P"', 'points = ["first.P", "second.P"]']},
     "guide": {PLANE: ['point = "first.P", along = [1, 0]']},
@@ -41,7 +42,8 @@ EXAMPLES = {
     "string": {PLANE: ['path = ["first.P", { at = [0, 3], radius = 0, slip = true }, "second.P"]']},
     "gear": {PLANE: ['bodies = ["first", "second"], ratio = -2']},
     "equation": {
-        PLANE: ['gap = "a*cos(b) - l"', 'gap = "b - l*sin(w*t)"', "rate = \"a' - 2*b*b'\"", "rate = \"a'*cos(b) - b'*sin(b) - l*t\""],
+        PLANE: ['gap = "a*cos(b) - l"', 'gap = "b - l*sin(w*t)"', "rate = \"a' - 2*b*b'\"",
+                "rate = \"a'*cos(b) - b'*sin(b) - l*t\""],
         SPACE: ['gap = "a^2 + b^2 - s^2"'],
     },
     "motion": {PLANE: ['coordinate = "a", value = "l*sin(w*t)"']},
@@ -111,7 +113,7 @@ r = 0.4
 
 def system_with(kind: str, space: str, fields: str) -> System:
     """Three bodies, one of them on a seat that moves by itself, and the tie."""
-    return written(HEAD + BODIES[space] + f'[constraints.tie]\nkind = "{kind}"\n{fields.replace(", line", "; line")}', space)
+    return written(HEAD + BODIES[space] + f'[constraints]\ntie = {{ kind = "{kind}", {fields} }}\n', space)
 
 
 def test_every_kind_of_tie_has_examples_here():

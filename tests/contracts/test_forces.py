@@ -447,7 +447,7 @@ def test_a_force_in_a_fixed_direction_does_the_work_of_a_potential():
     assert equal(from_potential(system.motion, V), force_row(system.loads, force))
 
 
-def test_a_model_names_the_force_that_needs_accelerations():
+def test_a_force_that_needs_accelerations_is_refused_by_name():
     """A force may hold rates and time, not accelerations."""
-    with pytest.raises(eomgen.EomgenError, match="accelerations"):
+    with pytest.raises(eomgen.EomgenError, match="an acceleration"):
         system_with("couple", PLANE, 'body = "lower", couple = "a\'\'"')

@@ -13,7 +13,7 @@ from eomgen.mechanics import inertia, kinematics, recursion, tree
 from eomgen.mechanics.assembly import Assembly
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
-from eomgen.pipeline import Equations
+from eomgen.equations import Equations
 from eomgen.symbolic.graph import Scalar, linear_terms
 from eomgen.symbolic.spatial import times
 

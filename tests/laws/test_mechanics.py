@@ -11,7 +11,7 @@ import pytest
 
 import eomgen
 from eomgen.certificate import accelerations_at, real_state
-from eomgen.pipeline import Equations
+from eomgen.equations import Equations
 from eomgen.symbolic.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states

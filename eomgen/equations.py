@@ -1,0 +1,173 @@
+"""Equations: what a user holds after `derive`: matrices, proof, code and the derivation that reads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eomgen.certificate import Certificate, certify
+from eomgen.codegen.program import Program, right_hand_side
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.errors import MissingValues, UsageError
+from eomgen.mechanics.articulated import with_accelerations
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.energy import refuse_massless
+from eomgen.mechanics.system import System
+from eomgen.model.parts import Model
+from eomgen.model.values import numeric_parameters, start_values
+
+if TYPE_CHECKING:
+    from eomgen.report.statements import Derivation
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The equations of motion of a model: q' = N u + nu, M a = forcing + J^T lam, J a + gamma = 0.
+
+    `graph` holds N, nu, M, c, Q, forcing, J, sigma, gamma, phi, T, V as graph scalars; the same names on the
+    equations themselves are their sympy forms, made on first use.
+
+    Args:
+        model: the model.
+        method: by which the derivation is written: "lagrange" or "projection". The equations are the same functions
+            by every method, and are held in their shortest form, the recursion over the tree.
+        system: motion, loads and ties.
+        graph: the equations as graph scalars.
+    """
+
+    model: Model
+    method: str
+    system: System
+    graph: Assembly
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        return tuple(q.name for q in self.graph.symbols.q)
+
+    @property
+    def speeds(self) -> tuple[str, ...]:
+        return tuple(u.name for u in self.graph.symbols.u)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        return tuple(self.graph.symbols.parameters)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return tuple(self.graph.symbols.inputs)
+
+    N = cached_property(lambda self: _matrix(self.graph.N, len(self.speeds)))
+    nu = cached_property(lambda self: _column(self.graph.nu))
+    M = cached_property(lambda self: _matrix(self.graph.M, len(self.speeds)))
+    c = cached_property(lambda self: _column(self.graph.c))
+    Q = cached_property(lambda self: _column(self.graph.Q))
+    forcing = cached_property(lambda self: _column(self.graph.forcing))
+    J = cached_property(lambda self: _matrix(self.graph.J, len(self.speeds)))
+    sigma = cached_property(lambda self: _column(self.graph.sigma))
+    gamma = cached_property(lambda self: _column(self.graph.gamma))
+    phi = cached_property(lambda self: tuple(None if x is None else _expression(x) for x in self.graph.phi))
+    T = cached_property(lambda self: _expression(self.graph.T))
+    V = cached_property(lambda self: _expression(self.graph.V))
+
+    @cached_property
+    def program(self) -> Program:
+        """The right-hand side as a straight-line program.
+
+        Raises:
+            ModelError: a free coordinate moves no mass.
+        """
+        refuse_massless(self.graph)
+        return right_hand_side(with_accelerations(self.system, self.graph), self.system.inputs)
+
+    def certify(self, target: str | None = "numpy") -> Certificate:
+        """Check the equations by independent routes, and the code that `target` emits against the symbols."""
+        return certify(self.system, self.graph, self.rhs(target))
+
+    def rhs(self, target: str | None = None) -> RightHandSide:
+        """The right-hand side `rhs(t, x, p, inputs=())`, x = q then u.
+
+        Args:
+            target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
+        Raises:
+            ToolMissing: "c" without a compiler.
+            ModelError: a free coordinate moves no mass.
+        """
+        p0, x0 = self._known_values()
+        return compiled(self.program, target, x0=x0, p0=p0)
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The derivation, step by step."""
+        from eomgen.report.derivation import derivation_of
+
+        return derivation_of(self.system, self.graph, self.method)
+
+    def latex(self) -> str:
+        """The derivation as LaTeX (amsmath)."""
+        return self.render("latex")
+
+    def render(self, format: str = "text") -> str:
+        """The derivation as text, latex, markdown or json."""
+        from eomgen.report import rendered
+
+        return rendered(self.derivation, format)
+
+    def __str__(self) -> str:
+        return self.render("text")
+
+    def _repr_latex_(self) -> str:
+        from eomgen.report.latex import equations_latex
+
+        return equations_latex(self.derivation)
+
+    def _repr_markdown_(self) -> str:
+        return self.render("markdown")
+
+    def start(
+        self, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
+    ) -> np.ndarray:
+        """x at the start, q then u, from the model's start values and those that replace them.
+
+        Raises:
+            UsageError: a name in `start` that is no coordinate and no speed.
+            MissingValues: a start value needs a parameter without a value.
+        """
+        names = (*self.coordinates, *self.speeds)
+        unknown = [name for name in start or {} if name not in names]
+        if unknown:
+            raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
+        q, u = start_values(self.model, parameters)
+        values = {**q, **u, **(start or {})}
+        return np.array([values[name] for name in names], dtype=float)
+
+    def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
+        """(p0, x0) of the model, None where a value is missing."""
+        try:
+            p = np.array(list(numeric_parameters(self.model).values()), dtype=float)
+        except MissingValues:
+            p = None
+        try:
+            return p, self.start()
+        except MissingValues:
+            return p, None
+
+
+def _matrix(rows: tuple[tuple[Any, ...], ...], columns: int) -> Any:
+    """Graph scalars as a sympy matrix, sub-expressions shared."""
+    import sympy
+
+    from eomgen.symbolic.sympy_form import to_sympy
+
+    return sympy.ImmutableDenseMatrix(len(rows), columns, to_sympy([x for row in rows for x in row]))
+
+
+def _column(entries: tuple[Any, ...]) -> Any:
+    return _matrix(tuple((x,) for x in entries), 1)
+
+
+def _expression(scalar: Any) -> Any:
+    return _matrix(((scalar,),), 1)[0]
