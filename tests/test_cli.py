@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import eomgen
-from eomgen import equations
+from eomgen import equations, pipeline
 from eomgen.certificate import Certificate, Check
 from eomgen.cli import LATER, main
 from eomgen.codegen.build import compiler
