@@ -194,18 +194,21 @@ def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> 
     s_rate = scope.time_derivative(s)
     relative = joint.pose(s, scope.value)
     S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
-    angle = None
     local = before.then(relative)
+    angle = None
     if plane:
-        angle = collected((above.angle if above else 0) + joint.turn(s, scope.value))
-        R = rotation((0, 0, 1), cos(angle), sin(angle))
-        joint_at = plus(above.pose.p, apply(above.pose.R, local.p)) if above else local.p
-    else:
-        R = product(above.pose.R, local.R) if above else local.R
-        joint_at = above.pose.point(local.p) if above else local.p
-    pose = Pose(R, minus(joint_at, apply(R, point)))
+        turned = _turned_angle(scope, joint) + joint.turn(s, scope.value)
+        angle = collected((above.angle if above else 0) + turned)
+    pose = _pose(above, local, angle, point)
     twist = _twist(scope, above, before, local, s_rate, S, point)
     return Link(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+
+
+def _pose(above: Link | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
+    """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
+    joint = (above.pose if above else Pose()).then(local)
+    R = joint.R if angle is None else rotation(Z, cos(angle), sin(angle))
+    return Pose(R, minus(joint.p, apply(R, point)))
 
 
 def _twist(
@@ -239,6 +242,11 @@ def _turned(scope: Scope, joint: Any) -> Matrix:
     return R
 
 
+def _turned_angle(scope: Scope, joint: Any) -> Scalar:
+    """In the plane: the angle of the fixed rotations before the joint, all of them about z."""
+    return sum((scope.value(turn.angle) for turn in joint.turned or ()), start=0)
+
+
 def _seat(scope: Scope, joint: Any) -> Vector:
     """Where the joint sits, parent's axes: `at`, or the parent's point named by `on`."""
     on = joint.on
@@ -260,9 +268,18 @@ def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
 
 
 def velocity_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
-    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r) [m/s]."""
+    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
     body, r = place
     if body is None:
         return ZERO
     link = motion.link(body)
-    return apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
+    carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
+    return plus(carried, slide_of(motion, place)) if motion.moves(r) else carried
+
+
+def slide_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
+    body, r = place
+    if body is None or not motion.moves(r):
+        return ZERO
+    return apply(motion.link(body).pose.R, motion.scope.rate_of(r))

@@ -166,8 +166,7 @@ def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slic
             A[6 * i : 6 * i + 6, place] -= numbers.array((*wrench.tau, *wrench.f))
         J = gradient(row.velocity, system.scope.symbols.u)
         A[place, 12 * n : 12 * n + len(J)] = numbers.array(J)
-        if not row.wrenches:
-            A[12 * n : 12 * n + len(J), place] = -numbers.array(J)
+        A[12 * n : 12 * n + len(J), place] = -numbers.array(gradient(row.direct, system.scope.symbols.u))
         right[place] = -float(numbers.rate((row.velocity,))[0])
 
 

@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import NotYet
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.loads import SystemScene, body_wrench
+from eomgen.mechanics.kinematics import Motion, slide_of
+from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.model.constraints.row import TieRow
-from eomgen.symbolic.derivative import jacobian, substituted, tangent
+from eomgen.model.forces.load import PointForce
+from eomgen.symbolic.derivative import jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import Wrench
+from eomgen.symbolic.spatial import Wrench, dot
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class Row:
     Args:
         tie, number: its name and place in the tie, from 1.
         wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation.
+        direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
         velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
         gap: phi(q, t), or None where only the velocity row is given.
         identical: the coordinates satisfy the row by themselves: it only carries a reaction.
@@ -37,6 +39,7 @@ class Row:
     tie: str
     number: int
     wrenches: tuple[tuple[str, Wrench], ...]
+    direct: Scalar
     velocity: Scalar
     gap: Scalar | None
     identical: bool
@@ -95,22 +98,22 @@ def ties_of(motion: Motion) -> Ties:
 
 
 def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
-    scope = motion.scope
-    wrenches = []
-    for push in row.pushes:
-        found = body_wrench(motion, push)
-        if found is not None:
-            wrenches.append(found)
+    wrenches = [found for push in row.pushes if (found := body_wrench(motion, push)) is not None]
     if row.pushes:
-        moving_by_itself = 0 if row.gap is None else tangent((row.gap,), {scope.symbols.t: 1})[0]
-        velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=moving_by_itself)
+        direct = sum((_sliding(motion, push) for push in row.pushes if isinstance(push, PointForce)), start=0)
     elif row.rate is not None:
-        velocity = row.rate
+        direct = row.rate
     else:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
-        velocity = scope.time_derivative((row.gap,))[0]
+        direct = motion.scope.time_derivative((row.gap,))[0]
+    velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
     identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
-    return Row(name, number, tuple(wrenches), velocity, row.gap, identical)
+    return Row(name, number, tuple(wrenches), direct, velocity, row.gap, identical)
+
+
+def _sliding(motion: Motion, push: PointForce) -> Scalar:
+    """Power of a push on a point that moves in its body: F . R r'."""
+    return dot(in_ground_axes(motion, push.force, push.axes), slide_of(motion, push.place))
 
 
 def holds_identically(scalar: Scalar) -> bool:

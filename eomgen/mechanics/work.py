@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from eomgen.mechanics.assembly import Row
 from eomgen.mechanics.inertia import spin_of
-from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.kinematics import Motion, slide_of
 from eomgen.mechanics.loads import Applied, JointEffort, Loads, in_body_axes, in_ground_axes, weights
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, UniformField
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.symbolic.derivative import gradient, jacobian
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import dot, vector_of
+from eomgen.symbolic.spatial import ZERO, dot, vector_of
 
 
 def generalized_forces(loads: Loads) -> Row:
@@ -90,12 +90,22 @@ def _weighted(force, rows, size: int) -> Row:
 
 
 def placeless_forces(loads: Loads) -> Row:
-    """Q of what acts at no place: generalized forces and potentials of coordinates."""
+    """Q of what no twist sees: generalized forces, energies of coordinates, forces along the slide of their points."""
     size = len(loads.motion.scope.symbols.u)
     rows = [load_row(loads, load) for load in loads.generalized]
     energies = [force.potential for force in loads.applied if force.placeless]
     rows += [from_potential(loads.motion, V) for V in energies if V is not None]
+    rows += [_sliding_row(loads.motion, load) for load in loads.placed if isinstance(load, PointForce)]
     return total(rows, size)
+
+
+def _sliding_row(motion: Motion, force: PointForce) -> Row:
+    """Q of a force whose point moves in its body: F . d(R r')/du."""
+    u = motion.scope.symbols.u
+    slide = slide_of(motion, force.place)
+    if slide == ZERO:
+        return (0,) * len(u)
+    return _weighted(in_ground_axes(motion, force.force, force.axes), jacobian(slide, u), len(u))
 
 
 def joint_forces(loads: Loads) -> Row:

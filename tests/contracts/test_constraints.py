@@ -20,13 +20,14 @@ from eomgen.symbolic.spatial import ZERO, apply, cross, plus
 PLANE, SPACE = "plane", "space"
 EXAMPLES = {
     "pin": {
-        PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "second.P", "cart.P"]',
-                'points = ["first.P", "cart.P"]'],
-        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]'],
+        PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "cart.P"]',
+                'points = ["first.P", "second.P", "cart.P"]', 'points = ["first.M", "cart.P"]'],
+        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P"], axis = [1, 2, 2]',
+                'points = ["first.P", "second.P"], axis = [0, 3, 4]'],
     },
     "support": {
         PLANE: ['point = "first.P", normal = [3, 4], at = [1, 2]', 'point = "second.P", normal = [0, 1]',
-                'point = "cart.P", normal = ["l", "-2*l"], at = "G"'],
+                'point = "cart.P", normal = ["l", "-2*l"], at = "G"', 'point = "first.M", normal = [1, 0]'],
         SPACE: ['point = "first.P", normal = [1, 2, 2], at = [1, 2, 3]',
                 'point = "cart.P", normal = [1, 1, 1], at = "G"'],
     },
@@ -39,7 +40,7 @@ EXAMPLES = {
     },
     "rolling": {PLANE: ['body = "second", line = { at = [0, 0], normal = [0, 1] }, radius = 0.3']},
     "skate": {PLANE: ['point = "first.P", along = [1, 0]']},
-    "string": {PLANE: ['path = ["first.P", { at = [0, 3], radius = 0, slip = true }, "second.P"]']},
+    "string": {PLANE: ['path = ["first.P", { at = [0, 3], radius = 0, turn = "cw", slip = true }, "second.P"]']},
     "gear": {PLANE: ['bodies = ["first", "second"], ratio = -2']},
     "equation": {
         PLANE: ['gap = "a*cos(b) - l"', 'gap = "b - l*sin(w*t)"', "rate = \"a' - 2*b*b'\"",
@@ -63,7 +64,7 @@ G = [2, 1]
 mass = "m"
 center = ["l/2", 0]
 inertia = "m*l^2"
-points = { P = ["l", "l/3"], A = [0, 0], B = ["l", 0] }
+points = { P = ["l", "l/3"], M = ["l + d", "l*sin(w*t)"], A = [0, 0], B = ["l", 0] }
 line = ["A", "B"]
 joint = { kind = "revolute", angle = "a" }
 [bodies.second]
@@ -75,7 +76,7 @@ joint = { kind = "planar", x = "s", y = "r", angle = "b" }
 mass = "m"
 inertia = 1
 points = { P = ["l", "l"] }
-joint = { kind = "prismatic", at = ["l*sin(w*t)", 0], axis = [3, 4], displacement = "s" }
+joint = { kind = "prismatic", at = ["l*sin(w*t)", 0], axis = [3, 4], displacement = "d" }
 """,
     SPACE: """
 [points]
@@ -95,7 +96,7 @@ joint = { kind = "placed", at = ["s", "r", "a*b"], angle = "b", axis = [0, 3, 4]
 mass = "m"
 inertia = [1, 1, 1]
 points = { P = ["l", "l", 0] }
-joint = { kind = "prismatic", at = ["l*sin(w*t)", 0, 0], axis = [3, 0, 4], displacement = "s" }
+joint = { kind = "prismatic", at = ["l*sin(w*t)", 0, 0], axis = [3, 0, 4], displacement = "d" }
 """,
 }
 HEAD = """
@@ -108,6 +109,7 @@ a = 0.3
 b = 0.5
 s = 0.2
 r = 0.4
+d = 0.1
 """
 
 
@@ -170,8 +172,8 @@ def test_a_gap_may_be_left_out_only_where_the_rate_is_given(kind, space, fields)
 
 
 def power_row(system: System, row: Row) -> tuple[Scalar, ...]:
-    """B^T W of a row: the generalized force of a unit lam, from its wrenches and the bodies' columns."""
-    total: list[Scalar] = [0] * len(system.symbols.u)
+    """B^T W of a row, from its wrenches and the bodies' columns, and the work on points that slide in their bodies."""
+    total: list[Scalar] = list(gradient(row.direct, system.symbols.u))
     for body, wrench in row.wrenches:
         B = system.motion.B[system.motion.index[body]]
         for k in range(len(total)):
@@ -181,7 +183,7 @@ def power_row(system: System, row: Row) -> tuple[Scalar, ...]:
 
 @built
 def test_the_force_of_a_tie_is_dual_to_the_motion_that_it_forbids(kind, space, fields):
-    """J^T = sum over bodies of B^T W, and J = (dphi/dq) N: what pushes along n forbids motion along n."""
+    """J^T = sum over bodies of B^T W, J = (dphi/dq) N: what pushes along n forbids motion along n."""
     system = system_with(kind, space, fields)
     for row, J in zip(system.ties.closing, system.ties.J, strict=True):
         if row.wrenches:
@@ -390,7 +392,7 @@ def test_a_tie_of_coordinates_has_no_wrench():
 
 def test_a_pin_of_n_bodies_is_n_minus_1_hinges():
     """2 (n - 1) rows in the plane, the first body in each of them."""
-    system = system_with("pin", PLANE, EXAMPLES["pin"][PLANE][2])
+    system = system_with("pin", PLANE, EXAMPLES["pin"][PLANE][3])
     assert [[body for body, _ in row.wrenches] for row in system.ties.rows] == [
         ["first", "second"], ["first", "second"], ["first", "cart"], ["first", "cart"],
     ]  # fmt: skip

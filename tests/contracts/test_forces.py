@@ -22,6 +22,7 @@ from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus
 
 PLANE, SPACE = "plane", "space"
+SLIDING = 'points = ["upper.R", "lower.M"]'  # M slides in its body
 TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
 EXAMPLES = {
     "gravity": {
@@ -31,8 +32,10 @@ EXAMPLES = {
     },
     "force": {
         PLANE: ['point = "lower.P", force = ["k*l", "-c*b\'"]', 'point = "lower.P", force = ["tau", 2], axes = "lower"',
-                'point = "lower.P", force = ["k*a", 2], axes = "upper"'],
-        SPACE: ['point = "lower.P", force = [1, "tau", "k*b"]', 'point = "upper.P", force = [1, 2, 3], axes = "lower"'],
+                'point = "lower.P", force = ["k*a", 2], axes = "upper"', 'point = "lower.M", force = ["k", 2]',
+                'point = "lower.W", force = ["k", 2], axes = "lower"'],
+        SPACE: ['point = "lower.P", force = [1, "tau", "k*b"]', 'point = "upper.P", force = [1, 2, 3], axes = "lower"',
+                'point = "lower.M", force = [1, "k", 2]'],
     },
     "couple": {
         PLANE: ['body = "lower", couple = "k - c*b\'"', 'body = "upper", couple = "tau"'],
@@ -45,12 +48,14 @@ EXAMPLES = {
     },
     "spring": {
         PLANE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = "start"',
-                f'{TWO}, stiffness = "k", length = "l", along = [3, 4]', f'{TWO}, stiffness = "k*t", length = "l*t"'],
+                f'{TWO}, stiffness = "k", length = "l", along = [3, 4]', f'{TWO}, stiffness = "k*t", length = "l*t"',
+                f'{SLIDING}, stiffness = "k", length = "l"'],
         SPACE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = 0, along = [1, 2, 2]'],
     },
     "damper": {
-        PLANE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c"', f'{TWO}, damping = "c", along = [3, 4]'],
-        SPACE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c", along = [1, 2, 2]'],
+        PLANE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c"', f'{TWO}, damping = "c", along = [3, 4]',
+                f'{SLIDING}, damping = "c"'],
+        SPACE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c", along = [1, 2, 2]', f'{SLIDING}, damping = "c"'],
     },
     "torsion_spring": {
         PLANE: ['bodies = ["upper", "lower"], stiffness = "k", rest = 0.1', 'body = "lower", stiffness = "k"'],
@@ -106,7 +111,7 @@ joint = { kind = "revolute", angle = "a" }
 mass = "2*m"
 center = ["l/3", 0]
 inertia = "m*l^2"
-points = { P = ["l", "-l/5"], R = [0, "l"] }
+points = { P = ["l", "-l/5"], R = [0, "l"], M = ["l + a", "l*b"], W = ["a", "l*sin(w*t)"] }
 joint = { kind = "revolute", on = "upper.P", angle = "b" }
 [bodies.clock]
 mass = "m"
@@ -126,7 +131,7 @@ joint = { kind = "revolute", axis = [1, 2, 2], angle = "a" }
 mass = "2*m"
 center = ["l/3", 0, "l/7"]
 inertia = ["m*l^2", "m*l^2", "m*l^2"]
-points = { P = ["l", "-l/5", 0] }
+points = { P = ["l", "-l/5", 0], M = ["l + a", "l*b", "l"] }
 joint = { kind = "revolute", on = "upper.P", axis = [0, 3, 4], angle = "b" }
 [bodies.clock]
 mass = "m"

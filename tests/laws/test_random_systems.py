@@ -52,7 +52,8 @@ class Writer:
         kinds = ["revolute", "revolute", "prismatic", "planar", "fixed", "placed"]
         kind = rng.choice(kinds + (["free"] if self.space == "plane" else []))
         turned = f', axis = {axis(rng)}, turned = {{ axis = {axis(rng)}, angle = "pi/{rng.randint(2, 5)}" }}'
-        spatial = turned if self.space == "space" else ""
+        flat = rng.choice(["", ', turned = { angle = "pi/5" }'])
+        spatial = turned if self.space == "space" else flat
         if kind == "revolute":
             angle = self.coordinate(rng.random() < 0.2)
             drive = rng.choice(["", ', torque = "tau - c*' + angle + "'\"", ', stiffness = "k", rest = 0.3, damping = "c"',
@@ -60,7 +61,7 @@ class Writer:
             return f'{{ kind = "revolute", {self.seat()}, angle = "{angle}", point = "P"{spatial}{drive} }}'
         if kind == "prismatic":
             along = axis(rng) if self.space == "space" else [3, 4]
-            turn = turned.replace(turned.split(", turned")[0], "") if self.space == "space" else ""
+            turn = turned.replace(turned.split(", turned")[0], "") if self.space == "space" else flat
             return f'{{ kind = "prismatic", {self.seat(moving=True)}, displacement = "{self.coordinate()}", axis = {along}{turn} }}'
         if kind in ("planar", "free"):
             x, y, angle = (self.coordinate() for _ in range(3))

@@ -1,0 +1,128 @@
+"""What every formulation promises: the same equations of motion, whichever way they are derived."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from laws.test_random_systems import random_model
+from moving import at, equal, state_of
+
+import eomgen
+from eomgen.certificate import accelerations_at
+from eomgen.mechanics import articulated
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.formulations import ALL
+from eomgen.mechanics.maximal import free_body_accelerations
+from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.tree import branches_of
+from eomgen.model.unbuilt import unbuilt
+from eomgen.symbolic.evaluation import NoValue
+
+MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}
+RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]
+
+formulations = pytest.mark.parametrize("formulation", ALL, ids=lambda formulation: formulation.name)
+
+
+@cache
+def system_named(name: str) -> System | None:
+    """A model of models/ (None: a part of it is not built yet)."""
+    model = eomgen.load(MODELS[name])
+    return None if unbuilt(model) else system_of(model)
+
+
+@pytest.fixture(params=sorted(MODELS))
+def system(request) -> System:
+    found = system_named(request.param)
+    if found is None:
+        pytest.skip("a part of the model is not built in this version")
+    return found
+
+
+def accelerations(assembly: Assembly, system: System) -> np.ndarray:
+    """a at the first random state with values."""
+    for seed in range(1, 20):
+        try:
+            return accelerations_at(assembly, state_of(system, seed))
+        except NoValue:
+            continue
+    raise AssertionError("no state with values was found")
+
+
+def close(a: np.ndarray, b: np.ndarray) -> bool:
+    return a == pytest.approx(b, rel=1e-8, abs=1e-8 * (1 + np.abs(b).max(initial=0)))
+
+
+def test_formulations_have_names_of_their_own():
+    """name is what a user types, title what a certificate says."""
+    assert len({formulation.name for formulation in ALL}) == len({formulation.title for formulation in ALL}) == len(ALL)
+
+
+def test_most_models_are_derived():
+    """A model that waits for a later version is the exception: what is skipped here is counted."""
+    waiting = [name for name in MODELS if system_named(name) is None]
+    assert len(waiting) <= 2, waiting
+
+
+@formulations
+def test_every_formulation_gives_the_same_accelerations(formulation, system):
+    """a of M a = forcing + J^T lam, J a + gamma = 0, against those of the first formulation, at a random state."""
+    assert formulation.applies(system)
+    reference = accelerations(ALL[0].assemble(system), system)
+    assert close(accelerations(formulation.assemble(system), system), reference)
+
+
+@formulations
+@pytest.mark.parametrize(("space", "seed"), RANDOM)
+def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulation, space, seed):
+    """As above, for systems that nobody has thought of."""
+    system = system_of(eomgen.loads(random_model(space, seed)))
+    reference = accelerations(ALL[0].assemble(system), system)
+    assert close(accelerations(formulation.assemble(system), system), reference)
+
+
+@formulations
+def test_an_assembly_has_the_shapes_that_it_promises(formulation, system):
+    """N nq x nu; M nu x nu; c, Q, forcing nu; J k x nu; sigma, gamma, phi k."""
+    assembly = formulation.assemble(system)
+    nq, nu, k = len(system.symbols.q), len(system.symbols.u), len(system.ties.closing)
+    assert [len(row) for row in assembly.N] == [nu] * nq and len(assembly.nu) == nq
+    assert [len(row) for row in assembly.M] == [nu] * nu
+    assert [len(row) for row in (assembly.c, assembly.Q, assembly.forcing)] == [nu] * 3
+    assert [len(row) for row in assembly.J] == [nu] * k
+    assert [len(row) for row in (assembly.sigma, assembly.gamma, assembly.phi, assembly.symbols.lam)] == [k] * 4
+
+
+@formulations
+def test_every_formulation_gives_the_same_energies(formulation, system):
+    """T and V are of the system, not of the way to its equations."""
+    first, other = ALL[0].assemble(system), formulation.assemble(system)
+    assert equal((first.T, first.V), (other.T, other.V))
+
+
+def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(system):
+    """a by O(n) elimination = M^-1 (Q - c), where no row closes and every speed belongs to one joint."""
+    branches = branches_of(system.motion)
+    if system.ties.closing or not articulated.applies(system.motion, branches):
+        return
+    a = articulated.accelerations(system.loads, branches)
+    state = state_of(system)
+    assert close(at(a, state), accelerations_at(ALL[0].assemble(system), state))
+
+
+def test_articulated_bodies_apply_to_most_open_chains():
+    """The O(n) way is taken where it can be."""
+    systems = [system_named(name) for name in ("double_pendulum", "chain20", "arm7")]
+    assert all(articulated.applies(s.motion, branches_of(s.motion)) for s in systems if s is not None)
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "arm3", "parallelogram_reactions", "cart_pole"])
+def test_free_bodies_give_the_same_accelerations(name):
+    """One dense system in the accelerations of all bodies, their joint wrenches, a and lam."""
+    system = system_named(name)
+    assert system is not None
+    state = state_of(system)
+    assert close(free_body_accelerations(system, state), accelerations_at(ALL[0].assemble(system), state))
