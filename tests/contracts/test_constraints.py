@@ -22,7 +22,7 @@ EXAMPLES = {
     "pin": {
         PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "cart.P"]',
                 'points = ["first.P", "second.P", "cart.P"]', 'points = ["first.M", "cart.P"]'],
-        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P"], axis = [1, 2, 2]',
+        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P"], axis = [0, 3, 4]',
                 'points = ["first.P", "second.P"], axis = [0, 3, 4]'],
     },
     "support": {

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+import eomgen
 from eomgen.cli import main
 
 GOOD = """eomgen = 1
@@ -251,3 +252,28 @@ def test_a_free_coordinate_that_moves_no_mass_is_refused_where_accelerations_are
     result = checked(tmp_path, text, "simulate")
     assert result.exit_code == 1
     assert "'idle' moves no mass" in result.stderr
+
+
+def test_a_spring_between_points_that_are_one_is_refused():
+    """It has no direction: an honest error that names both points, not a division by zero."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    [parameters]
+    m = 1
+    [coordinates]
+    q = 0
+    [bodies.A]
+    shape = { kind = "rod", mass = "m", length = 1 }
+    joint = { kind = "revolute", angle = "q" }
+    [bodies.B]
+    mass = "m"
+    joint = { kind = "fixed", on = "A.end", angle = 0 }
+    [forces.s]
+    kind = "spring"
+    points = ["A.end", "B.origin"]
+    stiffness = 1
+    length = 0
+    """
+    with pytest.raises(eomgen.DerivationError, match=r"'A\.end' and 'B\.origin' are always at one place"):
+        eomgen.derive(eomgen.loads(text))

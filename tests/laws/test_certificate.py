@@ -9,11 +9,11 @@ import pytest
 
 import eomgen
 from eomgen.certificate import certify
+from eomgen.equations import Equations
 from eomgen.mechanics import inertia, kinematics, recursion, tree
 from eomgen.mechanics.assembly import Assembly
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
-from eomgen.equations import Equations
 from eomgen.symbolic.graph import Scalar, linear_terms
 from eomgen.symbolic.spatial import times
 

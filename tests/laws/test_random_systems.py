@@ -83,7 +83,7 @@ class Writer:
             slide = str([f"l*{self.coordinate()}", "h", "0"][: self.size])  # the hinge slides along its own body
             joint = joint.replace('point = "P"', 'point = "S"')
         self.bodies.append(
-            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()}, S = {slide} }}\njoint = {joint}"
+            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()}, S = {slide}, Z = {[0.37, 0.11, 0.05][: self.size]} }}\njoint = {joint}"
         )
         self.names.append(name)
 
@@ -92,7 +92,7 @@ class Writer:
         body, other = rng.choice(self.names), rng.choice(self.names)
         q = rng.choice([line.split(" ")[0] for line in self.coordinates])
         point = f'"{body}.P"'
-        two = f'points = ["G", {point}]' if body == other else f'points = ["{other}.center", {point}]'
+        two = f'points = ["G", {point}]' if body == other else f'points = ["{other}.Z", {point}]'
         axes = rng.choice(["ground", body])
         components = ", ".join(f'"{e}"' for e in ["k*l*sin(w*t)", f"-c*{q}'", "k*h"][: self.size])
         couple = '"k*l*l"' if self.space == "plane" else '["k*l*l", "c*l", "k"]'

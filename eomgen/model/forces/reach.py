@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from eomgen.errors import DerivationError
 from eomgen.model.forces.load import Load, Place, PointForce, Scalar, Scene, Vector
 from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import dot, minus, times
 
 
@@ -38,6 +40,11 @@ def reach(scene: Scene, points: tuple[str, ...], along: tuple | None = None) -> 
     rate = minus(scene.velocity(ends[1]), scene.velocity(ends[0]))
     if along is None:
         length = sqrt(dot(gap, gap))
+        if is_zero(length):
+            raise DerivationError(
+                f"'{points[0]}' and '{points[1]}' are always at one place: there is no line between them",
+                mend="let the force act between points that part, or give its direction by `along`",
+            )
         direction = tuple(over(x, length) for x in gap)
     else:
         n = scene.vector(along)
