@@ -16,6 +16,7 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
+from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.evaluation import fifty_digits
 from eomgen.symbolic.expressions import parse
 from eomgen.symbolic.graph import Scalar
@@ -240,12 +241,13 @@ def test_inner_forces_sum_to_zero(kind, space, fields):
 
 
 EFFORTS = 'torque = "tau", stiffness = "k", rest = 0.2, damping = "c"'
+TURNED = 'turned = { axis = [0, 1, 0], angle = "pi/4" }'
 PUSHED = EFFORTS.replace("torque", "force")
 JOINTS = [
     (PLANE, f'kind = "revolute", on = "base", at = [1, 2], angle = "b", {EFFORTS}'),
-    (PLANE, f'kind = "prismatic", on = "base", axis = [3, 4], displacement = "b", {PUSHED}'),
-    (SPACE, f'kind = "revolute", on = "base.P", axis = [1, 2, 2], angle = "b - a", point = "P", {EFFORTS}'),
-    (SPACE, f'kind = "prismatic", on = "base", axis = [0, 3, 4], angle = 0.3, displacement = "b", {PUSHED}'),
+    (PLANE, f'kind = "prismatic", on = "base", axis = [3, 4], angle = 0.4, displacement = "b", {PUSHED}'),
+    (SPACE, f'kind = "revolute", on = "base.P", axis = [1, 2, 2], angle = "b - a", point = "P", {TURNED}, {EFFORTS}'),
+    (SPACE, f'kind = "prismatic", on = "base", axis = [0, 3, 4], angle = 0.3, displacement = "b", {TURNED}, {PUSHED}'),
 ]
 
 
@@ -377,6 +379,18 @@ def test_a_force_in_the_axes_of_a_body_turns_with_it(axes):
     assert equal(in_ground_axes(system.motion, load.force, load.axes), turned)
     body, wrench = body_wrench(system.motion, load)
     assert body == "lower" and equal(apply(system.motion.link(body).pose.R, wrench.f), turned)
+
+
+@pytest.mark.parametrize("axes", ["upper", "lower"])
+@pytest.mark.parametrize("space", [PLANE, SPACE])
+def test_a_couple_in_the_axes_of_a_body_turns_with_it(space, axes):
+    """Q_k = (R c) . dw/du_k, R of the body in whose axes the couple is written."""
+    plain = "[1, 2, 3]" if space == SPACE else '"k"'
+    system = system_with("couple", space, f'body = "lower", couple = {plain}, axes = "{axes}"')
+    (load,) = applied(system).loads
+    lower = system.motion.link("lower")
+    power = dot(apply(system.motion.link(axes).pose.R, load.couple), apply(lower.pose.R, lower.twist.w))
+    assert equal(force_row(system.loads, applied(system)), gradient(power, system.symbols.u))
 
 
 @pytest.mark.parametrize("space", [PLANE, SPACE])

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from laws.test_random_systems import random_model
-from moving import at, equal, state_of
+from moving import at, equal, state_of, written
 
 import eomgen
 from eomgen.certificate import accelerations_at
 from eomgen.mechanics import articulated
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import ALL
+from eomgen.mechanics.inertia import armature_energy
 from eomgen.mechanics.maximal import free_body_accelerations
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.tree import branches_of
@@ -82,6 +83,38 @@ def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulat
     system = system_of(eomgen.loads(random_model(space, seed)))
     reference = accelerations(ALL[0].assemble(system), system)
     assert close(accelerations(formulation.assemble(system), system), reference)
+
+
+ROTORS = """
+[parameters]
+m = 1.2
+l = 0.7
+I = 0.3
+[coordinates]
+a = 0.3
+b = 0.5
+r = { motion = "l*t^3" }
+[bodies.arm]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "3*a", armature = "I" }
+[bodies.hand]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "arm.end", angle = "b*a - 2*r", armature = "2*I", damping = 0.1 }
+[bodies.slide]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "prismatic", on = "hand", axis = [3, 4], displacement = "b^2", armature = "m", stiffness = 2 }
+"""
+
+
+@formulations
+def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
+    """T = armature s'^2 / 2 with s = s(q, t): M gets armature D^T D, c gets armature D^T (d/dt s' at a = 0)."""
+    system = written(ROTORS)
+    first, other = ALL[0].assemble(system), formulation.assemble(system)
+    assert equal([*(x for row in other.M for x in row), *other.c], [*(x for row in first.M for x in row), *first.c])
+    rotors = armature_energy(system.motion, system.motion.link("arm"))
+    a_rate = system.symbols.u[0]
+    assert equal((rotors,), (system.symbols.parameters["I"] * 9 * a_rate * a_rate / 2,))
 
 
 @formulations

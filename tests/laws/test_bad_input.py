@@ -268,6 +268,7 @@ def test_a_spring_between_points_that_are_one_is_refused():
     joint = { kind = "revolute", angle = "q" }
     [bodies.B]
     mass = "m"
+    inertia = 0
     joint = { kind = "fixed", on = "A.end", angle = 0 }
     [forces.s]
     kind = "spring"

@@ -168,7 +168,7 @@ acceleration = [0, "-g"]
 def test_a_driven_pivot_acts_through_its_acceleration():
     """l theta'' = - g sin(theta) - s'' cos(theta), s = A sin(w t)."""
     equations = loads(PENDULUM)
-    m, l, g, A, w = p = [1.3, 0.8, 9.81, 0.1, 3.0]
+    _, l, g, A, w = p = [1.3, 0.8, 9.81, 0.1, 3.0]
     t, theta, rate = 0.7, 0.4, 1.1
     dx = equations.rhs("numpy")(t, [A * np.sin(w * t), theta, rate], p)
     pivot = -A * w**2 * np.sin(w * t)

@@ -56,13 +56,14 @@ class Writer:
         spatial = turned if self.space == "space" else flat
         if kind == "revolute":
             angle = self.coordinate(rng.random() < 0.2)
-            drive = rng.choice(["", ', torque = "tau - c*' + angle + "'\"", ', stiffness = "k", rest = 0.3, damping = "c"',
-                                ', armature = "m/10"'])  # fmt: skip
+            spring = ', stiffness = "k", rest = 0.3, damping = "c"'
+            drive = rng.choice(["", f', torque = "tau - c*{angle}\'"', spring, ', armature = "m/10"'])
             return f'{{ kind = "revolute", {self.seat()}, angle = "{angle}", point = "P"{spatial}{drive} }}'
         if kind == "prismatic":
             along = axis(rng) if self.space == "space" else [3, 4]
             turn = turned.replace(turned.split(", turned")[0], "") if self.space == "space" else flat
-            return f'{{ kind = "prismatic", {self.seat(moving=True)}, displacement = "{self.coordinate()}", axis = {along}{turn} }}'
+            where = f'{self.seat(moving=True)}, displacement = "{self.coordinate()}"'
+            return f'{{ kind = "prismatic", {where}, axis = {along}{turn} }}'
         if kind in ("planar", "free"):
             x, y, angle = (self.coordinate() for _ in range(3))
             return f'{{ kind = "{kind}", {self.seat(moving=True)}, x = "{x}", y = "{y}", angle = "{angle}" }}'
@@ -82,8 +83,9 @@ class Writer:
         if 'point = "P"' in joint and "torque" not in joint and "stiffness" not in joint and rng.random() < 0.5:
             slide = str([f"l*{self.coordinate()}", "h", "0"][: self.size])  # the hinge slides along its own body
             joint = joint.replace('point = "P"', 'point = "S"')
+        points = f"P = {self.vector()}, S = {slide}, Z = {[0.37, 0.11, 0.05][: self.size]}"
         self.bodies.append(
-            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ P = {self.vector()}, S = {slide}, Z = {[0.37, 0.11, 0.05][: self.size]} }}\njoint = {joint}"
+            f"[bodies.{name}]\n{mass}\ncenter = {self.vector()}\n{inertia}\npoints = {{ {points} }}\njoint = {joint}"
         )
         self.names.append(name)
 
