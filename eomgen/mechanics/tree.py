@@ -14,7 +14,7 @@ from fractions import Fraction
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, Link, Motion
 from eomgen.symbolic.derivative import symbols_of, tangent
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import (
     IDENTITY,
     ZERO,
@@ -22,10 +22,10 @@ from eomgen.symbolic.spatial import (
     Vector,
     added,
     apply,
+    dot,
     matrix_of,
     minus,
     plus,
-    product,
     times,
     transposed,
     vector_of,
@@ -56,7 +56,7 @@ class Moments:
     def moved(self, p: Vector) -> Moments:
         """About the point that sees the present origin at p: h + m p, J + p h^T + h p^T + m p p^T."""
         g = plus(self.h, times(self.m, p))  # p h^T + h p^T + m p p^T = p h^T + g p^T
-        J = matrix_of((self.J[i][j] + p[i] * self.h[j] + g[i] * p[j] for j in range(3)) for i in range(3))
+        J = matrix_of((self.J[i][j] + (p[i] * self.h[j] + g[i] * p[j]) for j in range(3)) for i in range(3))
         return Moments(self.m, g, J)
 
 
@@ -203,7 +203,23 @@ def _hinge_axis(motion: Motion, link: Link, offset: Vector) -> int | None:
 
 
 def _congruence(R: Matrix, J: Matrix) -> Matrix:
-    """R J R^T for symmetric J, its symmetric half computed once."""
-    half = product(R, J)
-    upper = {(i, j): sum((half[i][k] * R[j][k] for k in range(3)), start=0) for i in range(3) for j in range(i, 3)}
-    return matrix_of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))
+    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which no rotation changes."""
+    last = max(range(3), key=lambda i: (sum(type(x) is Node for x in R[i]), i))
+    first, second = (i for i in range(3) if i != last)
+    half = {i: apply(transposed(J), R[i]) for i in (first, second)}
+    entry = {(i, j): dot(half[i], R[j]) for i, j in ((first, first), (second, second), (first, second))}
+    entry |= {(i, last): dot(half[i], R[last]) for i in (first, second)}
+    entry[last, last] = _rest_of_trace([J[i][i] for i in range(3)], [entry[first, first], entry[second, second]])
+    return matrix_of((entry.get((i, j), entry.get((j, i))) for j in range(3)) for i in range(3))
+
+
+def _rest_of_trace(terms: list[Scalar], known: list[Scalar]) -> Scalar:
+    """The sum of the terms less the known ones; what stands on both sides is left out."""
+    rest: Scalar = 0
+    for x in known:
+        same = next((k for k, term in enumerate(terms) if term is x), None)
+        if same is None:
+            rest = rest - x
+        else:
+            terms.pop(same)
+    return sum(terms, start=rest)

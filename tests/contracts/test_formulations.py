@@ -159,3 +159,43 @@ def test_free_bodies_give_the_same_accelerations(name):
     assert system is not None
     state = state_of(system)
     assert close(free_body_accelerations(system, state), accelerations_at(ALL[0].assemble(system), state))
+
+
+SLOTTED = """
+[parameters]
+m = 1.2
+l = 0.7
+[coordinates]
+a = 0.3
+b = 0.5
+s = 0.2
+[bodies.bar]
+mass = "m"
+inertia = "m*l^2"
+points = { M = ["l + s", "l*sin(t)"] }
+joint = { kind = "revolute", angle = "a" }
+[bodies.cart]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 2], displacement = "b" }
+[bodies.slider]
+shape = { kind = "particle", mass = "2*m" }
+joint = { kind = "prismatic", on = "bar", axis = [1, 0], displacement = "s" }
+[constraints]
+tie = { KIND }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""
+TIES = [
+    'kind = "pin", points = ["bar.M", "cart.center"]',
+    'kind = "support", point = "bar.M", normal = [1, 2]',
+    'kind = "equation", gap = "a*b - s"',
+]
+
+
+@pytest.mark.parametrize("tie", TIES)
+def test_free_bodies_move_alike_under_ties_at_points_that_slide_and_ties_without_bodies(tie):
+    """lam also does work on what no twist sees: the slide of a point in its body, a tie of coordinates."""
+    system = written(SLOTTED.replace("KIND", tie))
+    state = state_of(system)
+    assert close(free_body_accelerations(system, state), accelerations_at(ALL[0].assemble(system), state))
