@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import eomgen
@@ -130,3 +132,10 @@ def test_a_model_without_values_is_counted_all_the_same():
     support = '[constraints.floor]\nkind = "support"\npoint = "coupler.end"\nnormal = [0, 1]\n'
     tree = coordinates(q1=1.0, q2=0.3) + crank("left", "[0, 0]", "q1") + COUPLER + support
     assert eomgen.freedom_of(eomgen.loads(text + tree)).by_rank == 1
+
+
+def test_redundant_loops_are_named_and_leave_the_freedom_that_there_is():
+    """A coupler on four equal cranks: the formula says -1, the rank 1, and two rows follow from the first pin."""
+    found = eomgen.freedom_of(eomgen.load(Path(__file__).parents[1] / "models" / "four_cranks.toml"))
+    assert (found.by_rank, found.by_formula) == (1, -1)
+    assert [(row.tie, row.number) for row in found.redundant] == [("Q", 2), ("R", 2)]

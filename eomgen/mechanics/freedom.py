@@ -7,28 +7,21 @@ By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given m
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from random import Random
-from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
+from eomgen.errors import EomgenError, NotYet
+from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
-from eomgen.mechanics.scope import Scope, scope_of
+from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.model.values import exact_parameters, start_values
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, is_zero
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import is_zero
 
-STEPS = 50  # of Newton's method
-CLOSED = 1e-10  # of a gap, against a size of 1
 DEPENDENT = 1e-7  # what is left of a unit row that the rows before it make up
-SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
 @dataclass(frozen=True)
@@ -136,8 +129,8 @@ def redundant_rows(ties: Ties) -> tuple[Redundant, ...]:
     closing = ties.closing
     if not closing:
         return ()
-    J = np.array(evaluate([x for row in ties.J for x in row], generic_state(ties), FLOAT))
-    J = J.reshape(len(closing), len(ties.motion.scope.symbols.u))
+    entries = evaluate([x for row in ties.J for x in row], generic_state(ties), fifty_digits())
+    J = np.array([float(x) for x in entries]).reshape(len(closing), len(ties.motion.scope.symbols.u))
     found, basis = [], np.zeros((0, J.shape[1]))
     kept: list[tuple[str, np.ndarray]] = []
     for row, line in zip(closing, J, strict=True):
@@ -159,59 +152,3 @@ def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> t
     shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
     names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > 1e-6)
     return tuple(name for name in dict.fromkeys(names) if name != tie)
-
-
-def generic_state(ties: Ties) -> dict[Node, float]:
-    """Numbers for every symbol: near the start, off any special position, with phi = 0.
-
-    Parameters without a value get one. Inputs are as at t = 0.
-
-    Raises:
-        DerivationError: the ties do not close there.
-    """
-    scope, rng = ties.motion.scope, Random(1)
-    model, symbols = scope.model, scope.symbols
-    known = exact_parameters(model)
-    p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
-    q, _ = start_values(model, p)
-    state = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
-    for name, node in symbols.inputs.items():
-        state[node] = evaluate([scope.value(model.inputs[name].value)], state, FLOAT)[0]
-    state |= {node: rng.uniform(-1, 1) for node in symbols.u}
-    for spread in SPREADS:
-        near = {node: q[node.name] + _shift(scope, node, spread, rng) for node in symbols.q}
-        closed = _closed(ties, state | near)
-        if closed is not None:
-            return closed
-    raise _open(ties, known)
-
-
-def _shift(scope: Scope, node: Node, spread: float, rng: Random) -> float:
-    return 0.0 if scope.model.coordinates[node.name].driven else rng.uniform(-spread, spread)
-
-
-def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
-    missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
-    if missing:
-        return MissingValues(missing)
-    names = ", ".join(dict.fromkeys(row.tie for row in ties.closing))
-    return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
-
-
-def _closed(ties: Ties, state: dict[Node, float]) -> dict[Node, float] | None:
-    """The nearest state with phi = 0, by Newton steps of least norm; None where none is near."""
-    scope = ties.motion.scope
-    gaps = [gap for gap in ties.phi if gap is not None]
-    free = [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
-    slopes = [x for row in jacobian(tuple(gaps), free) for x in row] if gaps else []
-    for _ in range(STEPS):
-        values = np.array(evaluate([*gaps, *slopes], state, FLOAT))
-        phi, slope = values[: len(gaps)], values[len(gaps) :].reshape(len(gaps), len(free))
-        if not np.all(np.isfinite(values)):
-            return None
-        if np.max(np.abs(phi), initial=0.0) < CLOSED:
-            return state
-        step = np.linalg.lstsq(slope, -phi, rcond=1e-12)[0]
-        state = state | {q: state[q] + float(d) for q, d in zip(free, step, strict=True)}
-    return None
-

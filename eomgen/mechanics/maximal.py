@@ -98,7 +98,7 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
     for i, j, value in armature_mass(system.motion):
         A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
-    return np.linalg.lstsq(A, right, rcond=1e-13)[0][speeds]
+    return np.linalg.lstsq(A, right, rcond=1e-12)[0][speeds]
 
 
 def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:

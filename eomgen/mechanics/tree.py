@@ -203,7 +203,7 @@ def _hinge_axis(motion: Motion, link: Link, offset: Vector) -> int | None:
 
 
 def _congruence(R: Matrix, J: Matrix) -> Matrix:
-    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which no rotation changes."""
+    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which stays."""
     last = max(range(3), key=lambda i: (sum(type(x) is Node for x in R[i]), i))
     first, second = (i for i in range(3) if i != last)
     half = {i: apply(transposed(J), R[i]) for i in (first, second)}

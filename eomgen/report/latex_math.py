@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from eomgen.report.latex_names import symbol_latex
+from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
-from eomgen.symbolic.layout import SUMS, Factor, Product, factors, is_base, terms
+from eomgen.symbolic.layout import SUMS, Factor, Product, factors, is_base, is_part_of_turn, terms
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
@@ -101,10 +102,11 @@ class Setter:
     def product(self, product: Product) -> Set:
         """|coefficient| * numerator / denominator."""
         c = max(product.coefficient, -product.coefficient)
-        if not product.denominator:
+        if not product.denominator and not is_part_of_turn(product):
             return self._juxtaposed(c, product.numerator)
-        above = self._juxtaposed(c.numerator, product.numerator)
-        below = self._juxtaposed(c.denominator, product.denominator)
+        whole = decimal_of(c) is not None
+        above = self._juxtaposed(c if whole else c.numerator, product.numerator)
+        below = self._juxtaposed(1 if whole else c.denominator, product.denominator)
         return Set(rf"\frac{{{above.tex}}}{{{below.tex}}}", max(above.width, below.width), SUM)
 
     def _juxtaposed(self, c: Number, found: tuple[Factor, ...]) -> Set:
@@ -173,8 +175,11 @@ def _summands(x: Node) -> list[Product]:
 
 
 def _number(c: Number) -> Set:
-    if c.denominator == 1:
-        return Set(str(c), len(str(c)), ATOM if c >= 0 else SUM)
+    decimal = decimal_of(c)
+    if c.denominator == 1 or decimal is not None:
+        digits, power = decimal or (str(c), 0)
+        scale = rf" \cdot 10^{{{power}}}" if power else ""
+        return Set(digits + scale, len(digits) + (4 if power else 0), ATOM if c >= 0 and not power else SUM)
     width = max(len(str(abs(c.numerator))), len(str(c.denominator)))
     sign = "-" if c < 0 else ""
     return Set(rf"{sign}\frac{{{abs(c.numerator)}}}{{{c.denominator}}}", width + 3 * len(sign), SUM)

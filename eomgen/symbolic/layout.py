@@ -149,6 +149,12 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
     return Product(_tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
 
+def is_part_of_turn(product: Product) -> bool:
+    """True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4."""
+    lone = len(product.numerator) == 1 and not product.denominator and product.numerator[0][1] == 1
+    return lone and product.numerator[0][0].op == "pi" and 1 < product.coefficient.denominator < 100
+
+
 def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
     """(factor, exponent) of a product, quotient, whole power or negation; None for a base."""
     if node.op == "mul":

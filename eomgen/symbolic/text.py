@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 
+from eomgen.symbolic.decimals import decimal_of, number_text
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.layout import Factor, Product, factors, is_base, terms
+from eomgen.symbolic.layout import Factor, Product, factors, is_base, is_part_of_turn, terms
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
@@ -25,7 +26,7 @@ def to_text(x: Scalar, names: Mapping[Node, str] | None = None) -> str:
     `with_definitions`.
     """
     if type(x) is not Node:
-        return str(x)
+        return number_text(x)
     names = names or {}
     printed: Printed = {node: (name, ATOM) for node, name in names.items()}
     plans: dict[Node, list[Product]] = {}
@@ -78,12 +79,15 @@ def _product_text(product: Product, printed: Printed) -> tuple[str, int]:
     c = -c if c < 0 else c
     above = [_power_text(factor, printed) for factor in product.numerator]
     below = [_power_text(factor, printed) for factor in product.denominator]
+    plain = c.denominator == 1 or decimal_of(c) is not None
     if not above and not below:
-        return str(c), ATOM if c.denominator == 1 else LOOSE
+        return number_text(c), ATOM if plain else LOOSE
+    if is_part_of_turn(product):
+        return f"{'pi' if c.numerator == 1 else f'{c.numerator}*pi'}/{c.denominator}", LOOSE
     if above:
-        above = above if c == 1 else [str(c), *above]
+        above = above if c == 1 else [number_text(c), *above]
     else:
-        above, below = [str(c.numerator)], below if c.denominator == 1 else [str(c.denominator), *below]
+        above, below = [number_text(c)] if plain else [str(c.numerator)], below if plain else [str(c.denominator), *below]
     if not below and len(above) == 1:
         base, exponent = product.numerator[0]
         return above[0], printed[base][1] if exponent == 1 else POWER
@@ -104,14 +108,14 @@ def _base_text(node: Node, printed: Printed) -> tuple[str, int]:
         return (node.name if node.op == "symbol" else "pi"), ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
-    inside = (printed[a][0] if type(a) is Node else str(a) for a in node.args)
+    inside = (printed[a][0] if type(a) is Node else number_text(a) for a in node.args)
     return f"{node.op}({', '.join(inside)})", ATOM
 
 
 def _tight(a: Scalar, printed: Printed) -> str:
     """The text of a base or exponent, in parentheses unless it is one piece."""
     if not isinstance(a, Node):
-        return str(a) if a.denominator == 1 and a >= 0 else f"({a})"
+        return str(a) if a.denominator == 1 and a >= 0 else f"({number_text(a)})"
     text, looseness = printed[a]
     return text if looseness == ATOM else f"({text})"
 
@@ -121,7 +125,7 @@ def _tight(a: Scalar, printed: Printed) -> str:
 
 def text_size(x: Scalar) -> int:
     """At least the length of to_text(x), at the cost of the graph: nothing is printed."""
-    return _sizes([x])[x] if type(x) is Node else len(str(x))
+    return _sizes([x])[x] if type(x) is Node else len(number_text(x))
 
 
 def _sizes(expressions: Iterable[Scalar]) -> dict[Node, int]:
@@ -134,7 +138,7 @@ def _sizes(expressions: Iterable[Scalar]) -> dict[Node, int]:
 def _size(node: Node, sizes: Mapping[Node, int]) -> int:
     if node.op in ("symbol", "pi"):
         return len(node.name) if node.op == "symbol" else 2
-    inside = sum(sizes[a] if type(a) is Node else len(str(a)) for a in node.args)
+    inside = sum(sizes[a] if type(a) is Node else len(number_text(a)) for a in node.args)
     return inside + {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}.get(
         node.op, len(node.op) + 2 * len(node.args)
     )

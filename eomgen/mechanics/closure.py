@@ -1,0 +1,110 @@
+"""Ties -> states in which the loops close: phi = 0 and J u + sigma = 0, in numbers of 50 digits.
+
+Where loops are redundant the rank of J shows only as well as phi = 0 holds: an error d of the position
+makes redundant rows differ by d. So positions are sought to 1e-28.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError, MissingValues
+from eomgen.mechanics.scope import Scope
+from eomgen.mechanics.ties import Ties
+from eomgen.model.values import exact_parameters, start_values
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+
+STEPS = 60  # of the search
+CLOSED = 1e-28  # of a gap, against a size of 1
+SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
+
+State = dict[Node, Any]
+
+
+def generic_state(ties: Ties, rng: Random | None = None) -> State:
+    """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
+
+    Parameters without a value get one. Driven coordinates and inputs are as at t = 0.
+
+    Raises:
+        MissingValues, DerivationError: the ties do not close there.
+    """
+    rng = rng or Random(1)
+    scope = ties.motion.scope
+    model, symbols = scope.model, scope.symbols
+    known = exact_parameters(model)
+    p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
+    q, _ = start_values(model, p)
+    given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
+    given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
+    state = {node: _number(value) for node, value in given.items()}
+    for name, node in symbols.inputs.items():
+        state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
+    for spread in SPREADS:
+        near = {node: _number(q[node.name] + _shift(scope, node, spread, rng)) for node in symbols.q}
+        closed = _closed(ties, state | near)
+        if closed is not None:
+            return _moving(ties, closed)
+    raise _open(ties, known)
+
+
+def _number(value: float) -> Any:
+    return fifty_digits().number(1) * value
+
+
+def _shift(scope: Scope, node: Node, spread: float, rng: Random) -> float:
+    return 0.0 if scope.model.coordinates[node.name].driven else rng.uniform(-spread, spread)
+
+
+def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
+    missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
+    if missing:
+        return MissingValues(missing)
+    names = ", ".join(dict.fromkeys(row.tie for row in ties.closing))
+    return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
+
+
+def _closed(ties: Ties, state: State) -> State | None:
+    """The nearest state with phi = 0; None where none is near.
+
+    Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
+    also where rows are redundant, and does not leap along directions that only an open loop resists.
+    Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
+    """
+    scope = ties.motion.scope
+    gaps = tuple(gap for gap in ties.phi if gap is not None)
+    free = [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
+    slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
+    try:
+        for _ in range(STEPS):
+            phi = evaluate(gaps, state, fifty_digits())
+            size = max((abs(x) for x in phi), default=0)
+            if size < CLOSED:
+                return state
+            slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
+            damped = np.vstack([slope, min(float(size), 1.0) * np.eye(len(free))])
+            right = np.array([-float(x / size) for x in phi] + [0.0] * len(free))  # phi may be below what floats add
+            step = np.linalg.lstsq(damped, right, rcond=None)[0]
+            state = state | {q: state[q] + size * float(d) for q, d in zip(free, step, strict=True)}
+    except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        return None
+    return None
+
+
+def _moving(ties: Ties, state: State) -> State:
+    """The state with the nearest speeds that satisfy J u + sigma = 0."""
+    u = ties.motion.scope.symbols.u
+    if not ties.closing or not u:
+        return state
+    entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
+    values = [float(x) for x in evaluate(entries, state, fifty_digits())]
+    k = len(ties.closing)
+    J, open_rate = np.reshape(values[:-k], (k, len(u))), np.array(values[-k:])
+    step = np.linalg.lstsq(J, -open_rate, rcond=1e-11)[0]
+    return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
