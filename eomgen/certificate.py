@@ -207,26 +207,27 @@ def real_state(system: System, rng: Random) -> State:
     return state
 
 
-def closed_state(system: System, rng: Random) -> State:
-    """A random real state; where ties close, one in which they do if one is near the start."""
+def closed_state(system: System, rng: Random) -> tuple[State, str]:
+    """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
     state = real_state(system, rng)
     if not system.ties.closing:
-        return state
+        return state, ""
     try:
-        return state | generic_state(system.ties, rng)
-    except (DerivationError, ModelError):  # at an open state the equations still say what a is, if no row is redundant
-        return state
+        return state | generic_state(system.ties, rng), ""
+    except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant
+        return state, f" ({error.what})"
 
 
 def _at_a_state(system: System, name: str, how: str, check: Callable[[State], str]) -> Check:
     """A check at the first random real state where everything has a value; `check` names what differs."""
     rng = Random(7)
     for _ in range(TRIES):
-        state = closed_state(system, rng)
+        state, remark = closed_state(system, rng)
         try:
-            return Check(name, not (wrong := check(state)), how, wrong)
+            wrong = check(state)
         except (NoValue, ZeroDivisionError):
             continue
+        return Check(name, not wrong, how, wrong and wrong + remark)
     return Check(name, False, how, f"no state with values was found in {TRIES} tries")
 
 

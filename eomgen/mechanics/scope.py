@@ -53,8 +53,17 @@ class Scope:
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True))}
 
     def value(self, expression: Expression | None) -> Scalar:
-        """An expression of the model in the symbols (absent: 0)."""
-        return 0 if expression is None else expression.evaluate(self.names)
+        """An expression of the model in the symbols (absent: 0).
+
+        Raises:
+            NotYet: an unknown stands in it.
+        """
+        if expression is None:
+            return 0
+        if self.model.unknowns and (asked := sorted(expression.names & self.model.unknowns.keys())):
+            raise NotYet(f"'{asked[0]}' is an unknown: solving for unknowns comes with a later version",
+                         f"unknowns.{asked[0]}")  # fmt: skip
+        return expression.evaluate(self.names)
 
     def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
         """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""

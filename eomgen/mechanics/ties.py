@@ -17,6 +17,7 @@ from eomgen.mechanics.kinematics import Motion, slide_of
 from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce
+from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.derivative import jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
@@ -85,13 +86,13 @@ def ties_of(motion: Motion) -> Ties:
     """The rows of every constraint of the model.
 
     Raises:
-        NotYet: a kind whose rows this version does not build.
+        NotYet: a kind whose rows this version does not build, friction, contact that can end, a truss.
     """
+    for where, what in unbuilt_ties(motion.scope.model):
+        raise NotYet(f"the rows of '{what}' are not built yet", where)
     scene = SystemScene(motion)
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
-        if not constraint.works:
-            raise NotYet(f"the rows of '{constraint.kind}' are not built yet", f"constraints.{name}")
         for number, tie_row in enumerate(constraint.rows(scene), start=1):
             rows.append(_row(motion, name, number, tie_row))
     return Ties(motion, tuple(rows))

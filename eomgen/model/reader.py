@@ -127,10 +127,13 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
         offset = sum(len(line) + 1 for line in lines[: int(place.group(1)) - 1]) + int(place.group(2)) - 1
     else:
         offset = max(0, len(index.text.rstrip()) - 1) if place is not None else 0
-    return _problem(Finding((), f"not TOML: {what}", _toml_mend(what)), Span(offset, offset + 1), index, name)
+    mend = _toml_mend(what, index.text[offset : offset + 1])
+    return _problem(Finding((), f"not TOML: {what}", mend), Span(offset, offset + 1), index, name)
 
 
-def _toml_mend(what: str) -> str:
+def _toml_mend(what: str, culprit: str) -> str:
+    if culprit.isalpha() and not culprit.isascii():
+        return f'as a key a name with such letters stands in quotes: "{culprit}" = 1'
     if "value" in what.lower():
         return 'an expression stands in quotes: angle = "theta - pi/2"'
     return "see https://toml.io" if "digits" not in what and "deep" not in what else "make it smaller"

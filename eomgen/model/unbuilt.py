@@ -2,6 +2,9 @@
 
 from eomgen.model.parts import Model
 
+CONTACT = ("friction", "unilateral")
+"""Fields of a tie that make it end or resist: without them its rows would give a wrong motion."""
+
 
 def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
     """(where, kind) of every joint, tie, force and table that waits for a later version, in the model's order."""
@@ -21,7 +24,12 @@ def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
 
 def unbuilt_ties(model: Model) -> tuple[tuple[str, str], ...]:
     """Constraints and trusses among them: what cannot be counted in the degrees of freedom."""
-    waiting = [(f"constraints.{name}", tie.kind) for name, tie in model.constraints.items() if not tie.works]
+    waiting = []
+    for name, tie in model.constraints.items():
+        if not tie.works:
+            waiting.append((f"constraints.{name}", tie.kind))
+        else:
+            waiting += [(f"constraints.{name}.{field}", field) for field in CONTACT if getattr(tie, field, None)]
     return (*waiting, *((f"trusses.{name}", "truss") for name in model.trusses))
 
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import elsewhere
-from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, holds_roots, shortened
+from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, shortened, size_in_print
 from eomgen.report.statements import Equation, Formula, Piece, Prose, Statement, Step
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import cancelled, common_factor, readable
+from eomgen.symbolic.normal_form import cancelled, readable
 from eomgen.symbolic.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
@@ -91,16 +91,12 @@ def equations_of(
 
 def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
-    graph = assembly.symbols.graph
     equations = []
     for u, row in zip(assembly.symbols.u, sides, strict=True):
         left, right = reader.read(row.left), reader.read(row.right)
-        if left is None or right is None or text_size(left) + text_size(right) > LONGEST:
+        if left is None or right is None or size_in_print(left, right) > LONGEST:
             return None
-        roots = holds_roots(left) or holds_roots(right)
-        divisor = 1 if roots or (is_zero(left) and is_zero(right)) else common_factor((left, right), WORK)
-        left, right = reader.short((graph.div(left, divisor), graph.div(right, divisor)))
-        equations.append(Equation(u, left, right, divisor))
+        equations.append(Equation(u, *reader.divided(left, right)))
     return equations
 
 

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
-from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.normal_form import TooLarge, normal_form, readable
+from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.layout import SUMS, factors
+from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, readable
+from eomgen.symbolic.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.text import named_parts, text_size
 
 WORK = 2000  # products of terms that are multiplied out for one formula
@@ -18,15 +20,21 @@ NESTED = 400  # characters of a formula that is not multiplied out, in print
 TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
+LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
 PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED = 80  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 8000  # characters of all named sub-expressions together, at most
 
 
 class Reader:
-    """Puts scalars into readable form, each once, with bounded work in all."""
+    """Puts scalars into readable form, each once, with bounded work in all.
 
-    def __init__(self) -> None:
+    Args:
+        full: what is too long to print is printed as it is, and not left out.
+    """
+
+    def __init__(self, *, full: bool = False) -> None:
+        self.full = full
         self._known: dict[Scalar, Scalar | None] = {}
         self._failures = 0
 
@@ -39,15 +47,16 @@ class Reader:
         return self._known[x]
 
     def _read(self, x: Scalar) -> Scalar | None:
-        size = text_size(x)
+        over = rooted((x,), WORK)
+        size = text_size(over.expressions[0])
         if size <= TRIED and self._failures < PATIENCE:
-            short = _written(x)
-            if short is not None and size < text_size(short) and holds_roots(x):
-                short = x  # 1/2*k*(sqrt(...) - l)^2 is better left alone
+            short = _shortest(over)
             if short is not None and text_size(short) <= LONGEST:
-                return short
+                return over.back((short,))[0]
             self._failures += 1
-        return x if size <= NESTED else None
+        if size <= NESTED:
+            return over.back(over.expressions)[0]
+        return x if self.full else None
 
     def shown(self, x: Scalar) -> Scalar | Omitted:
         """x in its readable form, or how large it is."""
@@ -58,18 +67,60 @@ class Reader:
         """Each in its readable form, or as it is where that is too long."""
         return tuple(x if (short := self.read(x)) is None else short for x in scalars)
 
+    def divided(self, left: Scalar, right: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+        """(left / divisor, right / divisor, divisor): both sides without what every term of them holds.
 
-def _written(x: Scalar) -> Scalar | None:
-    """x multiplied out and written shortly; None where that takes too much work."""
+        A number is divided by only where it is small and the equation gets shorter by it.
+        """
+        over = rooted((left, right), WORK)
+        if holds_roots(*over.expressions) or (is_zero(left) and is_zero(right)):
+            return left, right, 1
+        number, product = common_factor(over.expressions, WORK, over.symbols)
+        small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR
+        found = []
+        for divisor in (number * product, product) if small else (product,):
+            graph = next(x.graph for x in (left, right) if type(x) is Node)
+            found.append((*self.short((graph.div(left, divisor), graph.div(right, divisor))), divisor))
+        return min(found, key=lambda each: size_in_print(*each[:2]))
+
+    def as_square(self, x: Scalar) -> Scalar:
+        """A potential k*(a - b)^2/2 with its parentheses, where that is shorter than multiplied out; else x."""
+        product = factors(x)
+        if type(x) is not Node or not any(base.op in SUMS and e == 2 for base, e in product.numerator):
+            return x
+        found: Scalar = product.coefficient
+        for base, e in product.numerator:
+            found = found * x.graph.pow(self.short((base,))[0], e)
+        for base, e in product.denominator:
+            found = found / x.graph.pow(base, e)
+        short = self.read(x)
+        return found if short is None or text_size(found) < text_size(short) else short
+
+
+def _shortest(over: Rooted) -> Scalar | None:
+    """An expression multiplied out and written shortly; None where that takes too much work.
+
+    1/2*k*(r - l)^2 with a root r is left alone where that is shorter.
+    """
+    x = over.expressions[0]
     try:
-        return readable(x, WORK) if len(normal_form(x, WORK).terms) <= WAVES else None
+        if len(normal_form(x, WORK).terms) > WAVES:
+            return None
+        short = readable_over(x, over.symbols, WORK) if over.roots else readable(x, WORK)
     except TooLarge:
         return None
+    left_alone = over.roots or holds_roots(x)
+    return x if left_alone and text_size(x) < text_size(short) else short
 
 
-def holds_roots(x: Scalar) -> bool:
-    """True where x holds functions other than sines and cosines."""
-    return any(node.op not in POLYNOMIAL for node in order((x,)))
+def holds_roots(*expressions: Scalar) -> bool:
+    """True where the expressions hold functions other than sines and cosines."""
+    return any(node.op not in POLYNOMIAL for node in order(expressions))
+
+
+def size_in_print(*expressions: Scalar) -> int:
+    """At least the number of characters, a root of a sum counted as the symbol that it is printed as."""
+    return sum(text_size(x) for x in rooted(expressions, WORK).expressions)
 
 
 def omitted(*expressions: Scalar) -> Omitted:

@@ -18,7 +18,7 @@ from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion, expanded
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.quotient import reduced
-from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, times
+from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, tidy, times
 from eomgen.symbolic.writing import Writer, is_rate
 
 LIMIT = 50_000
@@ -156,24 +156,30 @@ def _not_linear(symbols: Sequence[Node]) -> DerivationError:
     return DerivationError(f"the expression is not linear in {', '.join(symbol.name for symbol in symbols)}")
 
 
-def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT) -> Scalar:
-    """The rational number and the powers of parameters and coordinates that every term of the outputs holds.
+def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT, kept: Sequence[Node] = ()) -> tuple[Number, Scalar]:
+    """(number, product): the rational number and the powers of parameters and coordinates that every term holds.
 
-    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by it leaves no fractions.
-    1 where the limit is reached or there is nothing to divide.
+    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by them leaves no fractions.
+    (1, 1) where the limit is reached or there is nothing to divide.
+
+    Args:
+        kept: symbols that are no part of it.
     """
     try:
         expansion, forms = expanded(outputs, limit)
     except TooLarge:
-        return 1
+        return 1, 1
     together: Terms = {}
     for terms in forms:
         together |= {(monomial, ()): 1 for monomial, _ in terms}
     if not together:
-        return 1
-    common = tuple((atom, e) for atom, e in common_monomial(together) if _is_still(expansion, atom))
+        return 1, 1
+    stays = {symbol.index for symbol in kept}
+    common = tuple(
+        (atom, e) for atom, e in common_monomial(together) if atom not in stays and _is_still(expansion, atom)
+    )
     writer = Writer(expansion)
-    return writer.factored(common, {ONE: writer.content(*forms)})
+    return tidy(writer.content(*forms)), writer.factored(common, {ONE: 1})
 
 
 def _is_still(expansion: Expansion, atom: int) -> bool:
@@ -207,4 +213,5 @@ def _factored(writer: Writer, terms: Terms) -> Scalar:
     """The terms with their common monomial outside: l*(M + m*sin(theta)^2)."""
     common: Monomial = common_monomial(terms)
     inverted, factor = inverse(common)
-    return writer.factored(common, times(terms, {(inverted, ()): Fraction(factor)}))
+    number = writer.content(terms) if len(terms) > 1 else Fraction(1)
+    return tidy(number) * writer.factored(common, times(terms, {(inverted, ()): tidy(Fraction(factor) / number)}))

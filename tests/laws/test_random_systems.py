@@ -28,6 +28,7 @@ class Writer:
         self.bodies: list[str] = []
         self.forces: list[str] = []
         self.names: list[str] = []
+        self.ties: list[str] = []
 
     def vector(self) -> str:
         return "[" + ", ".join(f'"{self.rng.choice(["l", "h", "-l", "0", "2*h"])}"' for _ in range(self.size)) + "]"
@@ -115,28 +116,59 @@ class Writer:
             ]
         self.forces.append(f"f{k} = {{ {rng.choice(kinds)} }}")
 
+    def tie(self, k: int) -> None:
+        """A tie that closes at the start: a hinge or a support where the body stands, or an equation."""
+        rng = self.rng
+        body = rng.choice(self.names)
+        free = dict(line.split(" = ") for line in self.coordinates if "{" not in line)
+        q, r = rng.choice(list(free)), rng.choice(list(free))
+        normal = '[1, "-2"]' if self.space == "plane" else '[2, 1, "-2"]'
+        kinds = [
+            f'kind = "support", point = "{body}.Z", normal = {normal}',
+            f'kind = "equation", gap = "{q} - {free[q]} + l*sin({r} - {free[r]}) - A*t"',
+            f'kind = "equation", rate = "cos({q})*{q}\' + l*{r}\' - A*t"',
+        ]
+        if len(free) > 5:
+            kinds.append(f'kind = "pin", points = ["{body}.Z"]')
+        self.ties.append(f"tie{k} = {{ {rng.choice(kinds)} }}")
+
     def text(self) -> str:
         gravity = ", ".join(['"0"', '"-g"', '"g/5"'][: self.size])
         return "\n".join([
             f'eomgen = 1\nname = "random"\nspace = "{self.space}"',
             "[parameters]", *(f"{p} = {number(self.rng)}" for p in ("m", "I", "l", "h", "g", "k", "c", "A", "w")),
             "[coordinates]", *self.coordinates, '[inputs]\ntau = "A*sin(t)"',
-            "[points]", f"G = {self.vector()}", *self.bodies,
+            "[points]", f"G = {self.vector()}", *self.bodies, "[constraints]", *self.ties,
             "[forces]", f'weight = {{ kind = "gravity", acceleration = [{gravity}] }}', *self.forces,
         ])  # fmt: skip
 
 
-def random_model(space: str, seed: int) -> str:
+def free_coordinates(writer: Writer) -> int:
+    return sum("{" not in line for line in writer.coordinates)
+
+
+def random_model(space: str, seed: int, ties: int = 0) -> str:
     rng = Random(seed)
     writer = Writer(space, rng)
-    while len(writer.names) < 4 or not writer.coordinates:
+    while len(writer.names) < 4 or free_coordinates(writer) < 1 + 4 * ties:
         writer.body()
+    for k in range(ties):
+        writer.tie(k)
     for k in range(3):
         writer.force(k)
     if "tau" not in "".join(writer.bodies + writer.forces):
         q = writer.coordinates[0].split(" ")[0]
         writer.forces.append(f'last = {{ kind = "generalized", coordinate = "{q}", value = "tau" }}')
     return writer.text()
+
+
+@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("space", ["plane", "space"])
+def test_the_certificate_holds_for_random_trees_with_ties(space, seed):
+    """The same with a hinge, a support or an equation that closes a loop."""
+    text = random_model(space, 1000 + seed, ties=1)
+    certificate = certificate_of(text)
+    assert certificate.ok, f"{certificate}\n{text}"
 
 
 def certificate_of(text: str) -> Certificate:
