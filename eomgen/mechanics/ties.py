@@ -12,13 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import NotYet
+from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.kinematics import Motion, slide_of
 from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.symbolic.derivative import jacobian, substituted
+from eomgen.symbolic.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import Wrench, dot
@@ -103,13 +103,22 @@ def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
     if row.pushes:
         direct = sum((_sliding(motion, push) for push in row.pushes if isinstance(push, PointForce)), start=0)
     elif row.rate is not None:
-        direct = row.rate
+        direct = _linear(motion, name, row.rate)
     else:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
     velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
     identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
     return Row(name, number, tuple(wrenches), direct, velocity, row.gap, identical)
+
+
+def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
+    """The row of an equation in the rates, which must be linear in them: J u + sigma = 0."""
+    speeds = motion.scope.symbols.u
+    if speeds and any(depends_on(entry, speeds) for row in jacobian((rate,), speeds) for entry in row):
+        raise DerivationError(f"the rate of '{name}' is not linear in the rates", f"constraints.{name}.rate",
+                              "write it as a sum of rates, each times a function of the coordinates")  # fmt: skip
+    return rate
 
 
 def _sliding(motion: Motion, push: PointForce) -> Scalar:

@@ -14,7 +14,7 @@ from itertools import pairwise
 from eomgen.report.latex_names import symbol_latex
 from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
-from eomgen.symbolic.layout import SUMS, Factor, Product, factors, is_base, is_part_of_turn, terms
+from eomgen.symbolic.layout import SUMS, Factor, Product, is_base, is_part_of_turn, summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
@@ -75,7 +75,7 @@ class Setter:
         if type(x) is not Node:
             return [Product(x, (), ())]
         if x not in self._plans:
-            self._plans[x] = _summands(x)
+            self._plans[x] = summands(x)
         return self._plans[x]
 
     def _needs(self, node: Node) -> list[Node]:
@@ -164,14 +164,6 @@ def width_of(tex: str) -> float:
 def bracketed(inside: Set) -> Set:
     """In parentheses that grow with what they hold."""
     return Set(rf"\left({inside.tex}\right)", inside.width + 2)
-
-
-def _summands(x: Node) -> list[Product]:
-    found = []
-    for c, term in terms(x):
-        product = factors(1 if term is None else term)
-        found.append(Product(c * product.coefficient, product.numerator, product.denominator))
-    return found
 
 
 def _number(c: Number) -> Set:

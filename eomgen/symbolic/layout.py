@@ -56,6 +56,32 @@ def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
     return _lead([(_tidy(c), leaf) for leaf, c in share.items() if c != 0], _tidy(number))
 
 
+def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
+    """x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)."""
+    products = []
+    for c, term in terms(x, named):
+        product = factors(1 if term is None else term, named)
+        products.append(_turned(Product(c * product.coefficient, product.numerator, product.denominator), named))
+    first = next((i for i, product in enumerate(products) if product.coefficient > 0), 0)
+    return [products[first], *products[:first], *products[first + 1 :]]
+
+
+def _turned(product: Product, named: Container[Node]) -> Product:
+    """The product with the sign of a factor turned where it reads better: -(x - 1) is 1 - x, and l/r - 1 too."""
+    for i, (base, exponent) in enumerate(product.numerator):
+        if exponent % 2 and base not in named and base.op == "add" and _is_less_than(base.args[0], 0):
+            rest = base.args[1]
+            if product.coefficient < 0 or (type(rest) is Node and rest.op == "div"):
+                turned = (base.graph.neg(base), exponent)
+                above = (*product.numerator[:i], turned, *product.numerator[i + 1 :])
+                return Product(-product.coefficient, above, product.denominator)
+    return product
+
+
+def _is_less_than(x: Scalar, limit: int) -> bool:
+    return type(x) is not Node and x < limit
+
+
 def _newest_first(node: Node) -> int:
     return -node.index
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.expansion import Expansion
-from eomgen.symbolic.graph import Node, Number, Scalar
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.layout import SUMS
 from eomgen.symbolic.normal_form import readable
 from eomgen.symbolic.terms import (
@@ -28,6 +28,8 @@ from eomgen.symbolic.terms import (
     times,
 )
 from eomgen.symbolic.writing import Writer
+
+LARGEST_FACTOR = 120  # a number that is taken out of a sum, numerator and denominator
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,8 @@ def readable_over(x: Scalar, divisors: Sequence[Node], limit: int) -> Scalar:
     rest = {key: c for key, c in terms.items() if not _below(key[0], atoms)}
     total: Scalar = 0
     for part in _parts(terms, atoms):
-        factor, sum_ = _primitive(part)
-        beside = _multiple(rest, sum_)
+        factor, sum_ = _primitive(writer, part)
+        beside = _beside(rest, sum_)
         rest = plus(rest, times(beside, sum_), -1)
         if writer.leads_with_minus(sum_):
             factor, beside, sum_ = scaled(factor, -1), scaled(beside, -1), scaled(sum_, -1)
@@ -118,30 +120,30 @@ def _parts(terms: Terms, atoms: set[int]) -> list[Terms]:
     return [parts[below] for below in sorted(parts)]
 
 
-def _primitive(terms: Terms) -> tuple[Terms, Terms]:
-    """(factor, sum): the common monomial and the number of the first term, and what is left."""
+def _primitive(writer: Writer, terms: Terms) -> tuple[Terms, Terms]:
+    """(factor, sum): the common monomial, the common number where it is a small one, and what is left."""
     common = common_monomial(terms)
-    first = terms[min(terms)]
-    inverted, factor = inverse(common)
-    rest = times(terms, {(inverted, ()): tidy(factor / Fraction(first))})
-    return {(common, ()): first}, rest
+    number = writer.content(terms)
+    if max(number.numerator, number.denominator) > LARGEST_FACTOR:
+        number = Fraction(1)
+    inverted, share = inverse(common)
+    return {(common, ()): tidy(number)}, times(terms, {(inverted, ()): tidy(share / number)})
 
 
-def _multiple(terms: Terms, sum_: Terms) -> Terms:
-    """The one-term factor whose product with the sum stands among the terms; nothing where there is none."""
-    (monomial, w), c = next(iter(sum_.items()))
-    inverted, factor = inverse(monomial)
-    for (other, v), d in terms.items():
-        if v == w:
-            quotient, share = monomial_product(other, inverted)
-            found: Terms = {(quotient, ()): _ratio(d * share * factor, c)}
-            if all(terms.get(key) == value for key, value in times(found, sum_).items()):
-                return found
-    return {}
-
-
-def _ratio(a: Number, b: Number) -> Number:
-    return tidy(Fraction(a) / Fraction(b))
+def _beside(terms: Terms, sum_: Terms) -> Terms:
+    """The one-term factor whose product with the sum, taken away, shortens the terms most; nothing where none does."""
+    best: Terms = {}
+    shortest = len(terms)
+    for (monomial, w), c in sum_.items():
+        inverted, share = inverse(monomial)
+        for (other, v), d in terms.items():
+            if v == w:
+                quotient, more = monomial_product(other, inverted)
+                found: Terms = {(quotient, ()): tidy(Fraction(d) * share * more / Fraction(c))}
+                left = len(plus(terms, times(found, sum_), -1))
+                if left < shortest:
+                    best, shortest = found, left
+    return best
 
 
 def _taken_out(writer: Writer, beside: Terms, factor: Terms) -> Scalar:

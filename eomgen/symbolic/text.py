@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from eomgen.symbolic.decimals import decimal_of, number_text
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.layout import Factor, Product, factors, is_base, is_part_of_turn, terms
+from eomgen.symbolic.layout import Factor, Product, is_base, is_part_of_turn, summands
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
@@ -37,22 +37,13 @@ def to_text(x: Scalar, names: Mapping[Node, str] | None = None) -> str:
             stack.pop()
             continue
         if node not in plans:
-            plans[node] = [] if is_base(node) else _summands(node, names)
+            plans[node] = [] if is_base(node) else summands(node, names)
         missing = [part for part in _parts(node, plans[node]) if part not in printed]
         if missing:
             stack += missing
         else:
             printed[stack.pop()] = _sum_text(plans[node], printed) if plans[node] else _base_text(node, printed)
     return printed[x][0]
-
-
-def _summands(node: Node, names: Container[Node]) -> list[Product]:
-    """The sum's terms, each with its factors."""
-    products = []
-    for c, term in terms(node, names):
-        product = factors(1 if term is None else term, names)
-        products.append(Product(c * product.coefficient, product.numerator, product.denominator))
-    return products
 
 
 def _parts(node: Node, products: list[Product]) -> list[Node]:
