@@ -140,3 +140,12 @@ def test_expressions_without_any_value_are_an_error(graph, angles):
     root = graph.sqrt(-1 - angles[0] * angles[0])
     with pytest.raises(DerivationError, match="no real state"):
         equal_at_random_states([(root, 2 * root)])
+
+
+def test_a_root_that_exists_only_where_one_symbol_is_largest_finds_a_state(graph, angles):
+    """sqrt(l^2 - x^2 - y^2), the height of a pendulum in Cartesian coordinates; sqrt(-z), of what hangs below"""
+    (x, y), l, z = angles, graph.symbol("l"), graph.symbol("z")
+    height, depth = graph.sqrt(l * l - x * x - y * y), graph.sqrt(-z)
+    for root in (height, depth):
+        assert equal_at_random_states([((root + 1) * x, x * root + x)]).equal
+        assert not equal_at_random_states([(root, root + x / 1000)]).equal

@@ -7,6 +7,7 @@ from itertools import permutations
 import pytest
 from moving import at, equal, rate, state_of, written
 
+import eomgen
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.kinematics import slide_of, velocity_of
@@ -358,3 +359,25 @@ joint = { kind = "placed", orientation = "zxz", angles = ["psi", "theta", "phi"]
     wheel, other = (system.motion.link(name) for name in ("wheel", "other"))
     assert equal([x for row in wheel.pose.R for x in row], [x for row in other.pose.R for x in row])
     assert equal(wheel.twist.w, other.twist.w)
+
+
+def test_a_tie_that_nothing_free_can_close_is_refused_by_name():
+    """A pin of two points that stand apart for good."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    [coordinates]
+    q = 0
+    [bodies.A]
+    shape = { kind = "rod", mass = 1, length = 1 }
+    joint = { kind = "revolute", angle = "q" }
+    [bodies.B]
+    points = { P = [1, 0] }
+    [bodies.C]
+    points = { P = [1, 0.5] }
+    [constraints.apart]
+    kind = "pin"
+    points = ["B.P", "C.P"]
+    """
+    with pytest.raises(eomgen.DerivationError, match="row 2 of 'apart' cannot hold: nothing that is free moves it"):
+        eomgen.derive(eomgen.loads(text))

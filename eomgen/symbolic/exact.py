@@ -28,7 +28,9 @@ from eomgen.symbolic.evaluation import (
 )
 from eomgen.symbolic.graph import Node, Number, Scalar, linear_terms
 
-TRIES = 12  # states to be tried for one with a value
+TRIES = 12  # states of the prime field to be tried for one with a value
+REAL_TRIES = 60
+RANGES = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))  # of the symbols at a real state
 TOLERANCE = Fraction(1, 10**30)  # of a comparison at 50 digits, relative to the larger of the two and 1
 ALGEBRAIC = frozenset("symbol neg add sub mul div".split())
 
@@ -225,16 +227,23 @@ def _at_fifty_digits(flat: Sequence[Scalar], rng: Random, states: int) -> Verdic
 
 
 def _real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:
-    """Values at a random real state: symbols positive (roots of parameters exist), rates of either sign."""
+    """Values at a random real state.
+
+    Symbols are positive (roots of parameters exist), rates of either sign; of one size at first, then each of its own
+    size, so that sqrt(l^2 - x^2) exists, and some of them negative.
+    """
     symbols = [x for x in order(flat) if x.op == "symbol"]
-    for attempt in range(TRIES):
-        low, high = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))[attempt % 3]
-        values = {}
-        for x in symbols:
-            sign = rng.choice((-1, 1)) if x.name.endswith("'") else 1
-            values[x] = arithmetic.number(sign * Fraction(rng.uniform(low, high)))
+    for attempt in range(REAL_TRIES):
+        values = {x: arithmetic.number(_real(x, rng, attempt)) for x in symbols}
         try:
             return evaluate(flat, values, arithmetic)
         except NoValue:
             continue
     raise DerivationError("no real state was found at which the expressions to be compared have values")
+
+
+def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:
+    """A random value of a symbol for the attempt-th real state."""
+    low, high = RANGES[attempt] if attempt < len(RANGES) else rng.choice(RANGES)
+    either = symbol.name.endswith("'") or (attempt > REAL_TRIES // 3 and rng.random() < 0.3)
+    return Fraction(rng.choice((-1, 1)) * rng.uniform(low, high) if either else rng.uniform(low, high))
