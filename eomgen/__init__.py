@@ -1,10 +1,18 @@
 """Equations of motion of mechanical systems: derived, certified, typeset, simulated, compiled.
 
-    model = eomgen.load("pendulum.toml")
-    equations = eomgen.derive(model)
-    eomgen.simulate(model, time=10)
+    model = eomgen.load("pendulum.toml")      # or loads(text), or Model(space="plane", bodies={...}, ...)
+    equations = eomgen.derive(model)          # Equations: M, forcing, J, T, V, ... as sympy; latex(), str()
+    equations.certify().ok                    # Certificate: the proof
+    equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
+    eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
+    eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
+    eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
 
-The names below are imported on first use, so that `import eomgen` costs nothing.
+Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
+and `forces` (eomgen.joints.Revolute). Mistakes are exceptions of the family EomgenError: ModelError holds every problem
+of a model, each with its place and its mend. models/README.md is the reference of the fields.
+
+All names are imported on first use, so that `import eomgen` costs nothing.
 """
 
 from importlib import import_module

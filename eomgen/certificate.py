@@ -18,9 +18,10 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.dense import independent, scaled_condition, solution
 from eomgen.mechanics.formulations import ALL
 from eomgen.mechanics.kinematics import spin_between
-from eomgen.mechanics.maximal import free_body_accelerations
+from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces
 from eomgen.symbolic.derivative import gradient, jacobian, tangent
@@ -32,7 +33,6 @@ from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
 FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
 SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
 DIFFERENCE_TOLERANCE = 1e-18  # of a central difference with a step of 1e-15 at 50 digits
-REDUNDANT = 1e-11  # singular values below which a closing row follows from others
 TRIES = 20
 
 State = dict[Node, Any]
@@ -307,11 +307,13 @@ def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
     right = np.array(values[n * n + k * n :]) * np.array([1] * n + [-1] * k)
     if n == 0:
         return np.zeros(0)
-    if np.linalg.cond(M) > SINGULAR:
+    if scaled_condition(M) > SINGULAR:
         raise NoValue("the mass matrix is singular")
     if k == 0:
         return np.linalg.solve(M, right)
-    return np.linalg.lstsq(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right, rcond=REDUNDANT)[0][:n]
+    bordered = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+    regular = independent(J, smallest=REDUNDANT)
+    return solution(bordered, right, regular=regular, smallest=REDUNDANT)[:n]
 
 
 def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:

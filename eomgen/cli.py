@@ -203,9 +203,10 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
 @click.option("--method", type=click.Choice(["lagrange", "projection"]), default="lagrange", show_default=True)
 @click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
               help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
+@click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @click.option("--no-certify", is_flag=True, help="Make no certificate.")
 def derive(
-    model: str, wants_json: bool, output: str | None, method: str, format_: str | None, no_certify: bool
+    model: str, wants_json: bool, output: str | None, method: str, format_: str | None, full: bool, no_certify: bool
 ) -> int:
     """Derive the equations of motion and certify them."""
     from eomgen.verbs.derive import derive as derived
@@ -214,7 +215,7 @@ def derive(
     wants_json = wants_json or chosen == "json"
     with _reading(model) as declared:
         form = "json" if wants_json else chosen
-        outcome = derived(declared, method=method, format=form, certify=not no_certify)
+        outcome = derived(declared, method=method, format=form, certify=not no_certify, full=full)
     return _deliver(outcome, wants_json, output)
 
 

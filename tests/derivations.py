@@ -76,17 +76,58 @@ kind = "potential"
 energy = "k*exp(-phi)*atan2(phi, 2)/sqrt(1 + theta1^2)^3"
 """
 
+# lengths of springs and their rates stand under roots; one spring's natural length is its length at the start
+SPRINGS = """
+eomgen = 1
+name = "Two pendulums with springs"
+space = "plane"
+[parameters]
+m = 1
+l = 1
+d = { value = 0.5, about = "distance of the pivots" }
+k = 50
+l0 = 0.5
+b = 2
+g = 9.81
+[coordinates]
+alpha = 0.3
+beta = -0.1
+[bodies.first]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", at = [0, 0], point = "start", angle = "alpha - pi/2" }
+[bodies.second]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", at = ["d", 0], point = "start", angle = "beta - pi/2" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[forces.spring]
+kind = "spring"
+points = ["first.center", "second.center"]
+stiffness = "k"
+length = "l0"
+[forces.damper]
+kind = "damper"
+points = ["first.center", "second.center"]
+damping = "b"
+[forces.other]
+kind = "spring"
+points = ["first.end", "second.end"]
+stiffness = "k"
+length = "start"
+"""
+
 
 @cache
 def equations(name: str, method: str = "lagrange") -> Equations:
-    """The equations of a model by its file's stem, or of LOOP."""
+    """The equations of a model by its name; see `model_called`."""
     return derive(model_called(name), method)
 
 
 def model_called(name: str) -> Model:
-    """A model by its file's stem; LOOP; or "chain5", which is long enough to need named sub-expressions."""
-    if name == "loop":
-        return loads(LOOP)
+    """A model by its file's stem; LOOP; SPRINGS; or "chain5", long enough to need named sub-expressions."""
+    if name in ("loop", "springs"):
+        return loads(LOOP if name == "loop" else SPRINGS)
     if name == "chain5":
         return loads(runpy.run_path(str(MODELS / "chain.py"))["chain"](5))
     return load(next(path for path in PATHS if path.stem == name))
@@ -95,7 +136,7 @@ def model_called(name: str) -> Model:
 @cache
 def derivable() -> tuple[str, ...]:
     """The stems of the models that this version derives, and those written here."""
-    found = ["loop", "chain5"]
+    found = ["loop", "springs", "chain5"]
     for path in PATHS:
         try:
             derive(load(path))

@@ -10,7 +10,8 @@ from random_expressions import POINT, on_graph, smooth, trigonometric, values_at
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Graph, collected, linear_terms
+from eomgen.symbolic.functions import function
+from eomgen.symbolic.graph import Graph, Node, collected, linear_terms
 
 
 @pytest.fixture
@@ -176,3 +177,26 @@ def test_a_shared_sum_is_opened_once(graph, x, y):
 def test_collected_puts_like_terms_together(graph, x, y):
     """(x - pi/2) + (y - x) = y - pi/2"""
     assert collected((x - graph.pi / 2) + (y - x)) is y - graph.pi / 2
+
+
+@pytest.mark.parametrize(
+    "operation",
+    [
+        lambda a, b: a - b,
+        lambda a, b: b - a,
+        lambda a, b: a + b,
+        lambda a, b: a / b,
+        lambda a, b: b / a,
+        lambda a, b: a**b,
+        lambda a, b: function("min", a, b),
+        lambda a, b: function("atan2", b, a),
+    ],
+)
+def test_a_constant_meets_an_expression_in_its_graph(operation, x):
+    """Every argument of a node is of its own graph: else the order of index is no order of evaluation."""
+    constant = function("sqrt", 7) - function("sqrt", 5) / 3
+    waiting = [operation(x, constant)]
+    while waiting:
+        node = waiting.pop()
+        assert node.graph is x.graph
+        waiting += [a for a in node.args if type(a) is Node]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,9 @@ from derivations import derivable, equations
 
 from eomgen.pipeline import METHODS
 from eomgen.report import rendered
-from eomgen.report.latex import equations_latex, unit_latex
-from eomgen.report.latex_lines import LINE, pieces, rows_of
+from eomgen.report.derivation import derivation_of
+from eomgen.report.latex import equations_latex, unit_latex, value_latex
+from eomgen.report.latex_lines import LINE, pieces, rows_of, runs_of
 from eomgen.report.latex_math import Setter
 from eomgen.report.latex_names import escaped, notation, symbol_latex
 from eomgen.report.markdown import escaped as escaped_markdown
@@ -85,10 +87,15 @@ def test_documents_are_balanced(name):
 
 
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no LaTeX on this machine")
-@pytest.mark.parametrize("name", ["double_pendulum", "loop", "arm3"])
-def test_a_document_compiles_as_it_stands(name, tmp_path):
-    """pdflatex ends without an error, whatever stands in the user's names and remarks"""
-    (tmp_path / "a.tex").write_text(rendered(equations(name).derivation, "latex"))
+@pytest.mark.parametrize(
+    ("name", "full"),
+    [("double_pendulum", False), ("loop", False), ("arm3", False), ("andrews_squeezer", False), ("arm7", True)],
+)
+def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, full, tmp_path):
+    """pdflatex ends without an error, whatever stands in the user's names and remarks, and no line is too wide"""
+    derived = equations(name)
+    derivation = derivation_of(derived.system, derived.graph, "lagrange", full=full)
+    (tmp_path / "a.tex").write_text(rendered(derivation, "latex"))
     run = subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "a.tex"],
         cwd=tmp_path, capture_output=True, text=True,
@@ -141,7 +148,7 @@ def test_each_operation_is_set_by_its_own_rule(make, expected):
         ("tau1", r"\tau_{1}"),
         ("lambda", r"\lambda"),
         ("lam(B, 1)", r"\lambda_{\mathrm{B},1}"),
-        ("Ixx1", r"\mathrm{Ixx}_{1}"),
+        ("Ixx1", "I_{xx,1}"),
         ("x_1_2", "x_{1,2}"),
         ("θ2'", r"\dot{\theta}_{2}"),
         ("_", r"\mathrm{\_}"),
@@ -178,6 +185,34 @@ def test_a_users_text_is_never_markup():
     assert escaped_markdown("a|b *c* <b> $x$\n# d") == r"a\|b \*c\* \<b\> \$x\$ \# d"
     assert unit_latex("kg*m^2/s^-3") == r"kg\,m$^{2}$/s$^{-3}$"
     assert unit_latex("m/s^2") == "m/s$^{2}$"
+
+
+def test_values_are_set_as_numbers():
+    """-0.5 with a minus sign, 2.2e-06 with a power of ten; an expression as it stands"""
+    assert value_latex("-0.5") == "$-0.5$"
+    assert value_latex("2.2e-06") == r"$2.2 \cdot 10^{-6}$"
+    assert value_latex("50% of l_0") == r"50\% of l\_0"
+    assert value_latex("") == ""
+
+
+def test_numbers_are_set_as_decimals_where_they_are_printed_so():
+    """0.0825 a, a/2, pi/2"""
+    graph = Graph()
+    a, b = graph.symbol("a"), graph.symbol("b")
+    assert tex(a * Fraction(33, 400)) == "0.0825 a"
+    assert tex(a * Fraction(33, 400) / b) == r"\frac{0.0825 a}{b}"
+    assert tex(a * Fraction(529, 625000000)) == r"8.464 \cdot 10^{-7} a"
+    assert tex(a - 3 * graph.pi / 4) == r"a - \frac{3 \pi}{4}"
+
+
+def test_equality_signs_of_neighbours_stand_below_one_another():
+    """narrow left sides share their room; a wide one begins another display"""
+    symbols = names(" ".join(f"x{i}" for i in range(60)))
+    wide = sum(symbols[1:20], start=symbols[0])
+    setter = Setter()
+    runs = runs_of(setter, [(symbols[0], 1), (symbols[0] + symbols[1], 2), (wide, 3), (symbols[0], 4)], 40)
+    assert [[row.startswith("&") for row in run] for run in runs] == [[False, False], [True, True], [False]]
+    assert [len(run) for run in runs_of(setter, [(symbols[0], 1)] * 10, 4)] == [4, 4, 2]
 
 
 def test_long_sums_are_broken_before_their_signs():

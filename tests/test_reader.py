@@ -140,7 +140,7 @@ WRONG = {
     ),
     "a name for two things": (
         "[parameters]\na = 1\n[inputs]\na = 1\n[outputs]\no = 'a'\n",
-        "7:1: 'a' is declared twice: as a parameter and as a input / give one of them another name",
+        "7:1: 'a' is declared twice: as a parameter and as an input / give one of them another name",
     ),
     "a point that the shape has": (
         BODY.format("rod", "mass = 1, length = 1") + "points = { end = [1, 0] }\n",
@@ -209,6 +209,16 @@ WRONG = {
     "a direction of length zero": (
         BODY.format("particle", "mass = 1") + '[constraints.s]\nkind = "support"\npoint = "b.center"\nnormal = [0, 0]\n',
         "9:10: the normal of constraint 's': a direction cannot be zero / give a direction",
+    ),
+    "a direction that parameters make zero": (
+        "[parameters]\na = 0\n"
+        + BODY.format("particle", "mass = 1")
+        + '[constraints.s]\nkind = "support"\npoint = "b.center"\nnormal = ["a", "2*a"]\n',
+        "11:10: the normal of constraint 's': a direction cannot be zero / give a direction",
+    ),
+    "a start that is no number": (
+        "[parameters]\na = 2\n[coordinates]\nq = { start = 'asin(a)' }\n[outputs]\no = 'q'\n",
+        "7:16: the start of coordinate 'q': 'asin' has no value here: math domain error / ",
     ),
     "a space joint in the plane": (
         BODY.format("particle", "mass = 1") + "joint = { kind = 'spherical', orientation = 'zxz', angles = [0, 0, 0] }\n",

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from derivations import LARGE, derivable, equations, read_back, residuals, symbols_named
 
+from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.pipeline import METHODS
 from eomgen.report import ALL, rendered
+from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import symbols_in
 from eomgen.report.notation import MEANINGS, quantities
 from eomgen.report.payload import equations_payload
 from eomgen.report.statements import Derivation, Formula, Name, Partial, Rate, Step
 from eomgen.report.text import WIDTH, broken, formula_text
-from eomgen.symbolic.derivative import gradient
+from eomgen.symbolic.decimals import MOST_DIGITS
+from eomgen.symbolic.derivative import gradient, substituted
 from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import to_text
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -39,13 +43,37 @@ def step(derivation: Derivation, key: str) -> Step:
     return next(step for step in derivation.steps if step.key == key)
 
 
-def printed_equations(name: str, method: str) -> list[tuple[str, str]]:
-    """(left, right) of each equation of motion in the rendered text, continued lines joined."""
-    text = rendered(equations(name, method).derivation, "text")
+def printed_formulas(text: str) -> list[tuple[str, str]]:
+    """(left, right) of each formula of a rendered text that has two sides, continued lines joined."""
+    lines = [line.strip() for line in re.sub(r"\n {8}", " ", text).splitlines() if line.startswith("    ")]
+    return [(line.split(" = ")[0], line.split(" = ")[1]) for line in lines if line.count(" = ") == 1]
+
+
+def printed_equations(text: str) -> list[tuple[str, str]]:
+    """(left, right) of each formula of the step of the equations of motion."""
     section = re.split(r"\n\n\d+\. ", text.split("Equations of motion\n")[1])[0]
-    joined = re.sub(r"\n {8}", " ", section.split("The constraints, differentiated")[0])
-    lines = [line.strip() for line in joined.splitlines() if line.startswith("    ")]
-    return [(left, right) for left, right in (line.split(" = ") for line in lines)]
+    return printed_formulas(section.split("The constraints, differentiated")[0])
+
+
+def printed_definitions(text: str, derived: Equations, derivation: Derivation) -> dict[str, Scalar]:
+    """What the printed names of sub-expressions stand for; each is printed once, before its use."""
+    names = {symbol.name for symbol, _ in derivation.definitions}
+    found: dict[str, Scalar] = {}
+    for left, right in printed_formulas(text):
+        if left in names:
+            assert left not in found
+            found[left] = read_back(right, derived, found)
+    assert list(found) == [symbol.name for symbol, _ in derivation.definitions]
+    assert not names & symbols_named(derived).keys()
+    return found
+
+
+def without_names(derivation: Derivation, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """The scalars with everything that has a name written out."""
+    known: dict[Node, Scalar] = {}
+    for symbol, value in derivation.definitions:
+        known[symbol] = substituted((value,), known)[0]
+    return substituted(scalars, known)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -53,17 +81,32 @@ def printed_equations(name: str, method: str) -> list[tuple[str, str]]:
 def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
     derived = equations(name, method)
-    printed = printed_equations(name, method)
-    named, also = derived.derivation.definitions, {}
-    for (symbol, text), _ in zip(printed, named, strict=False):
-        also[symbol] = read_back(text, derived, also)
-    assert [symbol.name for symbol, _ in named] == list(also)
-    assert len(derived.derivation.equations) == len(derived.graph.symbols.u)
+    assert_printed_equations_are_those_of_motion(derived, derived.derivation)
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_a_full_derivation_of_a_large_model_reads_back_as_its_equations_of_motion(name):
+    """M a + c = Q through all of z1, z2, ..., each printed once, before its use"""
+    derived = equations(name)
+    full = derivation_of(derived.system, derived.graph, "lagrange", full=True)
+    text = rendered(full, "text")
+    assert "too long" not in text
+    assert all(len(line) <= WIDTH for line in text.splitlines())
+    assert_printed_equations_are_those_of_motion(derived, full)
+    energy = next(f for f in step(full, "kinetic_energy").statements[::-1] if isinstance(f, Formula))
+    assert equal_at_random_states([(without_names(full, energy.sides[1:])[0], derived.graph.T)]).equal
+
+
+def assert_printed_equations_are_those_of_motion(derived: Equations, derivation: Derivation) -> None:
+    """divisor (left - right) = M a + c - Q - J^T lam"""
+    text = rendered(derivation, "text")
+    also = printed_definitions(text, derived, derivation)
+    printed = [(left, right) for left, right in printed_equations(text) if left not in also]
+    assert len(derivation.equations) == len(derived.graph.symbols.u)
     pairs = [
         (equation.divisor * (read_back(left, derived, also) - read_back(right, derived, also)), residual)
-        for (left, right), equation, residual
-        in zip(printed[len(named):], derived.derivation.equations, residuals(derived), strict=True)
-    ]  # fmt: skip
+        for (left, right), equation, residual in zip(printed, derivation.equations, residuals(derived), strict=True)
+    ]
     assert equal_at_random_states(pairs).equal
 
 
@@ -97,7 +140,8 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
     formulas = [f for f in step(derived.derivation, "work").statements if isinstance(f, Formula)]
     total = [f.sides[1] for f in formulas if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q"
              and f.sides[0].of == ""]  # fmt: skip
-    pairs = [(read_back(to_text(x), derived), Q) for x, Q in zip(total, derived.graph.Q, strict=True)]
+    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
+    pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, derived.graph.Q, strict=True)]
     assert equal_at_random_states(pairs).equal
 
 
@@ -115,6 +159,7 @@ def test_printed_accelerations_solve_the_printed_equations(name):
         values, scale = [f.sides[1] for f in formulas], 1
     else:
         scale, values = formulas[0].sides[1], [f.sides[1] for f in formulas[1:]]
+    scale, *values = without_names(derived.derivation, (scale, *values))
     rows = [
         (sum((m * x for m, x in zip(row, values, strict=True)), start=0), scale * force)
         for row, force in zip(derived.graph.M, derived.graph.forcing, strict=True)
@@ -191,7 +236,8 @@ def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
         for statement in part.statements:
             assert {symbol.name for symbol in symbols_in(statement)} <= named
             assert {quantity.letter for quantity in quantities(statement)} <= letters
-    assert all(row.meaning for row in derivation.nomenclature)
+    parameters = equations(name, method).parameters
+    assert all(row.meaning or row.symbol.name in parameters for row in derivation.nomenclature)
     assert letters <= MEANINGS.keys()
 
 
@@ -209,7 +255,8 @@ def test_rendering_is_the_same_on_every_run_and_stays_readable(name, format):
 def test_what_is_too_long_to_print_is_said_with_its_size(name):
     """operations, and where to get them"""
     text = rendered(equations(name).derivation, "text")
-    assert re.search(r"The equations take \d{4} operations and are too long to print", text)
+    assert re.search(r"The equations take \d{4} operations and are too long to print here", text)
+    assert "`eomgen derive MODEL --full`" in text
     assert equations(name).derivation.equations == ()
 
 
@@ -234,13 +281,34 @@ def test_a_divisor_that_can_vanish_is_said_to():
 
 
 @pytest.mark.parametrize("name", derivable())
-def test_no_decimal_stands_in_an_exact_formula(name):
-    """a formula of a derivation holds whole numbers and fractions only"""
+def test_decimals_in_formulas_are_exact_and_short(name):
+    """0.0825 stands for 33/400: no float is in a formula, and no number is cut off"""
     for part in equations(name).derivation.steps:
         for statement in part.statements:
             if isinstance(statement, Formula):
                 assert not any(isinstance(side, float) for side in statement.sides)
-                assert not re.search(r"\d\.\d", formula_text(statement))
+                for decimal in re.findall(r"\d+\.\d+", formula_text(statement)):
+                    assert len(decimal.replace(".", "").lstrip("0")) <= MOST_DIGITS
+
+
+def test_equations_with_numbers_for_lengths_are_not_multiplied_by_huge_ones():
+    """0.00018125*m2*beta'' in metres, not 453125*m2*beta'' after a multiplication by 2500000000"""
+    text = rendered(equations("andrews_squeezer").derivation, "text")
+    assert "multiplied by" not in text
+    assert not re.search(r"(?<![\d.])\d{5}", text.split("Equations of motion")[1])
+    assert "    8.464e-7*m1*beta'' + 0.00018125*m2*beta''" in text
+
+
+def test_the_force_of_a_spring_keeps_its_form():
+    """Q = c0*(1 - l0/r1)*..., r1 the length of the spring; a damper pulls with b*v1, v1 the rate of r1"""
+    text = rendered(equations("andrews_squeezer").derivation, "text")
+    assert "    r1 = sqrt(0.0048012554 - 0.00060028*cos(gamma) - 0.0033834*sin(gamma))\n" in text
+    assert "    V(spring) = 1/2*c0*(r1 - l0)^2\n" in text
+    assert "    Q(gamma) = c0*(0.0016917*cos(gamma) - 0.00030014*sin(gamma))*(1 - l0/r1)\n" in text
+    text = rendered(equations("springs").derivation, "text")
+    assert "    Fy(damper 1) = 1/2*l*b*v1*(cos(alpha) - cos(beta))/r1\n" in text
+    assert "(l*sin(alpha - beta) - 2*d*cos(alpha))*(k - k*l0/r1 + b*v1/r1)" in text
+    assert "    V(middle) = 1/2*k2*(x2 - x1)^2\n" in rendered(equations("two_mass_oscillator").derivation, "text")
 
 
 def test_a_letter_that_is_also_a_name_of_the_model_is_told_apart():
@@ -260,7 +328,7 @@ def test_long_equations_are_printed_with_named_parts():
 
 def test_values_are_shown_in_the_units_of_the_user():
     """40 cm, not 0.4 cm"""
-    assert re.search(r"l_max +parameter +cm +40\n", rendered(equations("loop").derivation, "text"))
+    assert re.search(r"l_max +cm +40\n", rendered(equations("loop").derivation, "text"))
 
 
 def test_momenta_by_the_printed_letters_are_partial_derivatives():

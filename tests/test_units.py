@@ -90,6 +90,7 @@ def test_units_of_different_dimensions_do_not_fit(one, other):
     ("text", "what", "column", "mend"),
     [
         ("Nm", "there is no unit 'Nm'", 0, "did you mean 'N*m'?"),
+        ("cmm", "there is no unit 'cmm'", 0, "did you mean 'mm'?"),
         ("m/Kg", "there is no unit 'Kg'", 2, "did you mean 'kg'?"),
         ("sec", "there is no unit 'sec'", 0, "did you mean 's'?"),
         ("furlong", "there is no unit 'furlong'", 0, ""),

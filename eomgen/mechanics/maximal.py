@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.armature import armature_bias, armature_mass
+from eomgen.mechanics.dense import independent, solution
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
@@ -29,6 +30,8 @@ from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import ZERO, Vector, plus, times
+
+REDUNDANT = 1e-11  # singular values below which a closing row follows from others
 
 State = dict[Node, Any]
 
@@ -71,6 +74,8 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
 
     Args:
         state: values of all symbols, at 50 digits.
+    Raises:
+        NoValue: a free coordinate moves no mass at the state.
     """
     numbers = Numbers(system, state)
     links = system.motion.links
@@ -98,7 +103,8 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
     for i, j, value in armature_mass(system.motion):
         A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
-    return np.linalg.lstsq(A, right, rcond=1e-12)[0][speeds]
+    regular = independent(A[multipliers, speeds], smallest=REDUNDANT)
+    return solution(A, right, regular=regular, smallest=REDUNDANT)[speeds]
 
 
 def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.kinematics import Motion, slide_of
 from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.model.constraints.row import TieRow
@@ -119,8 +119,8 @@ def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
     """The row of an equation in the rates, which must be linear in them: J u + sigma = 0."""
     speeds = motion.scope.symbols.u
     if speeds and any(depends_on(entry, speeds) for row in jacobian((rate,), speeds) for entry in row):
-        raise DerivationError(f"the rate of '{name}' is not linear in the rates", f"constraints.{name}.rate",
-                              "write it as a sum of rates, each times a function of the coordinates")  # fmt: skip
+        raise ModelError(f"the rate of '{name}' is not linear in the rates", f"constraints.{name}.rate",
+                         "write it as a sum of rates, each times a function of the coordinates")  # fmt: skip
     return rate
 
 

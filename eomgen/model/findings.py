@@ -77,6 +77,11 @@ TABLES = {
 """The tables of a model that name things, and what one of those is called."""
 
 
+def one_of(table: str) -> str:
+    """A thing that a table names, with its article: "an input"."""
+    return f"{'an' if TABLES[table][0] in 'aeiou' else 'a'} {TABLES[table]}"
+
+
 def whereabouts(path: Path, what: str = "") -> str:
     """A part in words: "the joint of body 'hand'", "parameter 'm'"."""
     if len(path) < 2 or path[0] not in TABLES:

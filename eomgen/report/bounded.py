@@ -10,6 +10,7 @@ from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size
 
 PAGE = 5000  # characters of formulas in one step
+FULL = Code("eomgen derive MODEL --full")
 
 
 def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Side, ...] = ()) -> tuple[Statement, ...]:
@@ -17,7 +18,7 @@ def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Si
     kept: list[Statement] = []
     length, left_out = 0, 0
     for name, x in pairs:
-        shown = reader.shown(x) if length < PAGE else omitted(x)
+        shown = reader.shown(x) if reader.full or length < PAGE else omitted(x)
         if isinstance(shown, Omitted):
             left_out += 1
         else:
@@ -29,12 +30,12 @@ def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Si
 def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:
     number = f"{left_out} more" if kept else "All" if left_out > 1 else "It"
     verb = "are" if left_out > 1 else "is"
-    return (Prose((f"{number} {verb} too long to print.",)),)
+    return (Prose((f"{number} {verb} too long to print here; ", FULL, f" prints {'them' if left_out > 1 else 'it'}.")),)
 
 
 def elsewhere(operations: int) -> Prose:
     """Where to get what is too long to print."""
     return Prose((
-        f"The equations take {operations} operations and are too long to print: ", Code("eomgen derive MODEL --json"),
-        " gives all of them as text, ", Code("eomgen codegen MODEL"), " as code.",
+        f"The equations take {operations} operations and are too long to print here: ", FULL,
+        " prints them with names for their parts, ", Code("eomgen codegen MODEL"), " gives them as code.",
     ))  # fmt: skip

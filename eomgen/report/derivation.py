@@ -10,6 +10,7 @@ from eomgen.mechanics.work import generalized_forces
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, equations_of, multiplier_forces, sides_of
+from eomgen.report.naming import Written, with_parts_named, with_roots_named
 from eomgen.report.notation import notation_step
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
@@ -27,22 +28,27 @@ LAGRANGE_WITH_TIES = Law(
 MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
 
 
-def derivation_of(system: System, assembly: Assembly, method: str) -> Derivation:
+def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool = False) -> Derivation:
     """The derivation of the equations of motion of a system.
 
     By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
     from the one before; by "projection" the balance of momentum of every body is projected on its free motions.
-    What is too long to print is said to be so, with its size.
+    What is too long to print is said to be so, with its size, unless `full`.
 
     Args:
         assembly: the equations that a user gets; printed with named sub-expressions where the method's own are long.
+        full: everything is printed, however long, the long and the repeated parts with names of their own.
     """
-    steps, result = _BY_METHOD[method](system, Reader(), assembly)
-    model = system.scope.model
-    steps = (*setting_steps(system), *steps, *result.steps)
+    reader, model = Reader(full=full), system.scope.model
+    steps, result = _BY_METHOD[method](system, reader, assembly)
+    written = Written((*setting_steps(system), *steps, *result.steps), result.equations, result.definitions)
+    graph, taken = assembly.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
+    written = with_roots_named(written, graph, taken, reader.roots)
+    if full:
+        written = with_parts_named(written, graph, taken, reader.raw)
     return Derivation(
         model.name, model.about or "", model.source or "", model.space, method,
-        (*steps, notation_step(steps, system.scope.names)), result.equations, result.definitions,
+        (*written.steps, notation_step(written.steps, system.scope.names)), written.equations, written.definitions,
     )  # fmt: skip
 
 
@@ -50,7 +56,7 @@ def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple
     energies = body_energies(system.motion)
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
-    forces = reader.short(generalized_forces(system.loads))
+    forces = reader.short_with_symbols(generalized_forces(system.loads))
     steps = (
         motion_steps.positions_step(system, reader),
         motion_steps.velocities_step(system, reader, energies),

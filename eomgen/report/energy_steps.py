@@ -13,7 +13,7 @@ from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, axes, components
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Statement, Step
+from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Side, Statement, Step
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.graph import Scalar, is_zero
 
@@ -79,8 +79,9 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
         statements.append(Prose(("Potentials and virtual work, ", WORK, ":")))
     formulas = [f for force in system.loads.applied for f in _force(system, force)]
     formulas += [f for effort in system.loads.efforts for f in _effort(system, effort)]
+    formulas = [(name, reader.as_square(x) if _is_potential(name) else x) for name, x in formulas]
     statements += page(reader, formulas)
-    if sum(isinstance(name, Name) and name.letter == "V" for name, _ in formulas) > 1:
+    if sum(_is_potential(name) for name, _ in formulas) > 1:
         statements += [Prose(("The potential energy together:",))]
         statements += page(reader, [(V, system.loads.potential_energy)])
     names = moved_coordinates(system)
@@ -88,6 +89,10 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
         statements.append(Prose(("The generalized forces of everything applied:",)))
         statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])
     return Step("work", "Work and generalized forces", tuple(statements))
+
+
+def _is_potential(name: Side) -> bool:
+    return isinstance(name, Name) and name.letter == "V"
 
 
 def _force(system: System, force: Applied) -> list[Pair]:

@@ -8,17 +8,29 @@ from dataclasses import dataclass
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import elsewhere
-from eomgen.report.reading import LONGEST, WORK, Reader, Shortened, free_names, shortened, size_in_print
-from eomgen.report.statements import Equation, Formula, Piece, Prose, Statement, Step
+from eomgen.report.reading import (
+    LARGEST_DIVISOR,
+    LONGEST,
+    NAMED_PART,
+    WORK,
+    Reader,
+    Shortened,
+    free_names,
+    length_in_print,
+    shortened,
+)
+from eomgen.report.setting_steps import moved_coordinates
+from eomgen.report.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step
+from eomgen.symbolic.decimals import number_text
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import cancelled, readable
+from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.layout import factors, summands
+from eomgen.symbolic.normal_form import cancelled, common_factor, readable
 from eomgen.symbolic.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
-NAMED_PART = 160  # characters of a formula in which long parts have names
 QUOTIENT = 200  # characters of a solved acceleration in one line, numerator over denominator
 
 
@@ -71,41 +83,52 @@ def equations_of(
     if not sides:
         return Result((), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),))
     equations = _readable(reader, assembly, sides)
-    definitions: tuple[tuple[Node, Scalar], ...] = ()
-    statements: list[Statement] = [Prose(rule)]
-    if equations is None:
-        found = _named(assembly)
-        if found is None:
-            count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
-            return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
-        equations, definitions = found
-        statements.append(Prose(("In their shortest form, what does not accelerate on the right, with the names",)))
-        statements += [Formula(pair) for pair in definitions]
-    statements += _printed(system, equations)
-    statements += _closing(reader, assembly)
-    steps = [Step("equations", "Equations of motion", tuple(statements))]
-    if not definitions:
-        steps += _solved(system, assembly, equations)
-    return Result(tuple(equations), definitions, tuple(steps))
+    if equations is not None:
+        statements = (Prose(rule), *_printed(system, equations), *_closing(reader, assembly))
+        steps = (Step("equations", "Equations of motion", statements), *_solved(reader, assembly, equations))
+        return Result(tuple(equations), (), steps)
+    found = _whole(reader, assembly) if reader.full else _named(reader, assembly)
+    if found is None:
+        count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
+        return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
+    equations, definitions = found
+    statements = (
+        Prose(rule), Prose(("In their shortest form, what does not accelerate on the right, with names for parts:",)),
+        *map(Formula, definitions), *_printed(system, equations), *_closing(reader, assembly),
+    )  # fmt: skip
+    return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
 def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
     equations = []
     for u, row in zip(assembly.symbols.u, sides, strict=True):
-        left, right = reader.read(row.left), reader.read(row.right)
-        if left is None or right is None or size_in_print(left, right) > LONGEST:
+        left, right = reader.shown(row.left), reader.shown(row.right)
+        if isinstance(left, Omitted) or isinstance(right, Omitted) or text_size(left) + text_size(right) > LONGEST:
             return None
         equations.append(Equation(u, *reader.divided(left, right)))
     return equations
 
 
-def _named(assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
+def _whole(reader: Reader, assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]]:
+    """The shortest form of the equations, no names given yet."""
+    sides = iter(_shortest_sides(reader, assembly))
+    return [Equation(u, next(sides), next(sides)) for u in assembly.symbols.u], ()
+
+
+def _shortest_sides(reader: Reader, assembly: Assembly) -> tuple[Scalar, ...]:
+    """Left and right of M a = forcing + J^T lam, row after row."""
+    rows = sides_of(assembly, assembly.M, [0] * len(assembly.M), assembly.forcing)
+    return reader.with_symbols([x for row in rows for x in (row.left, row.right)])
+
+
+def _named(
+    reader: Reader, assembly: Assembly
+) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
     """The shortest form of the equations with named sub-expressions; None where even that is too long."""
     graph = assembly.symbols.graph
-    sides = sides_of(assembly, assembly.M, [0] * len(assembly.M), assembly.forcing)
     taken = {node.name for node in _symbols(assembly)}
-    found: Shortened | None = shortened(graph, [x for row in sides for x in (row.left, row.right)], NAMED_PART, taken)
+    found: Shortened | None = shortened(graph, _shortest_sides(reader, assembly), NAMED_PART, taken)
     if found is None:
         return None
     texts = iter(found.expressions)
@@ -119,21 +142,24 @@ def _symbols(assembly: Assembly) -> tuple[Node, ...]:
 
 def _printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
     statements: list[Statement] = []
+    coordinates = dict(zip(system.symbols.u, moved_coordinates(system), strict=True))
     for equation in equations:
         if type(equation.divisor) is Node or equation.divisor != 1:
-            statements.append(Prose(("For ", equation.speed, ", ", *_divided(system, equation.divisor), ":")))
+            q = coordinates[equation.speed]
+            statements.append(Prose(("For ", q, ", ", *_divided(system, equation.divisor), ":")))
         statements.append(Formula((equation.left, equation.right)))
     return statements
 
 
 def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
     """By what both sides were divided, and that it must not vanish where it can."""
-    if isinstance(divisor, Node):
-        moving = depends_on(divisor, system.symbols.q)
-        return ("divided by ", divisor, " (where that is not zero)" if moving else "")
-    if divisor.numerator == 1:
-        return (f"multiplied by {divisor.denominator}",)
-    return (f"divided by {divisor}",)
+    number = factors(divisor).coefficient
+    words: tuple[Piece, ...] = (f"multiplied by {number.denominator}",) if number.numerator == 1 != number else ()
+    rest = divisor * number.denominator if words else divisor
+    if not isinstance(rest, Node):
+        return words or (f"divided by {number_text(rest)}",)
+    moving = depends_on(rest, system.symbols.q)
+    return (*words, " and " if words else "", "divided by ", rest, " (where that is not zero)" if moving else "")
 
 
 def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
@@ -147,21 +173,21 @@ def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
     return [Prose((words,)), *(Formula((reader.shown(row), 0)) for row in rows)]
 
 
-def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
+def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
     """The accelerations, where there are few and their formulas short: by Cramer's rule."""
+    a = assembly.symbols.a
     length = sum(text_size(x) for e in equations for x in (e.left, e.right))
     if assembly.J or len(equations) > SOLVED or length > SOLVED_LENGTH:
         return []
-    a = assembly.symbols.a
-    M = [[_coefficient(e.left, x) for x in a] for e in equations]
-    rest = [readable(e.right - _without(e.left, a), WORK) for e in equations]
-    determinant = readable(_determinant(M), WORK)
+    if any(depends_on(root, a) for root in reader.roots.values()):
+        return []
+    determinant, numerators = _by_cramer([_in_whole_numbers(e.left, e.right) for e in equations], a)
     if is_zero(determinant):
         return []
-    numerators = [readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))]
-    quotients = [cancelled(assembly.symbols.graph.div(x, determinant), WORK) for x in numerators]
-    if all(text_size(x) <= QUOTIENT for x in quotients):
-        return [Step("solved", "Accelerations", tuple(Formula(pair) for pair in zip(a, quotients, strict=True)))]
+    quotients = [_quotient(reader, assembly.symbols.graph, x, determinant) for x in numerators]
+    apart = len(summands(determinant)) == 1  # each equation has its own acceleration
+    if all(length_in_print(x) <= (LONGEST if apart else QUOTIENT) for x in quotients):
+        return [Step("solved", "Accelerations", tuple(map(Formula, zip(a, quotients, strict=True))))]
     if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:
         return []
     taken = {node.name for node in _symbols(assembly)}
@@ -170,6 +196,30 @@ def _solved(system: System, assembly: Assembly, equations: Sequence[Equation]) -
     formulas += [Formula((symbol * x, n)) for x, n in zip(a, numerators, strict=True)]
     words = Prose(("By Cramer's rule, with the determinant of the equations",))
     return [Step("solved", "Accelerations", (words, *formulas))]
+
+
+def _quotient(reader: Reader, graph: Graph, above: Scalar, below: Scalar) -> Scalar:
+    """above / below in its shorter form: as one quotient without common factors, or as a sum."""
+    one = cancelled(graph.div(above, below), WORK)
+    several = reader.shown(one) if reader.roots else one
+    return one if isinstance(several, Omitted) or length_in_print(one) <= length_in_print(several) else several
+
+
+def _in_whole_numbers(left: Scalar, right: Scalar) -> tuple[Scalar, Scalar]:
+    """Both sides multiplied so that no fractions are left in them, where that number is small."""
+    number, _ = common_factor((left, right), WORK)
+    if number.denominator > LARGEST_DIVISOR:
+        return left, right
+    return number.denominator * left, number.denominator * right
+
+
+def _by_cramer(sides: Sequence[tuple[Scalar, Scalar]], a: Sequence[Node]) -> tuple[Scalar, list[Scalar]]:
+    """(determinant, numerators) of left = right, which is linear in a."""
+    M = [[_coefficient(left, x) for x in a] for left, _ in sides]
+    rest = [readable(right - _without(left, a), WORK) for left, right in sides]
+    return readable(_determinant(M), WORK), [
+        readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))
+    ]
 
 
 def _coefficient(x: Scalar, a: Node) -> Scalar:

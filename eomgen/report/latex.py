@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from eomgen.report.latex_lines import aligned, rows_of
+from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
 from eomgen.report.latex_names import escaped, notation, upright
 from eomgen.report.statements import (
@@ -29,18 +29,22 @@ from eomgen.symbolic.graph import Node, Scalar
 
 name = "latex"
 
-PREAMBLE = r"""\documentclass{article}
+PREAMBLE = r"""\documentclass[fleqn]{article}
 \usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
 \usepackage{amsmath}
 \usepackage{longtable}
 \usepackage[margin=25mm]{geometry}
 \setlength{\parindent}{0pt}
+\setlength{\parskip}{2pt}
+\setlength{\mathindent}{1em}
+\setlength{\jot}{4pt}
 \setlength{\LTleft}{0pt}
 \setlength{\LTright}{\fill}
 \allowdisplaybreaks
 """
-BLOCK = 8  # rows of one aligned block, which no page break can divide
+BLOCK = 12  # rows of one display in Markdown
+RUN = 40  # rows of one display in a document, which is divided at the end of a page
 LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
     "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
@@ -99,11 +103,13 @@ def render(derivation: Derivation) -> str:
 def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
     """Paragraphs, displays and tables; formulas that follow one another are aligned together."""
     blocks: list[str] = []
-    for group in grouped(statements):
+    groups = grouped(statements)
+    for group, after in zip(groups, [*groups[1:], None], strict=True):
         if isinstance(group, list):
-            blocks += ["\\[\n" + block + "\n\\]" for block in display_blocks(setter, group)]
-        elif isinstance(group, Prose):
-            blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + "\n")
+            blocks += [_display(rows) for rows in runs_of(setter, _sides(setter, group), RUN)]
+        elif isinstance(group, Prose):  # a display belongs to the paragraph before it
+            end = "" if isinstance(after, list) else "\n"
+            blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + end)
         else:
             blocks.append(_table(setter, group))
     return blocks
@@ -124,13 +130,16 @@ def grouped(statements: Sequence[Statement]) -> list[Prose | Table | list[Formul
 
 def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
     """The formulas in aligned blocks of a few rows each."""
-    blocks: list[list[str]] = [[]]
-    for formula in formulas:
-        rows = rows_of(setter, [_side(setter, side) for side in formula.sides])
-        if blocks[-1] and len(blocks[-1]) + len(rows) > BLOCK:
-            blocks.append([])
-        blocks[-1] += rows
-    return [aligned(rows) for rows in blocks if rows]
+    return [aligned(rows) for rows in runs_of(setter, _sides(setter, formulas), BLOCK)]
+
+
+def _display(rows: list[str]) -> str:
+    """Rows that may be divided by the end of a page."""
+    return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
+
+
+def _sides(setter: Setter, formulas: Sequence[Formula]) -> list[list[Set | Scalar]]:
+    return [[_side(setter, side) for side in formula.sides] for formula in formulas]
 
 
 def equations_latex(derivation: Derivation) -> str:
@@ -140,8 +149,10 @@ def equations_latex(derivation: Derivation) -> str:
     formulas += [Formula((equation.left, equation.right)) for equation in derivation.equations]
     if not formulas:
         return r"$$\text{The equations are too long to print.}$$"
-    rows = [row for formula in formulas for row in rows_of(setter, [_side(setter, side) for side in formula.sides])]
-    return f"$${aligned(rows)}$$"
+    sides = _sides(setter, formulas)
+    leads = [lead_of(setter, each) for each in sides]
+    lead = max(leads) if all(leads) else 0.0
+    return f"$${aligned([row for each in sides for row in rows_of(setter, each, lead)])}$$"
 
 
 def piece_latex(setter: Setter, piece: Piece, escape) -> str:
@@ -203,11 +214,22 @@ def unit_latex(unit: str) -> str:
     return "".join(f"$^{{{piece}}}$" if k % 2 else escaped(piece).replace("*", r"\,") for k, piece in enumerate(pieces))
 
 
+def value_latex(value: str) -> str:
+    """A value: -0.5 and 2.2e-06 as numbers, what else it may be as it is."""
+    number = re.fullmatch(r"(-?\d+(?:\.\d+)?)(?:e([-+]\d+))?", value)
+    if number is None:
+        return escaped(value)
+    return f"${number[1]}" + (rf" \cdot 10^{{{int(number[2])}}}$" if number[2] else "$")
+
+
 def _table(setter: Setter, table: Table) -> str:
-    """A table that may go over pages."""
-    head = " & ".join(escaped(cell) for cell in table.head)
-    lines = [r"\begin{longtable}{@{}lp{85mm}ll@{}}", head + r" \\ \hline \endhead"]
+    """A table that may go over pages, without its empty columns."""
+    kept = table.columns
+    alignment = "".join(r"p{85mm}" if k == 1 else "l" for k in kept)
+    head = " & ".join(escaped(table.head[k]) for k in kept)
+    lines = [rf"\begin{{longtable}}{{@{{}}{alignment}@{{}}}}", head + r" \\ \hline \noalign{\vskip 3pt} \endhead"]
     for row in table.rows:
-        words = (escaped(row.meaning), unit_latex(row.unit), escaped(row.value))
-        lines.append(" & ".join((f"${side_latex(setter, row.symbol)}$", *words)) + r" \\")
+        symbol = f"${side_latex(setter, row.symbol)}$"
+        cells = (symbol, escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
+        lines.append(" & ".join(cells[k] for k in kept) + r" \\")
     return "\n".join([*lines, r"\end{longtable}"])

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import groupby
+
 from eomgen.report.latex_math import FUNCTIONS, Set, Setter, is_sum
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.layout import Product
 
-LINE = 90.0  # characters
+LINE = 87.0  # characters
 NARROW = 24.0  # a left side that stands before the alignment
 
 
@@ -15,38 +18,80 @@ def aligned(rows: list[str]) -> str:
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
 
-def rows_of(setter: Setter, sides: list[Set | Scalar]) -> list[str]:
+def runs_of(setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest: int) -> list[list[str]]:
+    """The rows of the formulas, in runs of about `longest` rows; the equality signs of a run stand below one another.
+
+    A formula whose left side is too wide for that begins another run.
+
+    Args:
+        formulas: the sides of each, what is set already, or scalars.
+    """
+    runs: list[list[str]] = []
+    leads: list[float] = []
+    for lead, sides in _with_leads(setter, formulas):
+        rows = rows_of(setter, sides, lead)
+        if not runs or leads[-1] != lead or len(runs[-1]) + len(rows) > longest:
+            runs.append([])
+            leads.append(lead)
+        runs[-1] += rows
+    return runs
+
+
+def _with_leads(
+    setter: Setter, formulas: Sequence[Sequence[Set | Scalar]]
+) -> list[tuple[float, Sequence[Set | Scalar]]]:
+    """(room on the left, sides): neighbours share the room; 0 where the left side is too wide."""
+    own = [lead_of(setter, sides) for sides in formulas]
+    found = []
+    for is_narrow, group in groupby(range(len(own)), key=lambda i: own[i] > 0):
+        indices = list(group)
+        widest = max(own[i] for i in indices) if is_narrow else 0.0
+        found += [(widest, formulas[i]) for i in indices]
+    return found
+
+
+def lead_of(setter: Setter, sides: Sequence[Set | Scalar]) -> float:
+    """The width of the left side; 0 where it is too wide to stand before the equality sign of a run."""
+    width = _set(setter, sides[0]).width
+    return width if width <= NARROW and len(sides) > 1 else 0.0
+
+
+def rows_of(setter: Setter, sides: Sequence[Set | Scalar], lead: float | None = None) -> list[str]:
     """The rows of one formula: its sides joined by equality signs.
 
     Args:
         sides: what is set already, or scalars.
+        lead: the room for the left side, 0 for none before the alignment; by its own width where none is given.
     """
-    first = _set(setter, sides[0])
-    if first.width <= NARROW and len(sides) > 1:
-        rows, begin, room = [], f"{first.tex} &", LINE - first.width
-        line, width = begin + "=", 0.0
-        for number, side in enumerate(sides[1:]):
-            whole = _set(setter, side)
-            if number and width + whole.width <= room:
-                line, width = f"{line} = {whole.tex}", width + whole.width + 3
-                continue
-            if number:
-                rows.append(line)
-                line = "&="
-            parts = pieces(setter, side, room)
-            filled = _filled(parts, room)
-            line = f"{line} {filled[0]}"
-            for part in filled[1:]:
-                rows.append(line)
-                line = rf"&\quad {part}"
-            width = whole.width
-        return [*rows, line]
+    lead = lead_of(setter, sides) if lead is None else lead
+    if lead:
+        return _rows_after(setter, sides, LINE - lead)
     parts = pieces(setter, sides[0], LINE)
     for side in sides[1:]:
         head, *rest = pieces(setter, side, LINE)
         parts += [Set(f"= {head.tex}", head.width + 3), *rest]
     filled = _filled(parts, LINE)
     return [f"& {filled[0]}", *(rf"&\quad {part}" for part in filled[1:])]
+
+
+def _rows_after(setter: Setter, sides: Sequence[Set | Scalar], room: float) -> list[str]:
+    """left &= right, the right in as many rows as it needs."""
+    rows, line, width = [], f"{_set(setter, sides[0]).tex} &=", 0.0
+    for number, side in enumerate(sides[1:]):
+        whole = _set(setter, side)
+        if number and width + whole.width <= room:
+            line, width = f"{line} = {whole.tex}", width + whole.width + 3
+            continue
+        if number:
+            rows.append(line)
+            line = "&="
+        filled = _filled(pieces(setter, side, room), room)
+        line = f"{line} {filled[0]}"
+        for part in filled[1:]:
+            rows.append(line)
+            line = rf"&\quad {part}"
+        width = whole.width
+    return [*rows, line]
 
 
 def _set(setter: Setter, side: Set | Scalar) -> Set:

@@ -171,7 +171,7 @@ def _number(c: Number) -> Set:
     if c.denominator == 1 or decimal is not None:
         digits, power = decimal or (str(c), 0)
         scale = rf" \cdot 10^{{{power}}}" if power else ""
-        return Set(digits + scale, len(digits) + (4 if power else 0), ATOM if c >= 0 and not power else SUM)
+        return Set(digits + scale, len(digits) + (5 if power else 0), ATOM if c >= 0 and not power else SUM)
     width = max(len(str(abs(c.numerator))), len(str(c.denominator)))
     sign = "-" if c < 0 else ""
     return Set(rf"{sign}\frac{{{abs(c.numerator)}}}{{{c.denominator}}}", width + 3 * len(sign), SUM)

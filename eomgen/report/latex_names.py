@@ -21,6 +21,7 @@ SPECIAL = {
     "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
     "²": r"\textsuperscript{2}", "³": r"\textsuperscript{3}", "µ": r"$\mu$", "°": r"$^{\circ}$", "·": r"$\cdot$",
 }  # fmt: skip
+_COMPONENT = re.compile(r"(?P<letter>[IJFcprvw])(?P<axes>[xyz]{1,2})(?P<number>\d*)")  # Ixx1, cy2, Fz
 _NAME = re.compile(r"(?P<letters>[^\W\d_]+?)(?P<rest>[\d_].*)?")
 _MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
 
@@ -75,7 +76,10 @@ def _greek_out(text: str) -> str:
 
 
 def _parts(bare: str) -> tuple[str, str]:
-    """theta1 -> (theta, 1); k_max -> (k, \\mathrm{max}); x_1_2 -> (x, 1,2)."""
+    """theta1 -> (theta, 1); k_max -> (k, \\mathrm{max}); x_1_2 -> (x, 1,2); Ixx1 -> (I, xx,1)."""
+    component = _COMPONENT.fullmatch(bare)
+    if component:
+        return component["letter"], ",".join(filter(None, (component["axes"], component["number"])))
     match = _NAME.fullmatch(bare)
     if match is None:
         return bare, ""

@@ -53,9 +53,10 @@ def _piece(setter: Setter, piece: Piece) -> str:
 
 
 def _table(setter: Setter, table: Table) -> str:
-    """A table with all four columns."""
-    lines = ["| " + " | ".join(table.head) + " |", "|---|---|---|---|"]
+    """A table without its empty columns."""
+    kept = table.columns
+    lines = ["| " + " | ".join(table.head[k] for k in kept) + " |", "|" + "---|" * len(kept)]
     for row in table.rows:
         cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
-        lines.append("| " + " | ".join(cells) + " |")
+        lines.append("| " + " | ".join(cells[k] for k in kept) + " |")
     return "\n".join(lines)

@@ -34,17 +34,20 @@ class Derived(Protocol):
     def derivation(self) -> Derivation: ...
 
 
-def equations_payload(equations: Derived, certificate: dict[str, Any] | None = None) -> dict[str, Any]:
+def equations_payload(
+    equations: Derived, certificate: dict[str, Any] | None = None, derivation: Derivation | None = None
+) -> dict[str, Any]:
     """The equations of motion as plain data, ready for JSON.
 
     Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
-    would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each before
-    its use.
+    would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each
+    before its use.
 
     Args:
         certificate: as its `as_dict` gives it; None where none was made.
+        derivation: whose steps are carried; the equations' own where none is given.
     """
-    system, assembly, derivation = equations.system, equations.graph, equations.derivation
+    system, assembly, derivation = equations.system, equations.graph, derivation or equations.derivation
     symbols = assembly.symbols
     fields = _fields(system, assembly)
     definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(assembly))

@@ -10,9 +10,9 @@ from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.layout import SUMS, factors
-from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, readable
+from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form
 from eomgen.symbolic.roots import Rooted, readable_over, rooted
-from eomgen.symbolic.text import named_parts, text_size
+from eomgen.symbolic.text import named_parts, text_size, to_text
 
 WORK = 2000  # products of terms that are multiplied out for one formula
 LONGEST = 1500  # characters of one formula in print
@@ -22,6 +22,7 @@ WAVES = 100  # terms of a normal form that are written shortly; more of them tak
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
 PATIENCE = 60  # formulas that did not become short, before no more are tried
+NAMED_PART = 160  # characters of a formula in which long parts have names
 NAMED = 80  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 8000  # characters of all named sub-expressions together, at most
 
@@ -35,82 +36,100 @@ class Reader:
 
     def __init__(self, *, full: bool = False) -> None:
         self.full = full
+        self.raw: set[Scalar] = set()  # what is too long to print whole
+        self.roots: dict[Node, Scalar] = {}  # what the symbols in `shown` stand for
         self._known: dict[Scalar, Scalar | None] = {}
         self._failures = 0
 
-    def read(self, x: Scalar) -> Scalar | None:
-        """x in its readable form; None where it is too long to print."""
+    def _read(self, x: Scalar) -> Scalar | None:
+        """x in its readable form, a symbol for each root of a sum; None where it is too long to print."""
         if x not in self._known:
-            short = self._known[x] = self._read(x)
+            short = self._known[x] = self._shortened(*self.with_symbols((x,)))
             if short is not None:
                 self._known[short] = short
         return self._known[x]
 
-    def _read(self, x: Scalar) -> Scalar | None:
-        over = rooted((x,), WORK)
-        size = text_size(over.expressions[0])
+    def _shortened(self, x: Scalar) -> Scalar | None:
+        size = text_size(x)
         if size <= TRIED and self._failures < PATIENCE:
-            short = _shortest(over)
+            short = self._shortest(x)
             if short is not None and text_size(short) <= LONGEST:
-                return over.back((short,))[0]
+                return short
             self._failures += 1
         if size <= NESTED:
-            return over.back(over.expressions)[0]
+            return x
+        self.raw.add(x)
         return x if self.full else None
 
+    def _shortest(self, x: Scalar) -> Scalar | None:
+        """x multiplied out and written shortly; None where that takes too much work.
+
+        1/2*k*(r - l)^2 with a root r is left alone where that is shorter.
+        """
+        held = [symbol for symbol in order((x,)) if symbol in self.roots]
+        try:
+            if len(normal_form(x, WORK).terms) > WAVES:
+                return None
+            short = readable_over(x, held, WORK)
+        except TooLarge:
+            return None
+        left_alone = held or holds_roots(x)
+        return x if left_alone and length_in_print(x) < length_in_print(short) else short
+
+    def whole(self, x: Scalar) -> Scalar:
+        """x with the roots that its symbols stand for."""
+        return Rooted((), tuple(self.roots.items())).back((x,))[0]
+
+    def with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """The scalars as they are, but with a symbol for each root of a sum."""
+        over = rooted(scalars, WORK)
+        self.roots |= dict(over.roots)
+        return over.expressions
+
     def shown(self, x: Scalar) -> Scalar | Omitted:
-        """x in its readable form, or how large it is."""
-        short = self.read(x)
+        """x in its readable form with a symbol for each root of a sum, or how large it is."""
+        short = self._read(x)
         return omitted(x) if short is None else short
+
+    def short_with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """Each as shown, or as it is where that is too long."""
+        return tuple(x if (short := self._read(x)) is None else short for x in scalars)
 
     def short(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Each in its readable form, or as it is where that is too long."""
-        return tuple(x if (short := self.read(x)) is None else short for x in scalars)
+        return tuple(map(self.whole, self.short_with_symbols(scalars)))
 
     def divided(self, left: Scalar, right: Scalar) -> tuple[Scalar, Scalar, Scalar]:
-        """(left / divisor, right / divisor, divisor): both sides without what every term of them holds.
+        """(left / divisor, right / divisor, divisor), all as shown: both sides without what every term of them holds.
 
         A number is divided by only where it is small and the equation gets shorter by it.
         """
-        over = rooted((left, right), WORK)
-        if holds_roots(*over.expressions) or (is_zero(left) and is_zero(right)):
+        if holds_roots(left, right) or (is_zero(left) and is_zero(right)):
             return left, right, 1
-        number, product = common_factor(over.expressions, WORK, over.symbols)
+        graph = next(x.graph for x in (left, right) if type(x) is Node)
+        number, product = common_factor((left, right), WORK, tuple(self.roots))
         small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR
-        found = []
+        found: list[tuple[Scalar, Scalar, Scalar]] = []
         for divisor in (number * product, product) if small else (product,):
-            graph = next(x.graph for x in (left, right) if type(x) is Node)
-            found.append((*self.short((graph.div(left, divisor), graph.div(right, divisor))), divisor))
-        return min(found, key=lambda each: size_in_print(*each[:2]))
+            over = self.short_with_symbols((graph.div(left, divisor), graph.div(right, divisor)))
+            found.append((over[0], over[1], divisor))
+        return min(found, key=lambda each: length_in_print(*each[:2]))
 
     def as_square(self, x: Scalar) -> Scalar:
         """A potential k*(a - b)^2/2 with its parentheses, where that is shorter than multiplied out; else x."""
-        product = factors(x)
+        product = factors(self.with_symbols((x,))[0])
         if type(x) is not Node or not any(base.op in SUMS and e == 2 for base, e in product.numerator):
             return x
         found: Scalar = product.coefficient
         for base, e in product.numerator:
-            found = found * x.graph.pow(self.short((base,))[0], e)
+            found = found * x.graph.pow(self.shown(base), e) if e == 2 else found * x.graph.pow(base, e)
         for base, e in product.denominator:
-            found = found / x.graph.pow(base, e)
-        short = self.read(x)
-        return found if short is None or text_size(found) < text_size(short) else short
-
-
-def _shortest(over: Rooted) -> Scalar | None:
-    """An expression multiplied out and written shortly; None where that takes too much work.
-
-    1/2*k*(r - l)^2 with a root r is left alone where that is shorter.
-    """
-    x = over.expressions[0]
-    try:
-        if len(normal_form(x, WORK).terms) > WAVES:
-            return None
-        short = readable_over(x, over.symbols, WORK) if over.roots else readable(x, WORK)
-    except TooLarge:
-        return None
-    left_alone = over.roots or holds_roots(x)
-    return x if left_alone and text_size(x) < text_size(short) else short
+            found = x.graph.div(found, x.graph.pow(base, e))
+        short = self._read(x)
+        if short is not None and length_in_print(short) <= length_in_print(found):
+            return x
+        self._known[found] = found
+        return found
 
 
 def holds_roots(*expressions: Scalar) -> bool:
@@ -118,9 +137,9 @@ def holds_roots(*expressions: Scalar) -> bool:
     return any(node.op not in POLYNOMIAL for node in order(expressions))
 
 
-def size_in_print(*expressions: Scalar) -> int:
-    """At least the number of characters, a root of a sum counted as the symbol that it is printed as."""
-    return sum(text_size(x) for x in rooted(expressions, WORK).expressions)
+def length_in_print(*expressions: Scalar) -> int:
+    """The number of characters; about that where it is large."""
+    return sum(len(to_text(x)) if text_size(x) <= 4 * LONGEST else text_size(x) for x in expressions)
 
 
 def omitted(*expressions: Scalar) -> Omitted:

@@ -39,10 +39,10 @@ def _data(system: System) -> Step:
     rows = []
     for name, symbol in symbols.parameters.items():
         part = model.parameters[name]
-        rows.append(Meaning(symbol, part.about or "parameter", _unit(part), _in_unit(values.get(name), part)))
+        rows.append(Meaning(symbol, part.about or "", _unit(part), _in_unit(values.get(name), part)))
     statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [Prose(("No parameters.",))]
     inputs = tuple(
-        Meaning(symbol, model.inputs[name].about or "input, a known function of time", _unit(model.inputs[name]),
+        Meaning(symbol, model.inputs[name].about or "a known function of time", _unit(model.inputs[name]),
                 model.inputs[name].value.text)
         for name, symbol in symbols.inputs.items()
     )  # fmt: skip

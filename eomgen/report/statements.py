@@ -98,7 +98,7 @@ class Meaning:
 
     Args:
         symbol: a symbol of the formulas, or a quantity.
-        meaning: in words.
+        meaning: in words, "" where nothing is known.
         unit: "" for a plain number.
         value: as text, "" where it has none.
     """
@@ -115,6 +115,12 @@ class Table:
 
     head: tuple[str, str, str, str]
     rows: tuple[Meaning, ...]
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """The columns in which something stands; the first one always."""
+        cells = [(True, row.meaning, row.unit, row.value) for row in self.rows]
+        return tuple(k for k in range(4) if any(row[k] for row in cells))
 
 
 Statement = Prose | Formula | Table

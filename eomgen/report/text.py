@@ -99,12 +99,14 @@ def _name_text(quantity: Name) -> str:
 def _table_lines(table: Table) -> list[str]:
     """Columns as wide as what stands in them; the meaning is wrapped."""
     rows = [tuple(table.head), *(_cells(row) for row in table.rows)]
-    kept = [k for k in range(4) if k == 1 or any(row[k] for row in rows[1:])]
+    kept = table.columns
     widths = {k: max(len(row[k]) for row in rows) for k in kept}
-    widths[1] = max(20, min(widths[1], WIDTH - len(INDENT) - sum(widths[k] + 2 for k in kept if k != 1)))
+    most = max(20, WIDTH - len(INDENT) - sum(widths[k] + 2 for k in kept if k != 1))
+    if 1 in widths:
+        widths[1] = max(20, min(widths[1], most))
     lines: list[str] = []
     for row in rows:
-        meaning = textwrap.wrap(row[1], widths[1]) or [""]
+        meaning = textwrap.wrap(row[1], most) or [""]
         for number, part in enumerate(meaning):
             cells = [part if k == 1 else row[k] if number == 0 else "" for k in kept]
             line = "  ".join(cell.ljust(widths[k]) for k, cell in zip(kept, cells, strict=True))

@@ -70,7 +70,7 @@ class Graph:
             return -exact(a)
         if a.op == "neg":
             return a.args[0]
-        return self.held("neg", (a,))
+        return a.graph.held("neg", (a,))  # a constant stays one until it is combined
 
     def add(self, a: Scalar, b: Scalar) -> Scalar:
         if type(a) is not Node:

@@ -78,7 +78,8 @@ def _product_text(product: Product, printed: Printed) -> tuple[str, int]:
     if above:
         above = above if c == 1 else [number_text(c), *above]
     else:
-        above, below = [number_text(c)] if plain else [str(c.numerator)], below if plain else [str(c.denominator), *below]
+        above = [number_text(c) if plain else str(c.numerator)]
+        below = below if plain else [str(c.denominator), *below]
     if not below and len(above) == 1:
         base, exponent = product.numerator[0]
         return above[0], printed[base][1] if exponent == 1 else POWER

@@ -197,7 +197,8 @@ def _power_of(piece: re.Match[str]) -> int:
 
 def _nearest(name: str) -> str:
     same = [known for known in UNITS if known.lower() == name.lower()]
-    product = [f"{name[:i]}*{name[i:]}" for i in range(1, len(name)) if name[:i] in UNITS and name[i:] in UNITS]
+    halves = [(name[:i], name[i:]) for i in range(1, len(name)) if name[:i] in UNITS and name[i:] in UNITS]
+    product = [f"{a}*{b}" for a, b in halves if UNITS[a]._exponents() != UNITS[b]._exponents()]  # cmm is not cm*m
     spoken = [_SPOKEN[name.lower()]] if name.lower() in _SPOKEN else []
     near = spoken or same or product or difflib.get_close_matches(name, UNITS, n=1, cutoff=0.5)
     return f"did you mean '{near[0]}'?" if near else ""

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from eomgen import pipeline
 from eomgen.model.parts import Model
+from eomgen.report import rendered
+from eomgen.report.derivation import derivation_of
 from eomgen.report.payload import equations_payload
 from eomgen.verbs.outcome import Outcome
 
 
-def derive(model: Model, *, method: str, format: str, certify: bool) -> Outcome:
-    """The derivation, and its certificate."""
+def derive(model: Model, *, method: str, format: str, certify: bool, full: bool = False) -> Outcome:
+    """The derivation, and its certificate.
+
+    Args:
+        full: everything is printed, however long.
+    """
     equations = pipeline.derive(model, method)
+    derivation = derivation_of(equations.system, equations.graph, method, full=full)
     certificate = equations.certify() if certify else None
     proof = "" if certificate is None else str(certificate)
     failed = "" if certificate is None or certificate.ok else "the certificate FAILS: do not trust this result"
     if format == "json":
         checks = None if certificate is None else certificate.as_dict()
-        return Outcome("", equations_payload(equations, checks), failed)
-    text = equations.render(format)
+        return Outcome("", equations_payload(equations, checks, derivation), failed)
+    text = rendered(derivation, format)
     return Outcome(_with_proof(text, proof, failed, format), {}, failed)
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from eomgen.model.checks.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
-from eomgen.model.findings import TABLES, Finding
+from eomgen.model.findings import Finding, one_of
 from eomgen.symbolic.expressions import is_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
@@ -40,7 +40,7 @@ def _objects(catalog: Catalog) -> Iterator[Finding]:
 
 
 def _no_name(table: str, name: str, made_of: str) -> Finding:
-    return Finding((table, name), f"'{name}' cannot name a {TABLES[table]}", f"a name is made of {made_of}", key=True)
+    return Finding((table, name), f"'{name}' cannot name {one_of(table)}", f"a name is made of {made_of}", key=True)
 
 
 def _points(catalog: Catalog) -> Iterator[Finding]:
@@ -65,6 +65,6 @@ def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Finding]:
     for table in tables:
         for name in catalog.table(table):
             if name in first:
-                what = f"'{name}' is declared twice: as a {TABLES[first[name]]} and as a {TABLES[table]}"
+                what = f"'{name}' is declared twice: as {one_of(first[name])} and as {one_of(table)}"
                 yield Finding((table, name), what, "give one of them another name", key=True)
             first.setdefault(name, table)

@@ -20,9 +20,11 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
     for leaf, expression in catalog.expressions:
+        yield from _worth(leaf, expression, values)
         sign = getattr(leaf.rule, "sign", "")
         if sign:
             yield from _sign(leaf, expression, number_of(expression, values))
+    yield from _directions(catalog, values)
     yield from _positive(catalog, values)
     yield from _inertias(catalog, values)
 
@@ -39,6 +41,17 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterat
         yield Finding(path, what, error.mend, error.column, error.length)
 
 
+def _worth(leaf: Leaf, expression: Expression, values: dict[str, Number]) -> Iterator[Finding]:
+    """An expression of parameters that has no value, such as asin(2); a parameter's own is told above."""
+    elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
+    if elsewhere or not expression.names <= values.keys():
+        return
+    try:
+        expression.evaluate(values)
+    except ExpressionError as error:
+        yield Finding(leaf.path, f"{whereabouts(leaf.path)}: {error.what}", error.mend, error.column, error.length)
+
+
 def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
     if number is None or number > 0 or (number == 0 and leaf.rule.sign == "nonnegative"):
         return
@@ -48,6 +61,16 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
     worth = f"{told} = {float(number):g}" if expression.literal is None else told
     where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
     yield Finding(leaf.path, f"'{key}' in {where} is {what}: {worth}")
+
+
+def _directions(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding]:
+    """A direction that its parameters make zero (one of literal zeros is told where vectors are checked)."""
+    for leaf in catalog.leaves:
+        if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
+            continue
+        named = any(component.literal is None for component in leaf.value)
+        if named and all(number_of(component, values) == 0 for component in leaf.value):
+            yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
 
 
 def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:

@@ -1,0 +1,53 @@
+"""Linear systems of numbers -> solutions, where rows and columns have units of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eomgen.symbolic.evaluation import NoValue
+
+SWEEPS = 8  # of scaling; each takes the square root of what is left
+
+
+def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
+    """A x = right: by elimination, whose error knows no units; where A is not regular, the least squares' x.
+
+    Args:
+        regular: whether A is (an x of least squares mixes units: milligrams beside tonnes would count as 0).
+        smallest: singular values of the scaled A below this part of the largest count as 0.
+    Raises:
+        NoValue: A was called regular and is not.
+    """
+    scaled, rows, columns = _balanced(A)
+    if not regular:
+        return columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0]
+    try:
+        return columns * np.linalg.solve(scaled, rows * right)
+    except np.linalg.LinAlgError as error:
+        raise NoValue("the equations of motion are singular") from error
+
+
+def independent(J: np.ndarray, *, smallest: float) -> bool:
+    """Whether no row of J follows from the others."""
+    return len(J) == 0 or int(np.linalg.matrix_rank(_balanced(J)[0], tol=smallest)) == len(J)
+
+
+def scaled_condition(M: np.ndarray) -> float:
+    """Condition number of M_ij / sqrt(M_ii M_jj): that of a mass matrix whatever the units of its coordinates."""
+    scale = _roots(abs(np.diagonal(M)))
+    return float(np.linalg.cond(M / np.outer(scale, scale)))
+
+
+def _balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(D A E, D, E) with the largest entry of every row and column of D A E near 1. Source: D. Ruiz, RAL-TR-2001-034."""
+    rows, columns = np.ones(A.shape[0]), np.ones(A.shape[1])
+    for _ in range(SWEEPS):
+        size = abs(A * rows[:, None] * columns)
+        rows = rows / _roots(size.max(axis=1, initial=0))
+        columns = columns / _roots(size.max(axis=0, initial=0))
+    return A * rows[:, None] * columns, rows, columns
+
+
+def _roots(sizes: np.ndarray) -> np.ndarray:
+    """Square roots; 1 for what is zero."""
+    return np.sqrt(np.where(sizes > 0, sizes, 1))

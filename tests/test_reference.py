@@ -1,0 +1,169 @@
+"""The user's reference (models/README.md) and README.md: every example in them works, and nothing is left out."""
+
+from __future__ import annotations
+
+import doctest
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import eomgen
+from eomgen.model import constraints, forces, joints, shapes
+from eomgen.model.checks.outputs import FUNCTIONS
+from eomgen.model.part import slots_of
+from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
+from eomgen.symbolic.functions import NAMES
+from eomgen.symbolic.units import UNITS
+
+ROOT = Path(__file__).parent.parent
+REFERENCE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMON = {"shape": {"mass"}, "joint": {"on", "at", "point", "turned"}, "constraint": set(), "force": set()}
+ROOMS = {"shape": shapes.ALL, "joint": joints.ALL, "constraint": constraints.ALL, "force": forces.ALL}
+
+
+def blocks(text: str, language: str) -> list[str]:
+    """The code blocks of a page in one language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+EXAMPLES = blocks(REFERENCE, "toml") + blocks(README, "toml")
+WHOLE = [example for example in EXAMPLES if example.startswith("eomgen = 1")]
+PIECES = [example for example in EXAMPLES if not example.startswith("eomgen = 1")]
+
+
+def first_table(piece: str) -> str:
+    """The name of the first table of a piece."""
+    return piece.split("[")[1].split("]")[0]
+
+
+def whole_with(piece: str) -> Model:
+    """The page's model with a piece added, key by key of each named part; every coordinate counts as used."""
+    space = "space" if piece.startswith("# in space") else "plane"
+    tables = next(raw for raw in map(tomllib.loads, WHOLE) if raw["space"] == space)
+    for table, entries in tomllib.loads(piece).items():
+        old = tables.setdefault(table, {})
+        for name, entry in entries.items():
+            both = isinstance(entry, dict) and isinstance(old.get(name), dict)
+            old[name] = {**old[name], **entry} if both else entry
+    tables.setdefault("outputs", {})["used"] = " + ".join(tables["coordinates"])
+    return eomgen.Model(**{key: value for key, value in tables.items() if key != "eomgen"})
+
+
+def row_of(kind: str, after: str) -> list[str]:
+    """The cells of the table row of a kind, under a heading."""
+    section = REFERENCE.split(f"\n## {after}\n")[1].split("\n## ")[0]
+    rows = [line.strip("|").split(" | ") for line in section.splitlines() if line.startswith(f"| `{kind}` |")]
+    assert len(rows) == 1, f"{kind} has {len(rows)} rows under {after}"
+    return [cell.strip() for cell in rows[0]]
+
+
+@pytest.mark.parametrize("text", WHOLE, ids=lambda text: re.search('name = "(.*?)"', text)[1])
+def test_a_whole_model_of_the_pages_derives_and_is_certified(text):
+    """Every ```toml block that begins with `eomgen = 1`."""
+    assert eomgen.derive(eomgen.loads(text)).certify().ok
+
+
+@pytest.mark.parametrize("piece", [p for p in PIECES if "# later" not in p], ids=first_table)
+def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
+    """Every other ```toml block, added to the model of the page."""
+    model = whole_with(piece)
+    assert eomgen.derive(model).M is not None
+    assert {name: a.message for name, a in eomgen.solve(model).items() if a.message} == {}
+
+
+@pytest.mark.parametrize("piece", [p for p in PIECES if "# later" in p], ids=first_table)
+def test_what_the_reference_puts_off_is_refused_by_name(piece):
+    """Blocks that begin with `# later` load, and end in a message: no answer is better than a wrong one."""
+    model = whole_with(piece)
+    if "outputs" in tomllib.loads(piece):
+        messages = [a.message for name, a in eomgen.solve(model).items() if name in tomllib.loads(piece)["outputs"]]
+        assert all("later version" in message for message in messages)
+    else:
+        with pytest.raises(eomgen.NotYet):
+            eomgen.derive(model)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"speeds": {"w": "theta'"}},
+        {"trusses": {"T": {"nodes": {"a": [0, 0], "b": [1, 0]}, "members": ["a-b"]}}},
+        {"unknowns": {"F": "a force"}, "forces": {"f": {"kind": "force", "point": "arm.end", "force": ["F", 0]}}},
+        {"constraints": {"s": {"kind": "support", "point": "arm.end", "normal": [0, 1], "unilateral": True}}},
+        {"constraints": {"s": {"kind": "link", "points": ["O", "arm.end"]}}},
+        {"bodies": {"b": {"mass": 1, "parts": [{"kind": "disc", "radius": 1}]}}},
+        {"coordinates": {"theta": {"dependent": True}}},
+    ],
+    ids=lambda more: "-".join(more),
+)
+def test_tables_and_fields_of_later_versions_are_never_ignored(more):
+    """What a model says and this version cannot do ends in NotYet, not in the equations of another system."""
+    model = {key: value for key, value in tomllib.loads(WHOLE[0]).items() if key != "eomgen"}
+    merged = {**model, **{key: {**model.get(key, {}), **value} for key, value in more.items()}}
+    with pytest.raises(eomgen.NotYet):
+        eomgen.derive(eomgen.Model(**merged))
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_reference_names_every_kind_with_exactly_its_fields(room):
+    """| `kind` | its fields | ...: a kind or a field that is new, or gone, must be written down."""
+    for member in ROOMS[room]:
+        fields = set(re.findall(r"`(\w+)`", row_of(member.kind, f"{room.capitalize()}s")[1]))
+        assert fields == {slot.key for slot in slots_of(member)} - COMMON[room], member.kind
+
+
+@pytest.mark.parametrize("room", ["joint", "constraint", "force"])
+def test_the_reference_says_which_kinds_are_derived(room):
+    """The column "derived" is `later` for the kinds that do not work, and only for them."""
+    for member in ROOMS[room]:
+        assert (row_of(member.kind, f"{room.capitalize()}s")[2] != "later") == member.works, member.kind
+
+
+@pytest.mark.parametrize("part", [Parameter, Coordinate, Body, Output, Model], ids=lambda part: part.__name__)
+def test_the_reference_names_every_field_of_the_tables(part):
+    """Each key of the part stands in the reference as `key` or `[key]`."""
+    missing = [s.key for s in slots_of(part) if f"`{s.key}`" not in REFERENCE and f"[{s.key}" not in REFERENCE]
+    assert missing == []
+
+
+def test_the_reference_names_every_function_and_unit():
+    """The functions of expressions and of outputs, and the names of units, word by word."""
+    words = set(re.findall(r"[\wµμ°]+", REFERENCE))
+    assert {*NAMES, *FUNCTIONS} <= words
+    assert set(UNITS) - words <= {"μm", "μs"}  # the other code point of the same letter
+
+
+def test_the_python_session_of_the_reference_runs_as_it_stands(monkeypatch):
+    """Every ```python block of the reference, as one doctest session."""
+    monkeypatch.chdir(ROOT)
+    session = "\n".join(blocks(REFERENCE, "python"))
+    test = doctest.DocTestParser().get_doctest(session, {}, "models/README.md", "models/README.md", 0)
+    told: list[str] = []
+    outcome = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=told.append)
+    assert outcome.attempted > 10
+    assert outcome.failed == 0, "".join(told)
+
+
+def test_the_python_of_the_readme_runs_as_it_stands(monkeypatch):
+    """Every ```python block of README.md, one after the other; what it asserts holds."""
+    monkeypatch.chdir(ROOT)
+    namespace: dict[str, Any] = {}
+    for block in blocks(README, "python"):
+        exec(compile(block, "README.md", "exec"), namespace)
+    assert namespace["equations"].M.shape == (2, 2)
+
+
+@pytest.mark.parametrize("page", [README, REFERENCE], ids=["README.md", "models/README.md"])
+def test_links_inside_the_repository_lead_somewhere(page):
+    """[text](path) is a file, [text](#heading) a heading of the page."""
+    folder = ROOT if page is README else ROOT / "models"
+    words = [re.sub(r"[^\w\- ]", "", heading) for heading in re.findall(r"^#+ (.*)$", page, re.MULTILINE)]
+    headings = {heading.strip().lower().replace(" ", "-") for heading in words}
+    for target in re.findall(r"\]\(([^)]+)\)", page):
+        path, _, anchor = target.partition("#")
+        if not path.startswith("http"):
+            assert (folder / path).exists() if path else anchor in headings, target
