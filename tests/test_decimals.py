@@ -37,7 +37,8 @@ def test_a_number_is_a_decimal_where_that_is_short_and_its_fraction_is_not(numbe
     assert number_text(number) == text
 
 
-decimals = st.builds(lambda digits, places: Fraction(digits, 10**places), st.integers(-(10**8), 10**8), st.integers(0, 12))
+digits, places = st.integers(-(10**8), 10**8), st.integers(0, 12)
+decimals = st.builds(lambda numerator, place: Fraction(numerator, 10**place), digits, places)
 
 
 @given(st.fractions() | decimals)

@@ -39,7 +39,10 @@ def scaled_condition(M: np.ndarray) -> float:
 
 
 def _balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(D A E, D, E) with the largest entry of every row and column of D A E near 1. Source: D. Ruiz, RAL-TR-2001-034."""
+    """(D A E, D, E) with the largest entry of every row and column of D A E near 1.
+
+    Source: D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms, RAL-TR-2001-034.
+    """
     rows, columns = np.ones(A.shape[0]), np.ones(A.shape[1])
     for _ in range(SWEEPS):
         size = abs(A * rows[:, None] * columns)

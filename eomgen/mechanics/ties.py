@@ -110,8 +110,8 @@ def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
     velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
     identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
     if not identical and not depends_on(velocity, motion.scope.symbols.u):
-        raise DerivationError(f"row {number} of '{name}' cannot hold: nothing that is free moves it",
-                              f"constraints.{name}", "put its points where they meet, or give the bodies more freedom")  # fmt: skip
+        what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
+        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}", f"constraints.{name}", mend)
     return Row(name, number, tuple(wrenches), direct, velocity, row.gap, identical)
 
 

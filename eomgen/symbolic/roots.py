@@ -185,7 +185,7 @@ def _beside(terms: Terms, sum_: Terms, number: Number) -> Terms:
     best: Terms = {}
     shortest = (False, len(terms))
     for monomial, ratio in _ratios(terms, sum_):
-        equal: Number = abs(number) if ratio > 0 else -abs(number)
+        equal = number if (number > 0) == (ratio > 0) else -number
         for other, c in ((False, equal), (True, ratio)):
             found: Terms = {(monomial, ()): c}
             left = len(plus(terms, times(found, sum_), -1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 from eomgen.errors import RunFailed, UsageError
@@ -22,7 +23,7 @@ def new(name: str) -> Outcome:
     if not path.stem.isprintable() or path.stem.startswith(".") or path.name == ".toml":
         raise UsageError(f"{name!r} is no name for a model", mend="use letters, digits, _ and -")
     text = (TEMPLATES / "starter.toml").read_text(encoding="utf-8")
-    text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", str(path))
+    text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", shlex.quote(str(path)))
     try:
         with open(path, "x", encoding="utf-8") as file:
             file.write(text)
@@ -30,4 +31,4 @@ def new(name: str) -> Outcome:
         raise UsageError(f"'{path}' is there already", mend="take another name") from None
     except OSError as error:
         raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
-    return Outcome(f"{path}\n", {"file": str(path)}, notes=(f"now try: eomgen derive {path}",))
+    return Outcome(f"{path}\n", {"file": str(path)}, notes=(f"now try: eomgen derive {shlex.quote(str(path))}",))

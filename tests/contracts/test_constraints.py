@@ -393,7 +393,7 @@ def test_a_tie_of_coordinates_has_no_wrench():
 def test_a_rate_that_is_not_linear_in_the_rates_is_a_wrong_model():
     """J u + sigma = 0 has no place for a'^2."""
     with pytest.raises(eomgen.ModelError, match="the rate of 'tie' is not linear in the rates"):
-        system_with("equation", PLANE, "rate = \"a'^2 - b'\"").ties
+        _ = system_with("equation", PLANE, "rate = \"a'^2 - b'\"").ties
 
 
 def test_a_pin_of_n_bodies_is_n_minus_1_hinges():
