@@ -49,7 +49,7 @@ def _sympy_function(name: str, *args):
     import sympy
 
     names = {"abs": "Abs", "min": "Min", "max": "Max"}
-    return getattr(sympy, names.get(name, name))(*(sympy.sympify(a) for a in args))
+    return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
 
 
 def sin(a):

@@ -144,7 +144,7 @@ def from_sympy(expression: Any, symbols: Mapping[str, Node]) -> Scalar:
     Raises:
         DerivationError: an unknown symbol, a decimal number, or a function that the graph does not have.
     """
-    expression = sympy.sympify(expression)
+    expression = sympy.sympify(expression, strict=True)
     graph = next((node.graph for node in symbols.values()), None) or Graph()
     known: dict[Any, Any] = {}
     stack = [expression]

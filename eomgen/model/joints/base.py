@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
+from eomgen.errors import NotYet
 from eomgen.model.containers import ListRule
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
@@ -79,7 +80,7 @@ class Joint(Part):
 
     def turns(self) -> tuple[Expression, ...]:
         """The expressions that turn the child against the parent."""
-        raise NotImplementedError
+        return ()
 
     def works_in(self, space: str) -> bool:
         """Whether this version derives the joint in this space."""
@@ -87,11 +88,11 @@ class Joint(Part):
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         """The joint's variables s, f of them."""
-        raise NotImplementedError
+        raise self._not_yet()
 
     def pose(self, s: Scalars, value: Value) -> Pose:
         """Pose of the child's joint frame in the parent's."""
-        raise NotImplementedError
+        raise self._not_yet()
 
     def turn(self, s: Scalars, value: Value) -> Any:
         """In the plane: the angle of the child against the parent [rad]."""
@@ -99,15 +100,19 @@ class Joint(Part):
 
     def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         """S, f columns: the twist of the child against the parent is S s'."""
-        raise NotImplementedError
+        raise self._not_yet()
 
     def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         """W, 6 - f columns with S^T W = 0: the wrenches that the joint can carry."""
-        raise NotImplementedError
+        raise self._not_yet()
 
     def efforts(self) -> tuple[Effort | None, ...]:
         """Drive, spring, damper and rotor of each variable, in the order of s."""
         return ()
+
+    def _not_yet(self) -> NotYet:
+        """A kind whose fields are read and whose law this version does not state."""
+        return NotYet(f"the joint '{self.kind}' is not derived yet")
 
 
 def vector(components: tuple[Expression, ...] | None, value: Value, default: Vector = (0, 0, 0)) -> Vector:

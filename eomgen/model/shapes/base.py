@@ -1,5 +1,6 @@
 """What every shape gives: its points and its mass properties, over any scalar."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -23,19 +24,19 @@ class MassProperties:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shape(Part):
+class Shape(Part, ABC):
     """A homogeneous body of a simple form. Its mass may only be left out in a piece of a composite body."""
 
     kind: ClassVar[str]
     mass: Mass | None = None
 
+    @abstractmethod
     def points(self, value: Value) -> dict[str, Vector]:
         """The named points of the shape, body axes [m]: `origin`, `center`, and its own."""
-        raise NotImplementedError
 
+    @abstractmethod
     def mass_properties(self, value: Value) -> MassProperties:
         """Mass, mass centre and inertia of the shape."""
-        raise NotImplementedError
 
     def mass_of(self, value: Value) -> Any:
         return 0 if self.mass is None else value(self.mass)
