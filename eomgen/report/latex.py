@@ -41,10 +41,8 @@ PREAMBLE = r"""\documentclass[fleqn]{article}
 \setlength{\jot}{4pt}
 \setlength{\LTleft}{0pt}
 \setlength{\LTright}{\fill}
-\allowdisplaybreaks
 """
-BLOCK = 12  # rows of one display in Markdown
-RUN = 40  # rows of one display in a document, which is divided at the end of a page
+BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
     "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
@@ -106,7 +104,7 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
     groups = grouped(statements)
     for group, after in zip(groups, [*groups[1:], None], strict=True):
         if isinstance(group, list):
-            blocks += [_display(rows) for rows in runs_of(setter, _sides(setter, group), RUN)]
+            blocks += [rf"\[{block}\]" for block in display_blocks(setter, group)]
         elif isinstance(group, Prose):  # a display belongs to the paragraph before it
             end = "" if isinstance(after, list) else "\n"
             blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + end)
@@ -131,11 +129,6 @@ def grouped(statements: Sequence[Statement]) -> list[Prose | Table | list[Formul
 def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
     """The formulas in aligned blocks of a few rows each."""
     return [aligned(rows) for rows in runs_of(setter, _sides(setter, formulas), BLOCK)]
-
-
-def _display(rows: list[str]) -> str:
-    """Rows that may be divided by the end of a page."""
-    return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
 
 
 def _sides(setter: Setter, formulas: Sequence[Formula]) -> list[list[Set | Scalar]]:
