@@ -20,12 +20,12 @@ from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.energy import refuse_massless
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.outputs import Quantities, later
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters, numeric_parameters, start_values
 from eomgen.simulation.integrate import integrate

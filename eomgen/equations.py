@@ -15,8 +15,8 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import MissingValues, UsageError
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.energy import refuse_massless
 from eomgen.mechanics.system import System
+from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters, start_values
 

@@ -11,9 +11,9 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.energy import is_conservative
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import system_of
+from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.integrate import SAMPLES, integrate
