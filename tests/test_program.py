@@ -13,7 +13,7 @@ from eomgen.codegen.names import RESERVED, identifier, identifiers
 from eomgen.codegen.program import Assign, Solve, program_of, right_hand_side
 from eomgen.codegen.solving import solve_bordered
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import FLOAT, evaluate, operations
+from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits, operations
 from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.graph import Graph, is_zero
 
@@ -214,3 +214,20 @@ def test_any_names_become_different_identifiers():
     names = {random_name(rng) for _ in range(300)}
     words = identifiers(names)
     assert len(set(words.values())) == len(names) and all(word.isidentifier() for word in words.values())
+
+
+def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
+    """M a - J^T lam = f, J a = g with masses from 1 to 1e9: doubles against 50 digits"""
+    rng = np.random.default_rng(5)
+    size, rows = 5, 2
+    A = rng.normal(size=(size, size))
+    scale = np.logspace(0, 4.5, size)
+    M = scale[:, None] * (A @ A.T + size * np.eye(size)) * scale
+    lower = [[float(M[i, j]) for j in range(i + 1)] for i in range(size)]
+    J, f, g = rng.normal(size=(rows, size)).tolist(), rng.normal(size=size).tolist(), rng.normal(size=rows).tolist()
+    exact = fifty_digits().number(1)
+    long = solve_bordered(
+        [[exact * x for x in row] for row in lower], [[exact * x for x in row] for row in J],
+        [exact * x for x in f], [exact * x for x in g],
+    )  # fmt: skip
+    assert solve_bordered(lower, J, f, g) == pytest.approx([float(x) for x in long], rel=1e-13)

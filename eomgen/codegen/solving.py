@@ -23,29 +23,38 @@ def solve_bordered(M, J, f, g):
         n + k values, all nan where a is not determined.
     """
     n, k = len(f), len(g)
-    M, f = _augmented(M, J, f, g)
-    if not _factored(M):
+    weights = _weights(M, J)
+    factors = [[x + sum(w * row[i] * row[j] for w, row in zip(weights, J, strict=True)) for j, x in enumerate(line)]
+               for i, line in enumerate(M)]  # fmt: skip
+    if not _factored(factors):
         return [float("nan")] * (n + k)
-    free, *columns = [_substituted(M, right) for right in [f, *J]]
-    S = [[sum(row[i] * column[i] for i in range(n)) for column in columns] for row in J]
-    lam = _multipliers(S, [g[m] - sum(J[m][i] * free[i] for i in range(n)) for m in range(k)])
-    a = [free[i] + sum(columns[m][i] * lam[m] for m in range(k)) for i in range(n)]
+    columns = [_substituted(factors, row) for row in J]
+    a, lam = _bordered(factors, J, columns, weights, f, g)
+    if k:  # once more for what rounding left
+        f = [f[i] - sum(M[max(i, j)][min(i, j)] * a[j] for j in range(n)) for i in range(n)]
+        f = [f[i] + sum(J[m][i] * lam[m] for m in range(k)) for i in range(n)]
+        g = [g[m] - sum(J[m][i] * a[i] for i in range(n)) for m in range(k)]
+        da, dlam = _bordered(factors, J, columns, weights, f, g)
+        a, lam = [x + d for x, d in zip(a, da, strict=True)], [x + d for x, d in zip(lam, dlam, strict=True)]
     return [*a, *lam]
 
 
-def _augmented(M, J, f, g):
-    """M + J^T W J and f + J^T W g: the same solution, and positive definite where M is so on J a = 0 only."""
-    M, f = [list(row) for row in M], list(f)
-    masses = [M[i][i] for i in range(len(f))]
-    mean = sum(masses) / len(f) if J and sum(masses) > 0 else 1
-    for row, value in zip(J, g, strict=True):
-        size = sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses, strict=True))
-        weight = 1 / size if size > 0 else 0
-        for i in range(len(f)):
-            for j in range(i + 1):
-                M[i][j] += weight * row[i] * row[j]
-            f[i] += weight * row[i] * value
-    return M, f
+def _bordered(factors, J, columns, weights, f, g):
+    """(a, lam) from the factors of M + J^T W J and the columns that they give for J^T."""
+    n, k = len(f), len(g)
+    pushed = [f[i] + sum(w * row[i] * y for w, row, y in zip(weights, J, g, strict=True)) for i in range(n)]
+    free = _substituted(factors, pushed)
+    S = [[sum(row[i] * column[i] for i in range(n)) for column in columns] for row in J]
+    lam = _multipliers(S, [g[m] - sum(J[m][i] * free[i] for i in range(n)) for m in range(k)])
+    return [free[i] + sum(columns[m][i] * lam[m] for m in range(k)) for i in range(n)], lam
+
+
+def _weights(M, J):
+    """W: M + J^T W J with f + J^T W g has the same solution, and is positive definite where M is so on J a = 0 only."""
+    masses = [M[i][i] for i in range(len(M))]
+    mean = sum(masses) / len(M) if J and sum(masses) > 0 else 1
+    sizes = [sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses, strict=True)) for row in J]
+    return [1 / size if size > 0 else 0 for size in sizes]
 
 
 def _factored(M):

@@ -28,23 +28,19 @@ static void substituted(int n, const double *M, double *y)
 """
 
 BORDER_TEXT = """\
-/* M + J^T W J and f + J^T W g: the same solution, positive definite where M is so on J a = 0 only */
-static void augmented(int n, int k, double *M, const double *J, double *f, const double *g)
+/* W: M + J^T W J and f + J^T W g have the same solution, positive definite where M is so on J a = 0 only */
+static void weigh(int n, int k, const double *M, const double *J, double *weight)
 {
-    double mean = 0, size;
+    double mean = 0;
     for (int i = 0; i < n; i++) mean += M[i*n + i]/n;
     if (!(mean > 0)) mean = 1;
-    double mass[SIZE];
-    for (int i = 0; i < n; i++) mass[i] = M[i*n + i] > 0 ? M[i*n + i] : mean;
     for (int m = 0; m < k; m++) {
-        const double *row = J + m*n;
-        size = 0;
-        for (int i = 0; i < n; i++) size += row[i]*row[i]/mass[i];
-        const double weight = size > 0 ? 1/size : 0;
+        double size = 0;
         for (int i = 0; i < n; i++) {
-            for (int j = 0; j <= i; j++) M[i*n + j] += weight*row[i]*row[j];
-            f[i] += weight*row[i]*g[m];
+            const double mass = M[i*n + i] > 0 ? M[i*n + i] : mean;
+            size += J[m*n + i]*J[m*n + i]/mass;
         }
+        weight[m] = size > 0 ? 1/size : 0;
     }
 }
 
@@ -77,33 +73,60 @@ static void multipliers(int k, double *S, double *r)
     }
 }
 
-/* f, g become a, lam of M a - J^T lam = f, J a = g; all NAN where a is not determined */
-static void solve(int n, int k, double *M, const double *J, double *f, double *g)
+/* f, g become a, lam, from the factors of M + J^T W J and the columns that they give for J^T */
+static void bordered(int n, int k, const double *factors, const double *J, const double *columns,
+                     const double *weight, double *f, double *g)
 {
-    double columns[SIZE*SIZE], S[SIZE*SIZE], diagonal[SIZE];
-    augmented(n, k, M, J, f, g);
-    for (int i = 0; i < n; i++) diagonal[i] = M[i*n + i];
-    if (!factored(n, M, diagonal)) {
-        for (int i = 0; i < n; i++) f[i] = NAN;
-        for (int m = 0; m < k; m++) g[m] = NAN;
-        return;
-    }
-    substituted(n, M, f);
-    for (int m = 0; m < k; m++) {
-        for (int i = 0; i < n; i++) {
-            columns[m*n + i] = J[m*n + i];
-            g[m] -= J[m*n + i]*f[i];
-        }
-        substituted(n, M, columns + m*n);
-    }
+    double S[SIZE*SIZE];
     for (int m = 0; m < k; m++)
+        for (int i = 0; i < n; i++) f[i] += weight[m]*J[m*n + i]*g[m];
+    substituted(n, factors, f);
+    for (int m = 0; m < k; m++) {
+        for (int i = 0; i < n; i++) g[m] -= J[m*n + i]*f[i];
         for (int j = 0; j < k; j++) {
             S[m*k + j] = 0;
             for (int i = 0; i < n; i++) S[m*k + j] += J[m*n + i]*columns[j*n + i];
         }
+    }
     multipliers(k, S, g);
     for (int i = 0; i < n; i++)
         for (int m = 0; m < k; m++) f[i] += columns[m*n + i]*g[m];
+}
+
+/* f, g become a, lam of M a - J^T lam = f, J a = g; all NAN where a is not determined */
+static void solve(int n, int k, double *M, const double *J, double *f, double *g)
+{
+    double factors[SIZE*SIZE], columns[SIZE*SIZE], diagonal[SIZE], weight[SIZE], left[SIZE], open[SIZE];
+    weigh(n, k, M, J, weight);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            factors[i*n + j] = M[i*n + j];
+            for (int m = 0; m < k; m++) factors[i*n + j] += weight[m]*J[m*n + i]*J[m*n + j];
+        }
+        diagonal[i] = factors[i*n + i];
+        left[i] = f[i];
+    }
+    for (int m = 0; m < k; m++) open[m] = g[m];
+    if (!factored(n, factors, diagonal)) {
+        for (int i = 0; i < n; i++) f[i] = NAN;
+        for (int m = 0; m < k; m++) g[m] = NAN;
+        return;
+    }
+    for (int m = 0; m < k; m++) {
+        for (int i = 0; i < n; i++) columns[m*n + i] = J[m*n + i];
+        substituted(n, factors, columns + m*n);
+    }
+    bordered(n, k, factors, J, columns, weight, f, g);
+    for (int i = 0; i < n; i++) { /* once more for what rounding left */
+        for (int j = 0; j < n; j++) left[i] -= M[i > j ? i*n + j : j*n + i]*f[j];
+        for (int m = 0; m < k; m++) {
+            left[i] += J[m*n + i]*g[m];
+            open[m] -= J[m*n + i]*f[i];
+        }
+    }
+    bordered(n, k, factors, J, columns, weight, left, open);
+    for (int i = 0; i < n; i++) f[i] += left[i];
+    for (int m = 0; m < k; m++) g[m] += open[m];
 }
 """
 
