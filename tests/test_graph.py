@@ -12,6 +12,7 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Graph, Node, collected, linear_terms
+from eomgen.symbolic.text import to_text
 
 
 @pytest.fixture
@@ -200,3 +201,11 @@ def test_a_constant_meets_an_expression_in_its_graph(operation, x):
         node = waiting.pop()
         assert node.graph is x.graph
         waiting += [a for a in node.args if type(a) is Node]
+
+
+def test_sine_squared_and_cosine_squared_meet_in_any_order_of_factors(graph):
+    """(m (l sin t)) (l sin t) + (l cos t) (m (l cos t)) = m l^2"""
+    m, l, t = (graph.symbol(name) for name in ("m", "l", "t"))
+    s, c = graph.call("sin", t), graph.call("cos", t)
+    total = (m * (l * s)) * (l * s) + (l * c) * (m * (l * c))
+    assert to_text(total) == "m*l^2"

