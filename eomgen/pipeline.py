@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -60,8 +60,10 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    return simulated(derive(model), time=time, parameters=parameters, start=start, rtol=rtol, atol=atol,
-                     target=target, samples=samples)  # fmt: skip
+    return simulated(
+        derive(model), time=time, parameters=parameters, start=start, target=target, samples=samples,
+        tolerances=(rtol, atol),
+    )  # fmt: skip
 
 
 def simulated(
@@ -70,33 +72,30 @@ def simulated(
     time: float,
     parameters: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
-    rtol: float = 1e-9,
-    atol: float = 1e-9,
     target: str | None = None,
     samples: int | None = None,
+    tolerances: tuple[float, float] = (1e-9, 1e-9),
 ) -> Trajectory:
-    """The motion by equations that are derived already; see `simulate`."""
-    model, assembly = equations.model, equations.graph
-    p = numeric_parameters(model, parameters)
-    rhs = equations.rhs(target)
-    values = np.array(list(p.values()), dtype=float)
+    """The motion by equations that are derived already; see `simulate`. The tolerances are (rtol, atol)."""
+    assembly = equations.graph
+    p = np.array(list(numeric_parameters(equations.model, parameters).values()), dtype=float)
+    energies = _along(equations, (assembly.T, assembly.V), p)
     gaps = tuple(gap for gap in assembly.phi if gap is not None)
     return integrate(
-        rhs,
+        equations.rhs(target),
         time=time,
         x0=equations.start(parameters, start),
-        p=values,
-        rtol=rtol,
-        atol=atol,
-        samples=SAMPLES if samples is None else samples,
-        energy=_along(equations, (assembly.T, assembly.V), values),
+        p=p,
+        energy=lambda t, x: energies(t, x).T,
         conservative=is_conservative(equations.system, assembly),
-        gaps=_along(equations, gaps, values) if gaps else None,
+        gaps=_along(equations, gaps, p) if gaps else None,
+        samples=SAMPLES if samples is None else samples,
+        rtol=tolerances[0],
+        atol=tolerances[1],
     )
 
 
-def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Any:
+def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:
     """(t n, x n x states) -> the outputs at each state, n x outputs."""
-    program = program_of(outputs, equations.graph.symbols, inputs=equations.system.inputs)
-    function = compiled(program, "numpy")
-    return lambda t, x: function.many(t, x, p).T if len(outputs) == 2 else function.many(t, x, p)
+    function = compiled(program_of(outputs, equations.graph.symbols, inputs=equations.system.inputs), "numpy")
+    return lambda t, x: function.many(t, x, p)

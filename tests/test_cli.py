@@ -398,3 +398,11 @@ def test_doctor_names_what_is_there_and_what_is_missing(monkeypatch):
     result = run("doctor")
     assert result.exit_code == 0
     assert "C compiler    not found: equations run in numpy" in result.stdout
+
+
+def test_a_trajectory_has_a_thousand_even_steps_unless_told_otherwise(tmp_path):
+    """1001 instants and a header; --samples N gives N."""
+    for words, instants in (((), 1001), (("--samples", "11"), 11)):
+        path = tmp_path / f"{instants}.csv"
+        run("simulate", SEED, "--time", "0.1", "-o", str(path), *words)
+        assert len(path.read_text().splitlines()) == instants + 1

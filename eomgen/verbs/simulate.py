@@ -22,12 +22,13 @@ def simulate(
     target: str | None, samples: int | None, output: str | None, plot: str | None,
 ) -> Outcome:  # fmt: skip
     """The motion from the start; trajectory and picture are written where they are asked for."""
-
     parameters = _parameters(model, given)
     _check_ending(output)
     equations = pipeline.derive(model)
-    run = pipeline.simulated(equations, time=time, parameters=parameters, start=_start(equations, parameters, start),
-                    rtol=rtol, atol=atol, target=target, samples=samples)  # fmt: skip
+    run = pipeline.simulated(
+        equations, time=time, parameters=parameters, start=_start(equations, parameters, start), target=target,
+        samples=samples, tolerances=(rtol, atol),
+    )  # fmt: skip
     files = [path for path in (output, plot) if path]
     if output:
         _write_run(run, output)

@@ -278,3 +278,34 @@ def test_a_spring_between_points_that_are_one_is_refused():
     """
     with pytest.raises(eomgen.DerivationError, match=r"'A\.end' and 'B\.origin' are always at one place"):
         eomgen.derive(eomgen.loads(text))
+
+
+def test_texts_of_a_model_stay_texts_in_emitted_code(tmp_path):
+    """Names and remarks that would close a comment or a string run nothing, in Python and in C."""
+    model = tmp_path / "evil.toml"
+    model.write_text(r'''
+eomgen = 1
+name = "evil */ int x; /* \"\"\" \nraise SystemExit(9)"
+space = "plane"
+source = "\"\"\"\nraise SystemExit(9)\n*/"
+[parameters]
+m = { value = 1, unit = "kg", about = "*/\n#error out\nraise SystemExit(9)\n\"\"\"" }
+class = 2
+exec = 9.81
+[coordinates]
+lambda = { start = 0.1, about = "\nraise SystemExit(9)\n" }
+[bodies.import]
+shape = { kind = "rod", mass = "m", length = "class" }
+joint = { kind = "revolute", angle = "lambda" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-exec"]
+''')
+    for target in ("numpy", "c"):
+        result = CliRunner().invoke(main, ["codegen", str(model), "--target", target, "-o", str(tmp_path)])
+        assert result.exit_code == 0, result.stderr
+    exec(compile((tmp_path / "evil_rhs.py").read_text(), "evil_rhs.py", "exec"), {"__name__": "evil_rhs"})
+    code = (tmp_path / "evil_rhs.c").read_text()
+    bare = re.sub(r"/\*.*?\*/", "", code, flags=re.S)
+    assert "SystemExit" in code and "SystemExit" not in bare and "#error" not in bare
+    assert eomgen.simulate(eomgen.load(model), time=0.1, target="numpy").ok
