@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.kinematics import Motion, slide_of
@@ -34,7 +35,11 @@ class Row:
         direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
         velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
         gap: phi(q, t), or None where only the velocity row is given.
-        identical: the coordinates satisfy the row by themselves: it only carries a reaction.
+        status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
+            coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
+        component: "x", "y", "z", "n", "t", "couple", "tension", or "".
+        rubbing: of a contact that can rub, (body, wrench) of a unit of friction, as `wrenches`.
+        sliding: the sliding velocity dual to it [m/s].
     """
 
     tie: str
@@ -43,7 +48,14 @@ class Row:
     direct: Scalar
     velocity: Scalar
     gap: Scalar | None
-    identical: bool
+    status: str
+    component: str = ""
+    rubbing: tuple[tuple[str, Wrench], ...] = ()
+    sliding: Scalar = 0
+
+    @property
+    def identical(self) -> bool:
+        return self.status == "identical"
 
     @property
     def label(self) -> str:
@@ -59,7 +71,7 @@ class Ties:
 
     @property
     def closing(self) -> tuple[Row, ...]:
-        return tuple(row for row in self.rows if not row.identical)
+        return tuple(row for row in self.rows if row.status == "closing")
 
     @cached_property
     def J(self) -> tuple[tuple[Scalar, ...], ...]:
@@ -99,20 +111,39 @@ def ties_of(motion: Motion) -> Ties:
 
 
 def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
-    wrenches = [found for push in row.pushes if (found := body_wrench(motion, push)) is not None]
+    wrenches = _wrenches(motion, row.pushes)
     if row.pushes:
-        direct = sum((_sliding(motion, push) for push in row.pushes if isinstance(push, PointForce)), start=0)
+        direct = 0 if row.material else _slide(motion, row.pushes)
     elif row.rate is not None:
         direct = _linear(motion, name, row.rate)
     else:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
-    velocity = sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
-    identical = holds_identically(velocity) and (row.gap is None or holds_identically(row.gap))
-    if not identical and not depends_on(velocity, motion.scope.symbols.u):
+    velocity = _power(motion, wrenches, direct)
+    rubbing = _wrenches(motion, row.tangent)
+    sliding = _power(motion, rubbing, 0 if row.material else _slide(motion, row.tangent)) if rubbing else 0
+    status = _status(motion, velocity, row.gap)
+    if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}", f"constraints.{name}", mend)
-    return Row(name, number, tuple(wrenches), direct, velocity, row.gap, identical)
+    return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, rubbing, sliding)
+
+
+def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
+    return "identical" if holds_identically(velocity) and (gap is None or holds_identically(gap)) else "closing"
+
+
+def _wrenches(motion: Motion, pushes: tuple[Any, ...]) -> tuple[tuple[str, Wrench], ...]:
+    return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
+
+
+def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Scalar) -> Scalar:
+    return sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
+
+
+def _slide(motion: Motion, pushes: tuple[Any, ...]) -> Scalar:
+    """What points that move in their bodies add to the power of the pushes."""
+    return sum((_sliding(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
 
 
 def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.row import TieRow, axes_of
+from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
@@ -45,8 +45,9 @@ class Pin(Constraint):
 def _held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
     gap = minus(scene.position(first), scene.position(other))
     return [
-        TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap)) for e in axes_of(scene)
-    ]  # fmt: skip
+        TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap), component=name)
+        for name, e in zip(AXIS_NAMES, axes_of(scene), strict=False)
+    ]
 
 
 def _kept_in_line(scene: Scene, bodies: tuple[str | None, str | None], axis: Vector) -> list[TieRow]:
@@ -58,7 +59,7 @@ def _kept_in_line(scene: Scene, bodies: tuple[str | None, str | None], axis: Vec
         e = carried(scene, bodies[0], direction)
         couple = cross(e, n)
         pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
-        rows.append(TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e)))
+        rows.append(TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple"))
     return rows
 
 

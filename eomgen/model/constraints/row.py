@@ -15,14 +15,26 @@ class TieRow:
         pushes: forces and couples on the bodies for a unit of the row's multiplier; empty for an equation.
         gap: phi(q, t), 0 when the tie holds; None where only the velocity row is given.
         rate: the row of an equation given in rates, 0 when it holds; None elsewhere.
+        component: what the multiplier is called: "x", "y", "z", "n" (normal), "t" (along the contact), "couple",
+            "tension"; "" for an equation.
+        material: the row sees the velocities of the bodies' material points, not of points that wander in them
+            (rolling contacts, strings that leave a pulley).
+        tangent: of a contact that can rub, the forces for a unit of friction; their dual is the sliding velocity.
     """
 
     pushes: tuple[PointForce | Couple, ...]
     gap: Scalar | None
     rate: Scalar | None = None
+    component: str = ""
+    material: bool = False
+    tangent: tuple[PointForce | Couple, ...] = ()
 
 
 def axes_of(scene: Scene) -> tuple[Vector, ...]:
     """The ground's axes in which a point can be held: x, y, and in space z."""
     axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     return axes[:2] if scene.plane else axes
+
+
+AXIS_NAMES = ("x", "y", "z")
+"""The components of a held point, in the order of `axes_of`."""

@@ -33,11 +33,13 @@ class Support(Constraint):
     friction: FrictionLaw | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """n . (p - p_0) = 0, n of unit length; the support pushes along n."""
+        """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y."""
         n = scene.vector(self.normal)
         size = sqrt(dot(n, n))
         n = tuple(over(x, size) for x in n)
         place = scene.place(self.point)
         position = scene.position(place)
         origin = tuple(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
-        return (TieRow((PointForce(place, n),), dot(n, minus(position, origin))),)  # type: ignore[arg-type]
+        tangent = (PointForce(place, (n[1], -n[0], 0)),) if scene.plane else ()
+        gap = dot(n, minus(position, origin))  # type: ignore[arg-type]
+        return (TieRow((PointForce(place, n),), gap, component="n", tangent=tangent),)  # type: ignore[arg-type]
