@@ -1,8 +1,8 @@
 """Model -> {name: Answer}: what the file asks in [outputs], exact and as a number.
 
-A function of coordinates and rates is exact, the accelerations in it replaced by the equations of
-motion. At an instant `t = ...` it is exact where the motion is given, else a number by integration.
-What needs reactions, the energy theorem, events or linearization says so.
+A function of coordinates and rates is exact, the accelerations in it replaced by the equations of motion; asked
+`from` the start it is one of the coordinates alone, rates eliminated by the energy theorem and the momenta. At an
+instant it is exact where the motion can be followed in closed form, else a number by integration.
 """
 
 from __future__ import annotations
@@ -11,34 +11,25 @@ import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from eomgen.codegen.factorization import solved
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
-from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import redundant_rows
-from eomgen.mechanics.outputs import Quantities, later
-from eomgen.mechanics.scope import integral_from_zero
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.wellposed import refuse_massless
+from eomgen.mechanics.integrals import rates_of
+from eomgen.mechanics.outputs import later
+from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model, Output
-from eomgen.model.values import exact_parameters, numeric_parameters, start_values
-from eomgen.simulation.integrate import integrate
+from eomgen.model.values import exact_parameters
+from eomgen.situation import Situation, exact_numbers, situation_of, start_of
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import cancelled, readable
+from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size, to_text
 
+if TYPE_CHECKING:
+    from eomgen.journey import Journey, Moment
+
 LONGEST = 20_000  # characters of an exact answer
-WORK = 50_000  # products of terms for making one readable
-TOLERANCE = 1e-12  # of the integration to an instant
 
 
 @dataclass(frozen=True)
@@ -116,56 +107,55 @@ class _Solver:
     model: Model
 
     @cached_property
-    def system(self) -> System:
-        return system_of(self.model)
-
-    @cached_property
-    def assembly(self) -> Assembly:
-        assembly = recursive.assemble(self.system)
-        refuse_massless(assembly)
-        return assembly
-
-    @cached_property
-    def inputs(self) -> dict[str, Scalar]:
-        """The model's own expression of each input."""
-        return {name: self.system.scope.value(part.value) for name, part in self.model.inputs.items()}
-
-    @cached_property
-    def accelerations(self) -> Row:
-        """a in q, u, t and inputs."""
-        return explicit_accelerations(self.system, self.assembly)
-
-    @cached_property
-    def rhs(self) -> RightHandSide:
-        return compiled(right_hand_side(self.assembly, self.inputs))
+    def situation(self) -> Situation:
+        """The first phase: contacts as they are at the start."""
+        return situation_of(self.model)
 
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
         unit = "" if output.unit is None else output.unit.text
         try:
+            _refuse_later(output)
             return replace(self._answer(output), unit=unit)
+        except ModuleNotFoundError:  # TODO lead: until instants.py is there
+            return Answer(unit=unit, message='instants are being built')
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
             return Answer(unit=unit, message=f"{error.what}; {error.mend}" if error.mend else error.what)
 
     def _answer(self, output: Output) -> Answer:
-        _refuse_later(output)
-        instant = None if output.at is None else _instant_of(output)
-        scope = self.system.scope
-        scalar = output.value.evaluate(scope.names, Quantities(self.system).value)
-        if output.unit is not None:
-            scalar = output.unit.from_si(scalar, scope.graph.pi)
-        if instant is None:
-            return self._function(scalar)
-        return self._at(scalar, scope.value(instant), output)
+        if output.at is not None:
+            return self._at(output)
+        if output.from_ is not None:
+            return self._of_configuration(output)
+        return self._of_state(output)
 
-    # -- functions of coordinates and rates ----------------------------------------------------
+    def _in_unit(self, scalar: Scalar, output: Output) -> Scalar:
+        return scalar if output.unit is None else output.unit.from_si(scalar, self.situation.system.scope.graph.pi)
 
-    def _function(self, scalar: Scalar) -> Answer:
-        symbols = self.system.symbols
-        if not depends_on(scalar, symbols.a):
-            return self._started(readable(scalar, WORK), "kinematics" if symbols_of((scalar,)) else "arithmetic")
-        (scalar,) = substituted((scalar,), dict(zip(symbols.a, self.accelerations, strict=True)))
-        return self._started(cancelled(scalar, WORK), "equations of motion")
+    # -- functions of the state, and of the configuration ---------------------------------------
+
+    def _of_state(self, output: Output) -> Answer:
+        """A function of coordinates and rates."""
+        situation = self.situation
+        scalar = situation.of_state(output.value)
+        method = "kinematics" if symbols_of((scalar,)) else "arithmetic"
+        if situation.needs_equations(output.value):
+            method = "equations of motion"
+        return self._started(situation.simple(self._in_unit(scalar, output)), method)
+
+    def _of_configuration(self, output: Output) -> Answer:
+        """A function of the coordinates, rates eliminated by the energy theorem."""
+        situation = self.situation
+        scalar = situation.of_state(output.value)
+        if not depends_on(scalar, situation.system.symbols.u):
+            return self._started(situation.simple(self._in_unit(scalar, output)), "equations of motion")
+        start = start_of(situation, at_rest=output.from_ == "rest")
+        rates = rates_of(situation.system, situation.assembly, start)
+        if rates is None:
+            raise DerivationError("no integrals of the motion give the rates as functions of the coordinates",
+                                  mend="ask it at an instant: `at`")  # fmt: skip
+        (scalar,) = substituted((scalar,), rates)
+        return self._started(situation.simple(self._in_unit(scalar, output)), "energy theorem")
 
     def _started(self, scalar: Scalar, method: str) -> Answer:
         """The text, and the value at the start."""
@@ -182,8 +172,9 @@ class _Solver:
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        symbols = self.system.symbols
-        (scalar,) = substituted((scalar,), {node: self.inputs[name] for name, node in symbols.inputs.items()})
+        system = self.situation.system
+        symbols = system.symbols
+        (scalar,) = substituted((scalar,), {node: system.inputs[name] for name, node in symbols.inputs.items()})
         used = set(symbols_of((scalar,)))
         known = exact_parameters(self.model)
         missing = tuple(name for name, node in symbols.parameters.items() if node in used and name not in known)
@@ -192,92 +183,46 @@ class _Solver:
         state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
         state[symbols.t] = 0.0
         if used & {*symbols.q, *symbols.u}:
-            q, u = start_values(self.model)
-            state |= {node: (q | u)[node.name] for node in (*symbols.q, *symbols.u)}
+            values = start_state(system)
+            state |= {node: values[node.name] for node in (*symbols.q, *symbols.u)}
         return evaluate((scalar,), state, FLOAT)[0]
 
     # -- at an instant -------------------------------------------------------------------------
 
-    def _at(self, scalar: Scalar, instant: Scalar, output: Output) -> Answer:
-        """At t = instant: exact where only given motions come in, else by integration."""
-        symbols = self.system.symbols
-        given = self._given(scalar)
-        if given is not None:
-            (exact,) = substituted((given,), {symbols.t: instant})
-            return self._started(readable(exact, WORK), "given motion" if given is not scalar else "arithmetic")
-        p = numeric_parameters(self.model)
-        end = evaluate((instant,), {symbols.parameters[name]: value for name, value in p.items()}, FLOAT)[0]
-        if not end >= 0:
-            raise DerivationError(f"the instant t = {end:g} s is before the start")
-        state = self._reached(end, p, output.from_ == "rest")
-        return _valued(Answer(method="integration in time"), evaluate((scalar,), state, FLOAT)[0], "at the instant")
-
-    def _given(self, scalar: Scalar) -> Scalar | None:
-        """The scalar as a function of t and parameters alone; None where free motion, or no closed form, is in it."""
-        symbols = self.system.symbols
-        own = {node: self.inputs[name] for name, node in symbols.inputs.items()}
-        (scalar,) = substituted((scalar,), own)
-        if depends_on(scalar, (*symbols.u, *symbols.a)):
-            return None
-        laws: dict[Node, Scalar] = {}
-        for node, rate in zip(symbols.q, self.system.scope.rates, strict=True):
-            if not depends_on(scalar, (node,)):
-                continue
-            law = self._law(node, rate)
-            if law is None:
-                return None
-            laws[node] = law
-        return substituted((scalar,), laws)[0] if laws else scalar
-
-    def _law(self, node: Node, rate: Scalar) -> Scalar | None:
-        """q(t) of a driven coordinate in closed form."""
-        coordinate, scope = self.model.coordinates[node.name], self.system.scope
-        if coordinate.motion is not None:
-            return scope.value(coordinate.motion)
-        if not coordinate.driven:
-            return None
+    def _at(self, output: Output) -> Answer:
+        """At the instant when a condition holds: exact where the motion can be followed exactly, else a number."""
+        assert output.at is not None
+        moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
+        situation = moment.situation
+        value = self._number_at(moment, output)
         try:
-            return scope.value(coordinate.start) + integral_from_zero(rate, scope.symbols.t, node.name)
-        except DerivationError:
-            return None
+            exact = self._in_unit(situation.at(output.value, moment.exact), output)
+        except MissingValues:
+            return _valued(Answer(method=moment.method), value, "at the instant")
+        exact = situation.simple(exact)
+        text = to_text(exact) if text_size(exact) <= LONGEST else None
+        try:
+            value = self._at_start(exact)
+        except MissingValues as error:
+            return Answer(text, None, "", moment.method, error.what)
+        return _valued(Answer(text, None, "", moment.method), value, "at the instant")
 
-    def _reached(self, end: float, p: dict[str, float], from_rest: bool) -> dict[Node, float]:
-        """Every symbol's value at t = end, by integrating from the start."""
-        symbols, rhs = self.system.symbols, self.rhs
-        q, u = start_values(self.model)
-        speeds = [0.0 if from_rest else u[node.name] for node in symbols.u]
-        x0, parameters = np.array([*(q[node.name] for node in symbols.q), *speeds]), np.array(list(p.values()))
-        run = integrate(rhs, time=end, x0=x0, p=parameters, rtol=TOLERANCE, atol=TOLERANCE, samples=2 if end else None)
-        if not run.ok:
-            raise RunFailed(run.message)
-        x = run.x[-1]
-        state = {symbols.parameters[name]: value for name, value in p.items()} | {symbols.t: end}
-        for name, node in symbols.inputs.items():
-            state[node] = evaluate((self.inputs[name],), state, FLOAT)[0]
-        a = rhs(end, x, parameters)[len(symbols.q) :]
-        numbers = [float(value) for value in (*x, *a)]
-        return state | dict(zip((*symbols.q, *symbols.u, *symbols.a), numbers, strict=True))
+    def _number_at(self, moment: Moment, output: Output) -> float:
+        """The value in floating point, nan where a parameter is missing."""
+        if not moment.numbers:
+            return math.nan
+        situation = moment.situation
+        state = exact_numbers(moment.numbers)
+        scalar = self._in_unit(situation.at(output.value, state), output)
+        known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
+        return evaluate((scalar,), known, FLOAT)[0]
 
+    @cached_property
+    def journeys(self) -> dict[bool, Journey]:
+        """The motion from the start, and from rest at the start."""
+        from eomgen.journey import Journey
 
-def explicit_accelerations(system: System, assembly: Assembly) -> Row:
-    """a of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out.
-
-    a = X F + X J^T lam,  (J X J^T) lam = -(gamma + J X F),  X = M^-1, never formed: M is solved for each column.
-    """
-    free = solved(assembly.M, assembly.forcing)
-    if not assembly.J:
-        return free
-    dropped = {(row.tie, row.number) for row in redundant_rows(system.ties)}
-    kept = [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
-    J = [assembly.J[i] for i in kept]
-    columns = [solved(assembly.M, row) for row in J]
-    S = [[_dot(row, column) for column in columns] for row in J]
-    lam = solved(S, [-(assembly.gamma[i] + _dot(row, free)) for i, row in zip(kept, J, strict=True)])
-    return tuple(a + _dot(lam, [column[k] for column in columns]) for k, a in enumerate(free))
-
-
-def _dot(a: Any, b: Any) -> Scalar:
-    return sum((x * y for x, y in zip(a, b, strict=True)), start=0)
+        return {at_rest: Journey(self.situation, at_rest) for at_rest in (False, True)}
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:
@@ -293,16 +238,12 @@ def _refuse_later(output: Output) -> None:
     """Outputs that this version cannot answer.
 
     Raises:
-        NotYet: one of their functions, or the way to their instant, comes later.
+        NotYet: one of their functions comes later.
     """
     sides = [] if output.at is None else [output.at.left, output.at.right]
     for call in _calls((output.value, *sides)):
         if waits := later(call.name):
             raise NotYet(waits)
-    if output.at is not None and _instant_of(output) is None:
-        raise NotYet("an instant that is given by a condition comes with a later version")
-    if output.at is None and output.from_ is not None:
-        raise NotYet("the energy theorem, which gives rates as functions of coordinates, comes with a later version")
 
 
 def _calls(expressions: tuple[Expression, ...]) -> Iterator[Call]:
@@ -310,13 +251,3 @@ def _calls(expressions: tuple[Expression, ...]) -> Iterator[Call]:
         for call in expression.calls:
             yield call
             yield from _calls(tuple(a for a in call.args if isinstance(a, Expression)))
-
-
-def _instant_of(output: Output) -> Expression | None:
-    """e of `t = e` or `e = t`, e of parameters; None for any other condition."""
-    assert output.at is not None
-    left, right = output.at.left, output.at.right
-    for t, e in ((left, right), (right, left)):
-        if t.code == (("name", "t"),) and not e.calls and not any("'" in name for name in e.names):
-            return e if "t" not in e.names else None
-    return None

@@ -20,11 +20,13 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.dense import independent, scaled_condition, solution
 from eomgen.mechanics.formulations import ALL
+from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces
-from eomgen.symbolic.derivative import gradient, jacobian, tangent
+from eomgen.symbolic.derivative import gradient, jacobian, substituted, tangent
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar
@@ -98,6 +100,8 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
     checks.append(_energy(system, assembly))
     if assembly.J:
         checks.append(_closing_rows(system, assembly))
+    if system.elimination is not None:
+        checks.append(_eliminated_rows(system))
     checks.append(_free_bodies(system, assembly))
     if rhs is not None:
         checks.append(_code(system, assembly, rhs))
@@ -157,7 +161,8 @@ def _mass_matrix(assembly: Assembly) -> Check:
 def _energy(system: System, assembly: Assembly) -> Check:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
-    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself.
+    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself. Where dependent
+    rates follow from ties that move by themselves, what `_carried_power` says comes in addition.
     """
     scope, symbols = system.scope, assembly.symbols
     momenta = gradient(assembly.T, symbols.u)
@@ -168,7 +173,27 @@ def _energy(system: System, assembly: Assembly) -> Check:
         inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
         power = power + u * (inertia - assembly.Q[k] + powered[k])
     left = scope.with_accelerations((H,))[0]
+    power = power + _carried_power(system)
     return _compared("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
+
+
+def _carried_power(system: System) -> Scalar:
+    """p . ((N u)' along nu and t - nu' along N u), p the momenta of the free system: 0 where nothing moves by itself.
+
+    The motions N u and those by themselves do not commute where rolling ties carry dependent coordinates along.
+    """
+    if system.free is None:
+        return 0
+    scope, free = system.scope, system.free.scope.symbols.u
+    rates = free_rates(system, system.free)
+    carried = substituted(rates, dict.fromkeys(scope.symbols.u, 0))
+    own = tuple(rate - part for rate, part in zip(rates, carried, strict=True))
+    along = {q: rate - bias for q, rate, bias in zip(scope.symbols.q, scope.rates, scope.nu, strict=True)}
+    apart = zip(tangent(own, _own_motion(scope)), tangent(carried, along), strict=True)
+    differences = [a - b for a, b in apart]
+    momenta = gradient(kinetic_energy(system.free.motion), free)
+    power = sum((p * x for p, x in zip(momenta, differences, strict=True)), start=0)
+    return substituted((power,), dict(zip(free, rates, strict=True)))[0]
 
 
 def _own_motion(scope: Any) -> dict[Node, Scalar]:
@@ -193,6 +218,25 @@ def _closing_rows(system: System, assembly: Assembly) -> Check:
     return _compared("the closing rows are the derivatives of their gaps", pairs, labels)
 
 
+def _eliminated_rows(system: System) -> Check:
+    """W^T xi + s_t = 0 and dphi/dt = 0 whatever the independent speeds: what the dependent rates were solved from.
+
+    Rows that follow from others do so where the ties hold, and are looked at there.
+    """
+
+    def check(state: State) -> str:
+        rows = [row for row in system.ties.rows if row.status == "eliminated"]
+        gaps = [(row, row.gap) for row in rows if row.gap is not None]
+        rates = zip((row for row, _ in gaps), system.scope.time_derivative(tuple(x for _, x in gaps)), strict=True)
+        size = 1 + sum(abs(x) for x in evaluate(system.scope.rates, state, fifty_digits()))
+        for row, rate in (*((row, row.velocity) for row in rows), *rates):
+            if abs(evaluate((rate,), state, fifty_digits())[0]) > DIFFERENCE_TOLERANCE * size:
+                return f"row {row.number} of '{row.tie}' opens"
+        return ""
+
+    return _at_a_state(system, "eliminated rows hold whatever the speeds", "50 digits", check)
+
+
 def real_state(system: System, rng: Random) -> State:
     """Random values of all symbols, at 50 digits; parameters and times positive."""
     arithmetic = fifty_digits()
@@ -210,7 +254,7 @@ def real_state(system: System, rng: Random) -> State:
 def closed_state(system: System, rng: Random) -> tuple[State, str]:
     """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
     state = real_state(system, rng)
-    if not system.ties.closing:
+    if all(row.identical for row in system.ties.rows):
         return state, ""
     try:
         return state | generic_state(system.ties, rng), ""

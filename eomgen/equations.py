@@ -12,13 +12,14 @@ import numpy as np
 from eomgen.certificate import Certificate, certify
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.errors import MissingValues, UsageError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.start import start_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
-from eomgen.model.values import numeric_parameters, start_values
+from eomgen.model.values import numeric_parameters
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
@@ -85,7 +86,7 @@ class Equations:
 
     def certify(self, target: str | None = "numpy") -> Certificate:
         """Check the equations by independent routes, and the code that `target` emits against the symbols."""
-        return certify(self.system, self.graph, self.rhs(target))
+        return certify(self.system, self.graph, compiled(self.program, target))
 
     def rhs(self, target: str | None = None) -> RightHandSide:
         """The right-hand side `rhs(t, x, p, inputs=())`, x = q then u.
@@ -130,29 +131,24 @@ class Equations:
     def start(
         self, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
     ) -> np.ndarray:
-        """x at the start, q then u, from the model's start values and those that replace them.
+        """x at the start, q then u, from the model's start values and those that replace them; the ties hold there.
 
         Raises:
             UsageError: a name in `start` that is no coordinate and no speed.
             MissingValues: a start value needs a parameter without a value.
+            DerivationError: a tie that does not close at the start.
         """
-        names = (*self.coordinates, *self.speeds)
-        unknown = [name for name in start or {} if name not in names]
-        if unknown:
-            raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
-        q, u = start_values(self.model, parameters)
-        values = {**q, **u, **(start or {})}
-        return np.array([values[name] for name in names], dtype=float)
+        return np.array(list(start_state(self.system, parameters, start).values()), dtype=float)
 
     def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """(p0, x0) of the model, None where a value is missing."""
+        """(p0, x0) of the model, None where a value is missing, or the ties do not close at the start."""
         try:
             p = np.array(list(numeric_parameters(self.model).values()), dtype=float)
         except MissingValues:
             p = None
         try:
             return p, self.start()
-        except MissingValues:
+        except (MissingValues, DerivationError):
             return p, None
 
 

@@ -11,12 +11,15 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
+from eomgen.mechanics.closure import gaps_of
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.integrate import SAMPLES, integrate
+from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.trajectory import Trajectory
 
 METHODS = ("lagrange", "projection")
@@ -35,7 +38,7 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     system = system_of(model)
-    return Equations(model, method, system, recursive.assemble(system))
+    return Equations(model, method, system, with_friction(system, recursive.assemble(system)))
 
 
 def simulate(
@@ -80,8 +83,8 @@ def simulated(
     assembly = equations.graph
     p = np.array(list(numeric_parameters(equations.model, parameters).values()), dtype=float)
     energies = _along(equations, (assembly.T, assembly.V), p)
-    gaps = tuple(gap for gap in assembly.phi if gap is not None)
-    return integrate(
+    gaps = gaps_of(equations.system.ties)
+    run = integrate(
         equations.rhs(target),
         time=time,
         x0=equations.start(parameters, start),
@@ -93,6 +96,9 @@ def simulated(
         rtol=tolerances[0],
         atol=tolerances[1],
     )
+    blocks = () if equations.system.elimination is None else equations.system.elimination.blocks
+    determinants = _along(equations, tuple(block.determinant for block in blocks), p)
+    return ended_where_singular(run, determinants, [str(block) for block in blocks], rtol=tolerances[0])
 
 
 def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:

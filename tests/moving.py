@@ -10,6 +10,7 @@ import numpy as np
 
 import eomgen
 from eomgen.certificate import real_state
+from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System, system_of
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
@@ -33,20 +34,35 @@ def at(scalars: Sequence[Scalar], state: State) -> np.ndarray:
     return np.array([float(x) for x in evaluate(tuple(scalars), state, fifty_digits())])
 
 
+def solved(system: System, values: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
+    """(a, lam) of M a = forcing + J^T lam, J a + gamma = 0 at a state; what is not named is 0."""
+    assembly = recursive.assemble(system)
+    symbols = system.symbols
+    state = {s: fifty_digits().number(0) for s in (*symbols.q, *symbols.u, symbols.t)}
+    by_name = symbols.parameters | {s.name: s for s in (*symbols.q, *symbols.u)}
+    state |= {by_name[name]: fifty_digits().number(1) * value for name, value in values.items()}
+    M, J = (np.array([at(row, state) for row in rows]) for rows in (assembly.M, assembly.J))
+    n, k = len(M), len(J)
+    right = np.concatenate([at(assembly.forcing, state), -at(assembly.gamma, state)])
+    found = np.linalg.solve(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right)
+    return found[:n], found[n:]
+
+
 def rate(system: System, scalars: Sequence[Scalar], state: State) -> np.ndarray:
     """Time derivative of functions of q and t by central differences along the motion through the state."""
     h = fifty_digits().number(1) / 10**15
-    late, early = (evaluate(tuple(scalars), _moved(system, state, sign * h), fifty_digits()) for sign in (1, -1))
+    late, early = (evaluate(tuple(scalars), moved(system, state, sign * h), fifty_digits()) for sign in (1, -1))
     return np.array([float((a - b) / (2 * h)) for a, b in zip(late, early, strict=True)])
 
 
-def _moved(system: System, state: State, h: Any) -> State:
-    moved = dict(state)
+def moved(system: System, state: State, h: Any) -> State:
+    """The state a time h later, to first order."""
+    later = dict(state)
     rates = evaluate(system.scope.rates, state, fifty_digits())
     for q, q_rate in zip(system.scope.symbols.q, rates, strict=True):
-        moved[q] = state[q] + h * q_rate
-    moved[system.scope.symbols.t] = state[system.scope.symbols.t] + h
-    return moved
+        later[q] = state[q] + h * q_rate
+    later[system.scope.symbols.t] = state[system.scope.symbols.t] + h
+    return later
 
 
 def equal(left: Sequence[Scalar], right: Sequence[Scalar]) -> bool:

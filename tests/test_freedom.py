@@ -120,10 +120,28 @@ def test_ties_that_cannot_close_are_not_counted():
 
 
 def test_kinds_that_are_not_built_yet_are_named_instead_of_counted():
-    """degrees of freedom: not counted yet (clamp)"""
-    clamp = '[constraints.wall]\nkind = "clamp"\npoint = "left.start"\n'
-    found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + clamp)
-    assert (found.by_rank, found.not_counted) == (None, "clamp")
+    """degrees of freedom: not counted yet (truss)"""
+    truss = '[trusses.T]\nnodes = { A = [0, 0], B = [1, 0] }\nmembers = ["A-B"]\n'
+    found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + truss)
+    assert (found.by_rank, found.not_counted) == (None, "truss")
+
+
+DEPENDENT = "[coordinates]\nq1 = 1.0\nq2 = { dependent = true, near = 0.1 }\nq3 = { dependent = true, near = 1.1 }\n"
+
+
+def test_dependent_coordinates_leave_the_count_as_it_is():
+    """nu - rank J counts the same freedoms before and after the elimination: 3 - 2 = 1 - 0."""
+    found = freedom(DEPENDENT + FOUR_BAR + HINGE)
+    assert found == freedom(coordinates(q1=1.0, q2=0.0, q3=1.0) + FOUR_BAR + HINGE)
+    assert (found.by_rank, found.by_formula, found.closing) == (1, 1, ("right_hinge",))
+
+
+def test_redundant_ties_are_named_where_coordinates_are_dependent():
+    """A third crank, all but the first dependent: 0 by the formula, 1 by rank."""
+    text = DEPENDENT + "q4 = { dependent = true, near = 1 }\n" + FOUR_BAR + HINGE + MIDDLE
+    found = freedom(text)
+    assert (found.by_rank, found.by_formula) == (1, 0)
+    assert [(row.tie, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
 
 
 def test_a_model_without_values_is_counted_all_the_same():

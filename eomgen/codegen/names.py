@@ -18,10 +18,10 @@ MATH_WORDS = frozenset(
     "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
     "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
 )
-OWN_WORDS = frozenset("t x p c inputs dx given n constants evaluate math float SIZE".split())
+OWN_WORDS = frozenset("t x p c inputs dx out given n constants evaluate math float SIZE".split())
 RESERVED = C_WORDS | MATH_WORDS | OWN_WORDS | frozenset(keyword.kwlist) | frozenset(keyword.softkwlist)
 # our own variables, functions and macros, and what C keeps for itself
-LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_rhs.*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS)|_.*")
+LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_(rhs|reactions).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*")
 
 
 def identifiers(names: Iterable[str]) -> dict[str, str]:

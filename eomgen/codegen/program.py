@@ -12,6 +12,7 @@ from typing import Literal
 from eomgen.codegen import factorization
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
+from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import FREE, Count, operations, order
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.symbols import Symbols
@@ -107,20 +108,41 @@ def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = No
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
     """
-    symbols = assembly.symbols
-    rates = kinematics(assembly)
-    if assembly.J:
-        return program_of(rates + symbols.a, symbols, inputs=inputs, solve=bordered(assembly))
-    candidates = []
-    if assembly.accelerations is not None:
-        candidates.append(program_of(rates + assembly.accelerations, symbols, inputs=inputs))
-    if factorization.operation_count(assembly.M) <= UNROLLED_AT_MOST:
-        a = factorization.solved(assembly.M, assembly.forcing)
-        candidates.append(program_of(rates + a, symbols, inputs=inputs))
-    else:
-        solve = Solve(assembly.M, (), assembly.forcing, symbols.a)
-        candidates.append(program_of(rates + symbols.a, symbols, inputs=inputs, solve=solve))
+    return program_in_motion((*kinematics(assembly), *assembly.symbols.a), assembly, inputs)
+
+
+def program_in_motion(outputs: Row, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
+    """Outputs that hold accelerations, along the motion: a of the equations, by the way that takes the fewest operations.
+
+    Args:
+        outputs: expressions in the assembly's symbols, accelerations among them.
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    if assembly.J and not assembly.friction:
+        return program_of(outputs, assembly.symbols, inputs=inputs, solve=bordered(assembly))
+    candidates = [_explicit(outputs, assembly, a, inputs) for a in _explicit_accelerations(assembly)]
+    if not candidates or not (assembly.friction or _is_short(assembly)):
+        solve = Solve(assembly.M, (), assembly.forcing, assembly.symbols.a)
+        candidates.append(program_of(outputs, assembly.symbols, inputs=inputs, solve=solve))
     return min(candidates, key=lambda program: program.count.total)
+
+
+def _explicit_accelerations(assembly: Assembly) -> list[Row]:
+    """a written out: as the formulation gives them, and by a factorization that is not too long."""
+    found = [] if assembly.accelerations is None else [assembly.accelerations]
+    if not assembly.friction and _is_short(assembly):
+        found.append(factorization.solved(assembly.M, assembly.forcing))
+    return found
+
+
+def _is_short(assembly: Assembly) -> bool:
+    return factorization.operation_count(assembly.M) <= UNROLLED_AT_MOST
+
+
+def _explicit(outputs: Row, assembly: Assembly, a: Row, inputs: Mapping[str, Scalar] | None) -> Program:
+    known = dict(zip(assembly.symbols.a, a, strict=True))
+    return program_of(substituted(outputs, known), assembly.symbols, inputs=inputs)
 
 
 def kinematics(assembly: Assembly) -> Row:

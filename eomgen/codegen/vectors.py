@@ -38,7 +38,7 @@ def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6,
         if vector is not None:
             found.append(vector)
     if not found:
-        raise DerivationError("the right-hand side has no value at any of the states tried for test vectors")
+        raise DerivationError("the equations have no value at any of the states tried for test vectors")
     return tuple(found)
 
 
@@ -87,12 +87,12 @@ def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | 
     arithmetic = fifty_digits()
     values = {node: arithmetic.number(Fraction(number)) for node, number in zip(arguments, numbers, strict=True)}
     try:
-        dx = tuple(float(value) for value in outputs_at(program, values, arithmetic))
+        result = tuple(float(value) for value in outputs_at(program, values, arithmetic))
     except NoValue:
         return None
     found = floats(state.t, state.x, state.p, state.inputs or ())
-    largest = max(1.0, *map(abs, dx)) if dx else 1.0
-    error = max((abs(a - b) for a, b in zip(found, dx, strict=True)), default=0.0) / largest
+    largest = max(1.0, *map(abs, result)) if result else 1.0
+    error = max((abs(a - b) for a, b in zip(found, result, strict=True)), default=0.0) / largest
     if not error < WORST:
         return None
-    return Vector(state.t, state.x, state.p, state.inputs, dx, float(max(TOLERANCE, 10 * error)))
+    return Vector(state.t, state.x, state.p, state.inputs, result, float(max(TOLERANCE, 10 * error)))

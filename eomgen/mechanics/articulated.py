@@ -62,7 +62,7 @@ def applies(motion: Motion, branches: tuple[Branch, ...]) -> bool:
 def with_accelerations(system: System, assembly: Assembly) -> Assembly:
     """The assembly with explicit accelerations, where articulated bodies give them."""
     branches = branches_of(system.motion)
-    if assembly.J or not applies(system.motion, branches):
+    if assembly.J or assembly.friction or not applies(system.motion, branches):
         return assembly
     return replace(assembly, accelerations=accelerations(system.loads, branches))
 

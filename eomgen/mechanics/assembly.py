@@ -29,6 +29,7 @@ class Assembly:
         phi: gaps, k (None for a row that has none).
         T, V: kinetic and potential energy [J].
         accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
+        friction: the part of Q that rubbing contacts make, nu; () where nothing rubs.
     """
 
     symbols: Symbols
@@ -45,6 +46,7 @@ class Assembly:
     T: Scalar
     V: Scalar
     accelerations: Row | None = None
+    friction: Row = ()
 
 
 def assembled(

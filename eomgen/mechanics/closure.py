@@ -6,7 +6,7 @@ makes redundant rows differ by d. So positions are sought to 1e-28.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from random import Random
 from typing import Any
 
@@ -15,10 +15,10 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.ties import Ties
-from eomgen.model.values import exact_parameters, start_values
+from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 
 STEPS = 60  # of the search
 CLOSED = 1e-28  # of a gap, against a size of 1
@@ -36,25 +36,43 @@ def generic_state(ties: Ties, rng: Random | None = None) -> State:
         MissingValues, DerivationError: the ties do not close there.
     """
     rng = rng or Random(1)
+    state, q = _still(ties, rng)
+    for spread in SPREADS:
+        found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
+        if found is not None:
+            return _moving(ties, found)
+    raise _open(ties, exact_parameters(ties.motion.scope.model))
+
+
+def scattered_state(ties: Ties) -> State:
+    """Values of every symbol: near the start, off any special position; the ties need not hold."""
+    rng = Random(1)
+    state, q = _still(ties, rng)
+    return state | _scattered(ties, q, SPREADS[0], rng)
+
+
+def _still(ties: Ties, rng: Random) -> tuple[State, dict[str, float]]:
+    """(values of every symbol but the coordinates, where the coordinates start)."""
     scope = ties.motion.scope
     model, symbols = scope.model, scope.symbols
     known = exact_parameters(model)
     p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
-    q, _ = start_values(model, p)
     given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
     given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
-    state = {node: _number(value) for node, value in given.items()}
+    state = {node: number(value) for node, value in given.items()}
     for name, node in symbols.inputs.items():
         state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
-    for spread in SPREADS:
-        near = {node: _number(q[node.name] + _shift(scope, node, spread, rng)) for node in symbols.q}
-        closed = _closed(ties, state | near)
-        if closed is not None:
-            return _moving(ties, closed)
-    raise _open(ties, known)
+    return state, start_values(model, p)[0] | first_guesses(model, p)
 
 
-def _number(value: float) -> Any:
+def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -> State:
+    """Coordinates that lie about those given."""
+    scope = ties.motion.scope
+    return {node: number(q[node.name] + _shift(scope, node, spread, rng)) for node in scope.symbols.q}
+
+
+def number(value: float) -> Any:
+    """A float as a number of 50 digits."""
     return fifty_digits().number(1) * value
 
 
@@ -66,20 +84,29 @@ def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
     missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
     if missing:
         return MissingValues(missing)
-    names = ", ".join(dict.fromkeys(row.tie for row in ties.closing))
+    names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
     return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
 
 
-def _closed(ties: Ties, state: State) -> State | None:
-    """The nearest state with phi = 0; None where none is near.
+def movable(ties: Ties) -> list[Node]:
+    """The coordinates that are not driven."""
+    scope = ties.motion.scope
+    return [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
+
+
+def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
+    """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
+    return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
+
+
+def closed(ties: Ties, state: State, free: Sequence[Node]) -> State | None:
+    """The nearest state with phi = 0 that is reached by moving the free coordinates; None where none is near.
 
     Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
     also where rows are redundant, and does not leap along directions that only an open loop resists.
     Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
     """
-    scope = ties.motion.scope
-    gaps = tuple(gap for gap in ties.phi if gap is not None)
-    free = [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
+    gaps = gaps_of(ties)
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     try:
         for _ in range(STEPS):

@@ -13,6 +13,7 @@ import numpy as np
 
 from eomgen.errors import EomgenError, NotYet
 from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
@@ -62,7 +63,11 @@ class Freedom:
 
 
 def freedom_of(model: Model) -> Freedom:
-    """The degrees of freedom of a model, where its kinds are built."""
+    """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
+
+    Raises:
+        DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
+    """
     waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
@@ -70,6 +75,8 @@ def freedom_of(model: Model) -> Freedom:
         ties = ties_of(motion_of(scope_of(model)))
     except NotYet as error:
         return Freedom(not_counted=error.what)
+    if dependent_coordinates(ties.motion.scope):
+        elimination_of(ties)
     count, formula = counted(ties)
     identical = tuple(dict.fromkeys(row.tie for row in ties.rows if row.identical))
     closing = tuple(dict.fromkeys(row.tie for row in ties.closing))

@@ -15,8 +15,11 @@ from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion, ground_place
 from eomgen.mechanics.scope import primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, UniformField
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
 
 
@@ -97,9 +100,10 @@ class Loads:
 
 @dataclass(frozen=True)
 class SystemScene:
-    """What the force laws ask of a system in motion."""
+    """What the force laws and the ties ask of a system in motion; `where` is the part that asks, for messages."""
 
     motion: Motion
+    where: str = ""
 
     def value(self, expression) -> Scalar:
         return self.motion.scope.value(expression)
@@ -172,12 +176,42 @@ class SystemScene:
         at = {q: start_value(scope, c) for q, c in zip(scope.symbols.q, coordinates, strict=True)}
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
+    def own_place(self, body: str, point: str | None) -> Place:
+        """A body's own point; None: its origin."""
+        return (body, self.motion.points[body][(point or "origin").rpartition(".")[2]])
+
+    def line(self, body: str) -> tuple[Place, Place]:
+        """The two points of a body's line."""
+        first, second = self.motion.scope.model.bodies[body].line
+        return self.own_place(body, first), self.own_place(body, second)
+
+    def radius(self, body: str) -> Scalar:
+        """Of the body's round shape [m]."""
+        return self.value(self.motion.scope.model.bodies[body].shape.radius)
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        return self.motion.moves(scalars)
+
+    def vanishes(self, scalar: Scalar) -> bool:
+        """Whether the scalar is zero whatever the values of its symbols."""
+        return scalar == 0 if type(scalar) is not Node else equal_at_random_states([(scalar, 0)]).equal
+
+    def worth(self, scalar: Scalar) -> float | None:
+        """The number that the scalar is at the start with the model's values (None: some are missing)."""
+        scope = self.motion.scope
+        known = exact_parameters(scope.model)
+        values = {node: known[name] for name, node in scope.symbols.parameters.items() if name in known}
+        at_start = self.start(scalar)
+        if not set(symbols_of((at_start,))) <= values.keys():
+            return None
+        return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
+
 
 def start_value(scope, coordinate) -> Scalar:
     """Where a coordinate starts, as an expression of the parameters."""
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
-    return scope.value(coordinate.start)
+    return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
 
 
 def loads_of(motion: Motion) -> Loads:

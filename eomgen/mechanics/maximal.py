@@ -9,7 +9,8 @@ unknown wrench F_i from its joint; the joints say how A_i may differ from that o
     J a + gamma = 0
 
 One linear system in (A, F, a, lam); what depends on velocity is found by differences of numbers along
-the motion, not by derivatives of expressions.
+the motion, not by derivatives of expressions. Dependent coordinates are free here, and every tie that closes them has
+its lam: so the elimination is checked too.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 
 from eomgen.mechanics.armature import armature_bias, armature_mass
 from eomgen.mechanics.dense import independent, solution
+from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
@@ -77,6 +79,21 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
     Raises:
         NoValue: a free coordinate moves no mass at the state.
     """
+    if system.free is None:
+        return _accelerations(system, state)
+    free = system.free.scope.symbols.u
+    own = [free.index(u) for u in system.scope.symbols.u]
+    return _accelerations(system.free, state | free_speeds(system, system.free, state))[own]
+
+
+def free_speeds(system: System, free: System, state: State) -> State:
+    """The speeds of the free system, the dependent ones as they follow."""
+    rates = evaluate(free_rates(system, free), state, fifty_digits())
+    return dict(zip(free.scope.symbols.u, rates, strict=True))
+
+
+def _accelerations(system: System, state: State) -> np.ndarray:
+    """a of a system in which every tie that closes has its multiplier."""
     numbers = Numbers(system, state)
     links = system.motion.links
     n, nu, k = len(links), len(system.scope.symbols.u), len(system.ties.closing)

@@ -7,19 +7,22 @@ and axes, r = R^T (p - p_body), v = dr/dt, a = dv/dt.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.drive import drive, multiplier
 from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
 from eomgen.mechanics.inertia import kinetic_energy
+from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.forces.load import Place
 from eomgen.symbolic.derivative import derivative
-from eomgen.symbolic.expressions import Call, Reference
+from eomgen.symbolic.expressions import Call, Expression, Reference
 from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
 
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
@@ -33,7 +36,6 @@ TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)
 """Functions of a body: (time derivatives, component)."""
 
 LATER = {
-    "reactions": ("reaction", "tension", "multiplier", "drive"),
     "linearization": ("mass", "damping", "stiffness", "frequency"),
     "centres of rotation": ("rotation_center",),
     "moments of inertia": ("inertia",),
@@ -49,11 +51,28 @@ def later(function: str) -> str:
     return ""
 
 
+COMPONENTS_OF_REACTIONS = {f"reaction_{axis}": i for axis, i in _AXES.items()}
+COUPLES = {"reaction_couple": 2, **{f"reaction_couple_{axis}": i for axis, i in _AXES.items()}}
+ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, "reaction_n", "tension", "multiplier", "drive"))
+"""Functions for which the balance of the bodies is needed."""
+
+
 @dataclass(frozen=True)
 class Quantities:
-    """What the functions of the outputs are worth in one system."""
+    """What the functions of the outputs are worth in one system.
+
+    Args:
+        system: the system.
+        at: exact scalars that stand in place of coordinates, speeds, accelerations and t in the reactions.
+    """
 
     system: System
+    at: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    @cached_property
+    def reactions(self) -> Reactions:
+        """All reactions, of generic coordinates or at the given ones."""
+        return reactions_of(self.system, self.at)
 
     def value(self, call: Call) -> Scalar:
         """One function at its arguments, in q, u, a, t and the parameters.
@@ -64,7 +83,11 @@ class Quantities:
         """
         if waits := later(call.name):
             raise NotYet(f"'{call}': {waits}")
+        if call.name == "tension":
+            return self._tension(call)
         names = [_name(call, argument) for argument in call.args]
+        if call.name in ASKING_REACTIONS:
+            return self._reaction(call, *names)
         if call.name in COMPONENTS:
             n, i = COMPONENTS[call.name]
             return self.of_point(n, *names)[i]
@@ -77,6 +100,37 @@ class Quantities:
         if call.name not in _OTHERS:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
         return _OTHERS[call.name](self, *names)
+
+    def _reaction(self, call: Call, owner: str, frame: str = "") -> Scalar:
+        """A component of a reaction: reaction_x(B), reaction_x(B.II), reaction_y(bar, bar), reaction_n(wall)."""
+        if call.name == "multiplier":
+            return self._multiplier(owner)
+        if call.name == "drive":
+            return drive(self.system, owner)
+        owner, _, side = owner.partition(".")
+        if call.name == "reaction_n":
+            return self.reactions.normal(owner)
+        if call.name in COMPONENTS_OF_REACTIONS:
+            return self.reactions.force(owner, side, frame)[COMPONENTS_OF_REACTIONS[call.name]]
+        return self.reactions.couple(owner, side, frame)[COUPLES[call.name]]
+
+    def _tension(self, call: Call) -> Scalar:
+        """tension(rope) or tension(rope, 2)."""
+        owner, *strand = call.args
+        name = _name(call, owner)
+        if name in self.system.scope.model.trusses:
+            raise NotYet(f"'{call}': trusses come with a later version")
+        number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
+        if not isinstance(number, int) or len(strand) > 1:
+            raise DerivationError(f"'{call}': the second argument is the number of the strand, from 1")
+        return self.reactions.tension(name, number)
+
+    def _multiplier(self, tie: str) -> Scalar:
+        """lam of a tie of one row; of one without a place it stands in the equations of motion."""
+        rows = [row for row in self.system.ties.rows if row.tie == tie]
+        if any(row.pushes for row in rows):
+            return self.reactions.multiplier(tie)
+        return multiplier(self.system, tie)
 
     def of_point(self, order: int, point: str, frame: str = GROUND) -> Vector:
         """Position (order 0), velocity (1) or acceleration (2) of a point, ground axes or those of `frame` [m, s]."""

@@ -1,7 +1,7 @@
 """Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
 
 q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero
-row of N and its given rate in nu.
+row of N and its given rate in nu; a dependent one has the row that the ties give, and is free until then.
 """
 
 from __future__ import annotations
@@ -91,16 +91,12 @@ class Scope:
 
 
 def scope_of(model: Model) -> Scope:
-    """The symbols of a model, its kinematic equations, and the meaning of its names.
+    """The symbols of a model, its kinematic equations, and the meaning of its names; dependent coordinates are free.
 
     Raises:
-        NotYet: eliminated coordinates or declared speeds, which this version does not derive.
+        NotYet: declared speeds, which this version does not derive.
         DerivationError: a given acceleration whose integral has no closed form.
     """
-    for name, coordinate in model.coordinates.items():
-        if coordinate.dependent:
-            raise NotYet(f"coordinate '{name}' is dependent: elimination is not derived yet", f"coordinates.{name}",
-                         "leave out `dependent`: the constraints then close by multipliers")
     if model.speeds:
         raise NotYet("declared speeds are not derived yet", "speeds", "use the rates of the coordinates")
     graph = Graph()

@@ -9,20 +9,25 @@ A row without bodies (`equation`) gives dphi/dq, or its row in the rates, direct
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, NotYet
-from eomgen.mechanics.kinematics import Motion, slide_of
+from eomgen.mechanics.contacts import CLOSED, Mode, Modes, friction_factor, rows_in_mode
+from eomgen.mechanics.kinematics import GROUND, Link, Motion, slide_of
 from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import PointForce
+from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import Wrench, dot
+from eomgen.symbolic.spatial import Wrench, apply, dot, times
+
+
+Push = PointForce | Couple
 
 
 @dataclass(frozen=True)
@@ -38,8 +43,11 @@ class Row:
         status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
             coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
         component: "x", "y", "z", "n", "t", "couple", "tension", or "".
-        rubbing: of a contact that can rub, (body, wrench) of a unit of friction, as `wrenches`.
+        pushes: the forces and couples behind `wrenches`, as the tie gave them.
+        tangent: of a contact that can rub, the forces and couples for a unit of friction.
         sliding: the sliding velocity dual to it [m/s].
+        friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
+        eliminates: the dependent coordinate that an "eliminated" row determines, or "".
     """
 
     tie: str
@@ -50,8 +58,11 @@ class Row:
     gap: Scalar | None
     status: str
     component: str = ""
-    rubbing: tuple[tuple[str, Wrench], ...] = ()
+    pushes: tuple[Push, ...] = ()
+    tangent: tuple[Push, ...] = ()
     sliding: Scalar = 0
+    friction: Scalar | None = None
+    eliminates: str = ""
 
     @property
     def identical(self) -> bool:
@@ -94,23 +105,50 @@ class Ties:
         return tuple(row.gap for row in self.closing)
 
 
-def ties_of(motion: Motion) -> Ties:
+def ties_of(
+    motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: Modes | None = None
+) -> Ties:
     """The rows of every constraint of the model.
 
+    Args:
+        used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
+        modes: how contacts are that can end, rub or stick.
     Raises:
-        NotYet: a kind whose rows this version does not build, friction, contact that can end, a truss.
+        NotYet: a kind whose rows this version does not build, a truss.
     """
     for where, what in unbuilt_ties(motion.scope.model):
         raise NotYet(f"the rows of '{what}' are not built yet", where)
-    scene = SystemScene(motion)
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
-        for number, tie_row in enumerate(constraint.rows(scene), start=1):
-            rows.append(_row(motion, name, number, tie_row))
+        scene = SystemScene(motion, f"constraints.{name}")
+        mode = (modes or {}).get(name, CLOSED)
+        for number, tie_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
+            label = (name, number)
+            row = _row(motion, name, number, tie_row, used=label in (used or {}))
+            row = replace(row, eliminates=(used or {}).get(label, ""))
+            rows.append(_rubbing(scene, constraint, row, mode))
+    stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
+    rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
     return Ties(motion, tuple(rows))
 
 
-def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
+def rows_of(motion: Motion, name: str) -> tuple[Row, ...]:
+    """The rows that a tie has while it is closed, whether it is so or not: how far an open contact is open."""
+    constraint = motion.scope.model.constraints[name]
+    rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
+    return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
+
+
+def _held_on_path(motion: Motion, link: Link) -> TieRow:
+    """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
+    _, v = link.S[0]
+    along = apply(link.pose.R, v)
+    parent = None if link.parent == GROUND else motion.links[link.parent].name
+    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), times(-1, along)))
+    return TieRow(pushes, None, component="t", material=True)
+
+
+def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
     wrenches = _wrenches(motion, row.pushes)
     if row.pushes:
         direct = 0 if row.material else _slide(motion, row.pushes)
@@ -120,20 +158,31 @@ def _row(motion: Motion, name: str, number: int, row: TieRow) -> Row:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
     velocity = _power(motion, wrenches, direct)
-    rubbing = _wrenches(motion, row.tangent)
-    sliding = _power(motion, rubbing, 0 if row.material else _slide(motion, row.tangent)) if rubbing else 0
-    status = _status(motion, velocity, row.gap)
+    sliding = 0
+    if row.tangent:
+        along = 0 if row.material else _slide(motion, row.tangent)
+        sliding = _power(motion, _wrenches(motion, row.tangent), along)
+    status = "eliminated" if used else _status(motion, velocity, row.gap)
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}", f"constraints.{name}", mend)
-    return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, rubbing, sliding)
+    return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
+               row.tangent, sliding)  # fmt: skip
+
+
+def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
+    """The row with its friction, where it has any."""
+    law = getattr(constraint, "friction", None)
+    if law is None or not row.tangent:
+        return row
+    return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
 
 
 def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
     return "identical" if holds_identically(velocity) and (gap is None or holds_identically(gap)) else "closing"
 
 
-def _wrenches(motion: Motion, pushes: tuple[Any, ...]) -> tuple[tuple[str, Wrench], ...]:
+def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
     return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
 
 
@@ -141,7 +190,7 @@ def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Sca
     return sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
 
 
-def _slide(motion: Motion, pushes: tuple[Any, ...]) -> Scalar:
+def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
     """What points that move in their bodies add to the power of the pushes."""
     return sum((_sliding(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
 

@@ -2,10 +2,6 @@
 
 from eomgen.model.parts import Model
 
-CONTACT = ("friction", "unilateral")
-"""Fields of a tie that make it end or resist: without them its rows would give a wrong motion."""
-
-
 def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
     """(where, kind) of every joint, tie, force and table that waits for a later version, in the model's order."""
     return (*unbuilt_bodies(model), *unbuilt_ties(model), *_unbuilt_forces(model))
@@ -26,10 +22,8 @@ def unbuilt_ties(model: Model) -> tuple[tuple[str, str], ...]:
     """Constraints and trusses among them: what cannot be counted in the degrees of freedom."""
     waiting = []
     for name, tie in model.constraints.items():
-        if not tie.works:
+        if not tie.works_in(model.space):
             waiting.append((f"constraints.{name}", tie.kind))
-        else:
-            waiting += [(f"constraints.{name}.{field}", field) for field in CONTACT if getattr(tie, field, None)]
     return (*waiting, *((f"trusses.{name}", "truss") for name in model.trusses))
 
 

@@ -77,6 +77,17 @@ def start_values(
     return q, u
 
 
+def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:
+    """Where the search for a dependent coordinate begins, of those that say so by `near`.
+
+    Raises:
+        MissingValues: a guess needs parameters without values.
+    """
+    lookup = {**exact_parameters(model, parameters), "pi": math.pi}
+    guessed = {name: part.near for name, part in model.coordinates.items() if part.dependent and part.near is not None}
+    return {name: _float(near, lookup, f"coordinates.{name}.near") for name, near in guessed.items()}
+
+
 def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Expression]:
     read = {}
     for name, value in overrides.items():

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.formulations import projection
-from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies
+from eomgen.mechanics.formulations import lagrange, projection
+from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.report import energy_steps, motion_steps, projection_steps
@@ -15,7 +15,9 @@ from eomgen.report.notation import notation_step
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Derivation, Law, Step
+from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.text import text_size
 
 LAGRANGE = Law(
     "d/dt(dT/dq_k') - dT/dq_k = Q_k",
@@ -26,6 +28,17 @@ LAGRANGE_WITH_TIES = Law(
     f"{LAGRANGE.text} + (J^T*lam)_k", LAGRANGE.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}"
 )
 MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
+
+MAGGI = Law(
+    "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i - Q_i) = 0",
+    r"\sum_{i} N_{ik} \left(\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{i}} - \frac{\partial T}{\partial q_{i}}"
+    r" - Q_{i}\right) = 0",
+)
+MAGGI_WITH_TIES = Law(
+    MAGGI.text.replace("= 0", "= (J^T*lam)_k"),
+    MAGGI.latex.replace("= 0", r"= \left(J^{\mathsf{T}} \lambda\right)_{k}"),
+)
+SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
 
 
 def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool = False) -> Derivation:
@@ -53,14 +66,32 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
 
 
 def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+    """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations."""
+    if system.free is None:
+        return _by_energies(system, reader, assembly)
+    if _is_integrable(system, assembly):
+        momenta = energy_steps.momenta_of(system, reader, _whole(system, reader, body_energies(system.motion)))
+        if sum(text_size(x) for x in (*momenta.momenta, *momenta.rates, *momenta.held)) <= SHORT:
+            return _by_energies(system, reader, assembly)
+    return _by_maggi(system, system.free, reader, assembly)
+
+
+def _is_integrable(system: System, assembly: Assembly) -> bool:
+    """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
+    _, c = lagrange.inertia_side(system.motion, kinetic_energy(system.motion))
+    return equal_at_random_states(zip(c, assembly.c, strict=True)).equal
+
+
+def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
     energies = body_energies(system.motion)
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
     forces = reader.short_with_symbols(generalized_forces(system.loads))
+    velocities = (motion_steps.velocities_step(system, reader, energies),)
+    constraints = motion_steps.constraints_step(system, reader)
     steps = (
         motion_steps.positions_step(system, reader),
-        motion_steps.velocities_step(system, reader, energies),
-        *motion_steps.constraints_step(system, reader),
+        *((*velocities, *constraints) if system.free is None else (*constraints, *velocities)),
         energy_steps.kinetic_energy_step(system, reader, energies, T),
         energy_steps.work_step(system, reader, forces),
     )
@@ -69,6 +100,28 @@ def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple
     sides = _lagrange_sides(assembly, momenta, forces)
     law = LAGRANGE_WITH_TIES if assembly.J else LAGRANGE
     return steps, equations_of(system, reader, assembly, sides, ("Lagrange's equations ", law, ":"))
+
+
+def _by_maggi(
+    system: System, free: System, reader: Reader, assembly: Assembly
+) -> tuple[tuple[Step, ...], Result]:
+    """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
+    energies = body_energies(free.motion)
+    T = _whole(free, reader, energies)
+    momenta = energy_steps.momenta_of(free, reader, T)
+    forces = reader.short_with_symbols(generalized_forces(free.loads))
+    steps = (
+        motion_steps.positions_step(system, reader),
+        motion_steps.velocities_step(free, reader, energies),
+        *motion_steps.constraints_step(system, reader),
+        energy_steps.kinetic_energy_step(free, reader, energies, T),
+        energy_steps.work_step(free, reader, forces),
+        energy_steps.derivatives_step(free, reader, momenta),
+    )
+    own = lagrange.assemble(system)
+    law = MAGGI_WITH_TIES if assembly.J else MAGGI
+    words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
+    return steps, equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), (words, law, ":"))
 
 
 def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:

@@ -11,11 +11,14 @@ from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import PointForce
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
-from eomgen.report.statements import Meaning, Name, Prose, Rate, Side, Statement, Step, Table
+from eomgen.report.statements import Law, Meaning, Name, Prose, Rate, Side, Statement, Step, Table
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, dot
 
 AXES = "xyz"
+ALONG = Law("d/dq_k = sum_i N_ik*d/dq_i",
+            r"\frac{\partial}{\partial q_{k}} = \sum_{i} N_{ik} \frac{\partial}{\partial q_{i}}")  # fmt: skip
+WITH = Law("N_ik = dq_i'/dq_k'", r"N_{ik} = \frac{\partial \dot{q}_{i}}{\partial \dot{q}_{k}}")
 Pair = tuple[Side, Scalar]
 
 
@@ -89,24 +92,45 @@ def spins(system: System, body: str, spin: Vector) -> list[Pair]:
 
 
 def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
-    """The constraints, with the gaps that must stay zero; no step where there are none."""
+    """The constraints: those that the coordinates satisfy, the gaps that must stay zero, and the dependent rates."""
     if not system.ties.rows:
         return ()
-    statements: list[Statement] = []
-    named = dict(zip((row.label for row in system.ties.closing), system.symbols.lam, strict=True))
-    formulas: list[Pair] = []
-    for row in system.ties.rows:
-        if row.identical:
-            statements.append(Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)))
-        else:
-            formulas.append(_closing(row))
-    if formulas:
-        statements += [Prose(("These must vanish along the motion:",)), *page(reader, formulas, then=(0,))]
-        rows = tuple(
-            Meaning(named[row.label], f"multiplier of {row.tie}, row {row.number}") for row in system.ties.closing
-        )
-        statements.append(Table(("multiplier", "meaning", "unit", ""), rows))
+    satisfied = [row for row in system.ties.rows if row.identical]
+    statements: list[Statement] = [
+        Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)) for row in satisfied
+    ]
+    held = _held(system)
+    if held:
+        statements += [Prose(("These must vanish along the motion:",)), *page(reader, held, then=(0,))]
+    if system.free is not None:
+        statements += _dependent(system, system.free, reader)
+    if system.ties.closing:
+        statements.append(_multipliers(system))
     return (Step("constraints", "Constraints", tuple(statements)),)
+
+
+def _held(system: System) -> list[Pair]:
+    """Of each row that closes its gap or its rate, every coordinate free."""
+    free = system.free or system
+    return [_closing(row) for row in free.ties.closing]
+
+
+def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
+    """The rates of the dependent coordinates, and how derivatives are meant from here on."""
+    known = dict(zip((q.name for q in system.symbols.q), system.scope.rates, strict=True))
+    solved = [u for u in free.symbols.u if u not in system.symbols.u]
+    rates: list[Pair] = [(u, known[u.name[:-1]]) for u in solved]
+    return [
+        Prose(("Their time derivatives are linear in the rates. Solved for those of the dependent coordinates:",)),
+        *page(reader, rates),
+        Prose(("Along the motions that the constraints allow, ", ALONG, ", ", WITH, ".")),
+    ]
+
+
+def _multipliers(system: System) -> Table:
+    named = zip(system.ties.closing, system.symbols.lam, strict=True)
+    rows = tuple(Meaning(lam, f"multiplier of {row.tie}, row {row.number}") for row, lam in named)
+    return Table(("multiplier", "meaning", "unit", ""), rows)
 
 
 def _closing(row: Row) -> Pair:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from eomgen.mechanics.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
@@ -65,10 +66,12 @@ def _in_unit(value, part) -> str:
 def _freedom(system: System) -> Step:
     """How many coordinates, how many of them are driven, how many rows close."""
     symbols, closing = system.symbols, system.ties.closing
-    driven = len(symbols.q) - len(symbols.u)
+    dependent = len(dependent_coordinates(system.scope))
+    driven = len(symbols.q) - len(symbols.u) - dependent
+    others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
     statements: list[Statement] = [Prose((
         f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
-        f", {driven} of them driven." if driven else ".",
+        "".join(f", {other}" for other in others), ".",
     ))]  # fmt: skip
     identical = [row for row in system.ties.rows if row.identical]
     if identical:
@@ -76,6 +79,15 @@ def _freedom(system: System) -> Step:
         statements.append(Prose((
             f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves ({ties}): ",
             "they carry reactions and take no freedom.",
+        )))  # fmt: skip
+    eliminated = [row for row in system.ties.rows if row.status == "eliminated"]
+    if eliminated:
+        ties = ", ".join(dict.fromkeys(row.tie for row in eliminated))
+        statements.append(Prose((
+            f"{count(len(eliminated), 'equation')} of the constraints ",
+            "gives" if len(eliminated) == 1 else "give",
+            " the rate of the dependent coordinate" if dependent == 1 else " the rates of the dependent coordinates",
+            f" ({ties}).",
         )))  # fmt: skip
     if closing:
         statements.append(Prose((
@@ -93,15 +105,20 @@ def _coordinates(system: System) -> Step:
     """Coordinates, their rates and accelerations, and what moves as the model says."""
     model, symbols, scope = system.scope.model, system.symbols, system.scope
     values = exact_parameters(model)
-    free = {u.name.removesuffix("'"): (u, a) for u, a in zip(symbols.u, symbols.a, strict=True)}
+    whole = (system.free or system).symbols
+    free = {u.name.removesuffix("'"): (u, a) for u, a in zip(whole.u, whole.a, strict=True)}
     rows: list[Meaning] = []
     for q in symbols.q:
         part = model.coordinates[q.name]
         unit = _unit(part)
-        rows.append(Meaning(q, part.about or "coordinate", unit, _start(part, part.start, values)))
+        kind = "dependent coordinate" if part.dependent else "coordinate"
+        guessed = part.dependent and part.near is not None
+        start = f"near {_start(part, part.near, values)}" if guessed else _start(part, part.start, values)
+        rows.append(Meaning(q, part.about or kind, unit, start))
         if q.name in free:
             u, a = free[q.name]
-            rows.append(Meaning(u, "its rate", _per(unit, "s"), _start(part, part.speed, values)))
+            speed = "" if part.dependent else _start(part, part.speed, values)
+            rows.append(Meaning(u, "its rate", _per(unit, "s"), speed))
             rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]

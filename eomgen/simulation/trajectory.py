@@ -8,7 +8,7 @@ import io
 import os
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any, Literal
 
@@ -16,7 +16,8 @@ import numpy as np
 
 from eomgen.errors import RunFailed
 
-Status = Literal["finished", "not finite", "step too small", "too many steps", "interrupted"]
+Status = Literal["finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact",
+                 "singular"]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,15 @@ class Phase:
     Args:
         start, end: its times [s].
         ended_by: what ended it, in words.
+        rows: its first row in the trajectory, and the one after its last.
+        stage: its equations, contacts and reactions, where contacts are that change; else None.
     """
 
     start: float
     end: float
     ended_by: str
+    rows: tuple[int, int] = (0, 0)
+    stage: Any = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -6,12 +6,13 @@ sum f, an atom with negative powers. The work is bounded: `TooLarge` rather than
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.atoms import RADIAN, Atoms, Opaque
 from eomgen.symbolic.evaluation import order, united
+from eomgen.symbolic.factoring import square_root
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.terms import (
     HALF,
@@ -50,10 +51,12 @@ class Expansion:
     Args:
         graph: owner of the nodes; atoms are nodes of it and are named by their index.
         limit: products of terms that may be made before TooLarge is raised.
+        positive: symbols that stand for positive numbers: roots of their squares are taken.
     """
 
-    def __init__(self, graph: Graph, limit: int) -> None:
+    def __init__(self, graph: Graph, limit: int, positive: Collection[Node] = ()) -> None:
         self.graph, self.limit, self.work = graph, limit, 0
+        self.positive = frozenset(x.index for x in positive)
         self.atoms = Atoms(graph)
         self._known: dict[Node, Terms] = {}
         self._too_long: set[Node] = set()
@@ -166,9 +169,48 @@ class Expansion:
         outside = content(f) if f else Fraction(0)
         root = self.graph.sqrt(outside)
         inside = scaled(f, 1 / outside) if f else f
+        outer = self._constant_root(root)
+        if self.positive and inside:
+            part, inside = self._positive_root(inside)
+            outer = self.product(outer, part)
         if inside in ({}, constant(1)):
-            return self._constant_root(root)
-        return times(self._constant_root(root), self._function("sqrt", (inside,)))
+            return outer
+        return times(outer, self._function("sqrt", (inside,)))
+
+    def _positive_root(self, f: Terms) -> tuple[Terms, Terms]:
+        """(r, g) with sqrt(f) = r sqrt(g): the roots of positive symbols and sums that all terms hold."""
+        powers = tuple((atom, e) for atom, e in common_monomial(f) if self._is_positive(atom))
+        inverted, _ = inverse(powers)
+        inside = times(f, {(inverted, ()): 1})
+        outer = constant(1)
+        for atom, e in powers:  # sqrt(p^3) = p sqrt(p)
+            if e // 2:
+                outer = self.product(outer, {(((atom, e // 2),), ()): 1})
+            if e % 2:
+                outer = self.product(outer, self._root_of_atom(atom))
+        square = square_root(inside) if len(inside) > 1 and self.all_positive(inside) else None
+        if square is not None and self.all_positive(square):
+            return self.product(outer, square), constant(1)
+        return outer, inside
+
+    def _root_of_atom(self, atom: int) -> Terms:
+        if self.atoms.is_a(atom, "sum"):
+            return self._root(self.atoms.opaque[atom].arguments[0])
+        return self._function("sqrt", ({(((atom, 1),), ()): 1},))
+
+    def _is_positive(self, atom: int) -> bool:
+        is_sum = self.atoms.is_a(atom, "sum")
+        return atom in self.positive or (is_sum and self.all_positive(self.atoms.opaque[atom].arguments[0]))
+
+    def all_positive(self, f: Terms) -> bool:
+        """Whether every term is positive."""
+        return all(
+            c > 0 and w == () and all(a < 0 or e % 2 == 0 or self._has_no_sign(a) for a, e in monomial)
+            for (monomial, w), c in f.items()
+        )
+
+    def _has_no_sign(self, atom: int) -> bool:
+        return self._is_positive(atom) or self.atoms.is_a(atom, "sqrt") or self.atoms.is_a(atom, "exp")
 
     def _constant_root(self, root: Scalar) -> Terms:
         """c sqrt(n), as the graph folds the root of a number, as a term."""
@@ -298,8 +340,10 @@ class Expansion:
         return {(((-root, 1),) if root > 1 else (), ()): tidy(sign * c)} if c else {}
 
 
-def expanded(outputs: Iterable[Scalar], limit: int) -> tuple[Expansion, list[Terms]]:
+def expanded(
+    outputs: Iterable[Scalar], limit: int, positive: Collection[Node] = ()
+) -> tuple[Expansion, list[Terms]]:
     """The outputs as sums of terms, with the expansion that owns their atoms."""
     graph, outputs = united(list(outputs))
-    expansion = Expansion(graph, limit)
+    expansion = Expansion(graph, limit, positive)
     return expansion, [expansion.of(x) for x in outputs]

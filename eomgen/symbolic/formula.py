@@ -154,6 +154,78 @@ class Expression:
             columns += [-1] * 4
         return Expression(text, tuple(code), tuple(columns))
 
+    # -- a scalar like any other: laws written over any scalar also write formulas ------------------
+
+    def __add__(self, other: Operand) -> Expression:
+        return _joined(self, "+", other)
+
+    def __radd__(self, other: Operand) -> Expression:
+        return _joined(other, "+", self)
+
+    def __sub__(self, other: Operand) -> Expression:
+        return _joined(self, "-", other)
+
+    def __rsub__(self, other: Operand) -> Expression:
+        return _joined(other, "-", self)
+
+    def __mul__(self, other: Operand) -> Expression:
+        return _joined(self, "*", other)
+
+    def __rmul__(self, other: Operand) -> Expression:
+        return _joined(other, "*", self)
+
+    def __truediv__(self, other: Operand) -> Expression:
+        return _joined(self, "/", other)
+
+    def __rtruediv__(self, other: Operand) -> Expression:
+        return _joined(other, "/", self)
+
+    def scalar_sin(self) -> Expression | int:
+        return 0 if self.literal == 0 else _applied("sin", self)
+
+    def scalar_cos(self) -> Expression | int:
+        return 1 if self.literal == 0 else _applied("cos", self)
+
+
+Operand = Expression | int | Fraction
+
+
+def _joined(a: Operand, sign: str, b: Operand) -> Expression:
+    """a sign b, written out; exact numbers are calculated, a zero that is added and a one that multiplies left out."""
+    a, b = (x if isinstance(x, Expression) else Expression.number(x) for x in (a, b))
+    if a.literal is not None and b.literal is not None and not (sign == "/" and b.literal == 0):
+        return Expression.number(_BINARY[sign](a.literal, b.literal))
+    if sign == "*" and 0 in (a.literal, b.literal):
+        return Expression.number(0)
+    neutral = 0 if sign in "+-" else 1
+    if b.literal == neutral:
+        return a
+    if a.literal == neutral and sign in "+*":
+        return b
+    return _composed(f"{_enclosed(a, sign)} {sign} {_enclosed(b, sign, last=True)}", (a, b), (sign, None))
+
+
+def _applied(function: str, a: Expression) -> Expression:
+    return _composed(f"{function}({a.text})", (a,), ("function", (function, 1)))
+
+
+def _composed(text: str, parts: tuple[Expression, ...], operation: Instruction) -> Expression:
+    """The expression of an operation on others; it stands nowhere in a text."""
+    code = (*(step for part in parts for step in part.code), operation)
+    return Expression(text, code, (-1,) * len(code))
+
+
+def _enclosed(a: Expression, sign: str, last: bool = False) -> str:
+    """An operand in parentheses, where it needs them beside the sign."""
+    outermost, what = a.code[-1]
+    if outermost == "number":
+        alone = what >= 0 and type(what) is int
+    elif outermost in "+-*/":
+        alone = sign in "+-" and (outermost in "*/" or not last)
+    else:
+        alone = outermost in ("name", "function", "call")
+    return a.text if alone else f"({a.text})"
+
 
 _BINARY = {
     "+": scalar_operations.add,

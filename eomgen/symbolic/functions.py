@@ -70,3 +70,15 @@ def over(a, b):
         quotient = Fraction(a, b)
         return quotient.numerator if quotient.denominator == 1 else quotient
     return a / b
+
+
+def chosen(a, bound, if_below, if_above):
+    """if_below where a <= bound, else if_above: a piecewise law over any scalar."""
+    for x in (a, bound):
+        if type(x) is Node:
+            return x.graph.select(x.graph.call("less_equal", a, bound), if_below, if_above)
+    if all(isinstance(x, (int, float, Fraction)) for x in (a, bound)):
+        return if_below if a <= bound else if_above
+    import sympy
+
+    return sympy.Piecewise((if_below, a <= bound), (if_above, True))

@@ -7,7 +7,7 @@ a number of products of terms; where it is not enough, what is readable stays as
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -17,8 +17,10 @@ from eomgen.symbolic.evaluation import united
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion, expanded
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.layout import rebuilt_as_written
 from eomgen.symbolic.quotient import reduced
 from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, tidy, times
+from eomgen.symbolic.text import text_size
 from eomgen.symbolic.writing import Writer, is_rate
 
 LIMIT = 50_000
@@ -34,6 +36,7 @@ __all__ = [
     "normal_form",
     "readable",
     "readable_all",
+    "simplest",
 ]
 
 
@@ -89,19 +92,24 @@ def _has_relations(expansion: Expansion) -> bool:
     return pi in expansion.atoms.nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
 
 
-def readable(x: Scalar, limit: int = LIMIT) -> Scalar:
+def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
     """x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2).
 
     Accelerations come first, then rates, then the rest, each in the order of declaration. x itself where that takes
     more than `limit` products of terms.
+
+    Args:
+        positive: symbols that stand for positive numbers: sqrt(m^2*g) is then m*sqrt(g).
     """
-    return readable_all((x,), limit)[0]
+    return readable_all((x,), limit, positive)[0]
 
 
-def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT) -> tuple[Scalar, ...]:
+def readable_all(
+    outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collection[Node] = ()
+) -> tuple[Scalar, ...]:
     """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
     graph, outputs = united(outputs)
-    expansion = Expansion(graph, limit)
+    expansion = Expansion(graph, limit, positive)
     writer = Writer(expansion)
     written = []
     for x in outputs:
@@ -187,10 +195,14 @@ def _is_still(expansion: Expansion, atom: int) -> bool:
     return node.op == "symbol" and not is_rate(node)
 
 
-def cancelled(x: Scalar, limit: int = LIMIT) -> Scalar:
-    """x as one readable quotient without common factors; x itself where that takes too much work."""
+def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+    """x as one readable quotient without common factors; x itself where that takes too much work.
+
+    Args:
+        positive: symbols that stand for positive numbers.
+    """
     try:
-        expansion, (terms,) = expanded((x,), limit)
+        expansion, (terms,) = expanded((x,), limit, positive)
         numerator, denominator = reduced(expansion, terms)
         writer = Writer(expansion)
         numerator, denominator = _whole(writer, numerator, denominator)
@@ -199,6 +211,21 @@ def cancelled(x: Scalar, limit: int = LIMIT) -> Scalar:
         return expansion.graph.div(_factored(writer, numerator), _factored(writer, denominator))
     except TooLarge:
         return x
+
+
+def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+    """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside."""
+    try:
+        expansion, (terms,) = expanded((x,), limit, positive)
+        above, below = reduced(expansion, terms)
+        writer = Writer(expansion)
+        above, below = _whole(writer, above, below)
+        forms = [writer.sum(terms), expansion.graph.div(_factored(writer, above), _factored(writer, below))]
+        if len(below) == 1:
+            forms.append(writer.sum(expansion.product(above, expansion.reciprocal(below))))
+    except TooLarge:
+        return x
+    return rebuilt_as_written(min(forms, key=text_size))
 
 
 def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:

@@ -7,14 +7,14 @@ from fractions import Fraction
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.shortest import Factors, shortest
-from eomgen.symbolic.terms import Monomial, Terms, Wave, common_number
+from eomgen.symbolic.terms import Monomial, Terms, Wave, common_number, scaled, tidy
 
 
 class Writer:
     """Writes the terms of one expansion as nodes of its graph."""
 
     def __init__(self, expansion: Expansion) -> None:
-        self.atoms, self.graph = expansion.atoms, expansion.graph
+        self.atoms, self.graph, self.positive = expansion.atoms, expansion.graph, expansion.positive
         self._written_atoms: dict[int, Scalar] = {}
 
     def sum(self, terms: Terms) -> Scalar:
@@ -26,8 +26,19 @@ class Writer:
             parts.setdefault(below, {})[above, w] = c
         total: Scalar = 0
         for below in sorted(parts):
-            total = self.graph.add(total, self.graph.div(self._polynomial(parts[below]), self._divisor(below)))
+            total = self.graph.add(total, self._quotient(parts[below], below))
         return total
+
+    def _quotient(self, above: Terms, below: Monomial) -> Scalar:
+        """The terms over sums; a single one with the root of such a sum under one root: sqrt(g/(M + m))."""
+        if self.positive and len(above) == 1:
+            ((monomial, w), c), *_ = above.items()
+            merged, root = self._one_root(tuple(sorted((*monomial, *below))))
+            if root != 1:
+                left = tuple((atom, e) for atom, e in merged if e < 0 and self.atoms.is_a(atom, "sum"))
+                rest = tuple(item for item in merged if item not in left)
+                return self.graph.div(self.graph.mul(self._polynomial({(rest, w): c}), root), self._divisor(left))
+        return self.graph.div(self._polynomial(above), self._divisor(below))
 
     def factored(self, common: Monomial, rest: Terms) -> Scalar:
         """common * (rest)"""
@@ -83,7 +94,47 @@ class Writer:
 
     def _monomial(self, monomial: Monomial) -> tuple[Scalar, Scalar]:
         """(numerator, denominator)"""
-        return self.atoms.monomial_nodes(monomial, {atom: self._atom(atom) for atom, _ in monomial if atom >= 0})
+        monomial, root = self._one_root(monomial) if self.positive else (monomial, 1)
+        above, below = self.atoms.monomial_nodes(
+            monomial, {atom: self._atom(atom) for atom, _ in monomial if atom >= 0}
+        )
+        return self.graph.mul(above, root), below
+
+    def _one_root(self, monomial: Monomial) -> tuple[Monomial, Scalar]:
+        """The roots of positive symbols and sums and of the number as one: sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l)."""
+        exponents = dict(monomial)
+        roots = {atom: inside for atom in exponents if (inside := self._under(atom)) is not None}
+        sums = [atom for atom in exponents if self.atoms.is_a(atom, "sqrt") and atom not in roots]
+        if not roots and not sums:
+            return monomial, 1
+        above: Scalar = 1
+        below: Scalar = 1
+        beside: Scalar = 1
+        for atom in sums:  # sqrt(2) sqrt(4 a + 2 b) = 2 sqrt(2 a + b)
+            inside = self.atoms.opaque[atom].arguments[0]
+            number = self.content(inside)
+            above = self.graph.mul(above, tidy(number))
+            beside = self.graph.mul(beside, self.graph.sqrt(self.sum(scaled(inside, 1 / number))))
+            del exponents[atom]
+        for atom in [*(a for a in exponents if a < 0), *roots]:
+            del exponents[atom]
+            under = roots.get(atom)
+            if under is not None and exponents.get(under, 0) < 0:
+                exponents[under] += 1
+                below = self.graph.mul(below, self._atom(under))
+            else:
+                above = self.graph.mul(above, -atom if under is None else self._atom(under))
+        rest = tuple((atom, e) for atom, e in sorted(exponents.items()) if e)
+        return rest, self.graph.mul(self.graph.sqrt(self.graph.div(above, below)), beside)
+
+    def _under(self, atom: int) -> int | None:
+        """The positive symbol, or the sum that one divides by, whose root the atom is."""
+        if not self.atoms.is_a(atom, "sqrt"):
+            return None
+        inside = self.atoms.nodes[atom].args[0]
+        if type(inside) is not Node or not (inside.index in self.positive or self.atoms.is_a(inside.index, "sum")):
+            return None
+        return inside.index
 
     def _applied(self, op: str, arguments: list[Scalar]) -> Scalar:
         if op == "select":

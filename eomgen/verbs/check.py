@@ -15,14 +15,16 @@ def check(model: Model) -> Outcome:
     waiting = unbuilt(model)
     missing = [name for name in model.parameters if name not in exact_parameters(model)]
     driven = [name for name, coordinate in model.coordinates.items() if coordinate.driven]
+    dependent = [name for name, coordinate in model.coordinates.items() if coordinate.dependent]
+    remark = dict.fromkeys(driven, " (driven)") | dict.fromkeys(dependent, " (dependent)")
     lines = [f"{model.name}: no problems found", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
-    lines.append(f"coordinates: {listed(f'{q} (driven)' if q in driven else q for q in model.coordinates)}")
+    lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
     lines += _freedom_lines(model, freedom)
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
     payload = {
         "ok": True, "name": model.name, "space": model.space, "bodies": list(model.bodies),
-        "coordinates": list(model.coordinates), "driven": driven, "missing_values": missing,
+        "coordinates": list(model.coordinates), "driven": driven, "dependent": dependent, "missing_values": missing,
         "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
         "not_counted": freedom.not_counted or None,
         "closing": list(freedom.closing), "reaction_only": list(freedom.identical),

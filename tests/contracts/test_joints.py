@@ -52,7 +52,14 @@ EXAMPLES = {
         (SPACE, 'at = ["a", "b", "c"], angle = "a*b", axis = [1, 2, 2]'),
         *((SPACE, f'at = ["a", 0, "b"], orientation = "{s}", angles = ["a", "b", "c"]') for s in SEQUENCES),
     ],
-    "path": [(PLANE, 'along = "a", at = [0, 0], pieces = [{ line = 1.0 }, { arc = 0.5, turn = "cw", angle = 1 }]')],
+    "path": [
+        (PLANE, 'along = "a", at = [0, 0], pieces = [{ line = 1.0 }, { arc = 0.5, turn = "cw", angle = 1 }]'),
+        (PLANE, 'along = "a - w*t", at = [1, 2], heading = "pi/3", pieces = [{ line = "l" }]'),
+        (PLANE, 'along = "a", turned = { angle = 1 }, pieces = [{ arc = "l", turn = "ccw", angle = "pi/2" }]'),
+        (PLANE, 'along = "a + b", heading = "-pi/6", pieces = [{ arc = 0.2, turn = "ccw", angle = 2 }, { line = 0.1 }, '
+                '{ arc = "l/3", turn = "cw", angle = 3 }, { arc = 0.4, turn = "ccw", angle = 1.5 }]'),
+        (SPACE, 'along = "a", pieces = [{ line = 1.0 }]'),
+    ],
 }
 CASES = [(kind, space, fields) for kind, cases in EXAMPLES.items() for space, fields in cases]
 

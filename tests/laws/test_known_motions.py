@@ -47,9 +47,9 @@ def test_a_throw_from_a_round_earth_keeps_energy_and_sweeps_equal_areas():
     assert x["rho"].max() > 1.1 * p["R"]
 
 
-@pytest.mark.parametrize("start", [0.3, 3.0])
+@pytest.mark.parametrize("start", [0.3, 1.5])
 def test_a_particle_on_a_wire_obeys_the_energy_theorem(start):
-    """ch16-p4: theta'^2 = theta'_0^2 - 2 g/l (cos(theta_0) - cos(theta))."""
+    """ch16-p4: theta'^2 = 2 g/l (cos(theta) - cos(theta_0)); below the horizontal the wire stays taut."""
     _, x, p = motion("seeds/ch16_p4", 2.0, start={"theta": start, "theta'": 0.0})
     known = 2 * p["g"] / p["l"] * (np.cos(x["theta"]) - np.cos(start))
     assert x["theta'"] ** 2 == pytest.approx(known, abs=1e-6)

@@ -30,18 +30,46 @@ class Functions:
 
 @dataclass(frozen=True)
 class Vector:
-    """A right answer: dx at (t, x, p), by the model's own inputs or by given ones.
+    """A right answer: the result at (t, x, p), by the model's own inputs or by given ones.
 
     Args:
-        tolerance: of |dx - given| / max(1, largest |dx|).
+        result: in the order of the program's outputs.
+        tolerance: of |result - given| / max(1, largest |result|).
     """
 
     t: float
     x: tuple[float, ...]
     p: tuple[float, ...]
     inputs: tuple[float, ...] | None
-    dx: tuple[float, ...]
+    result: tuple[float, ...]
     tolerance: float
+
+
+@dataclass(frozen=True)
+class Role:
+    """What a program is for, and what its text is called.
+
+    Args:
+        name: of the files and the main function: NAME_rhs.
+        prefix: of the other functions: NAME + prefix + _many.
+        result: the array of the outputs.
+        about: what it computes, one line.
+    """
+
+    name: str
+    prefix: str
+    result: str
+    about: str
+
+    def main(self, stem: str) -> str:
+        return f"{stem}_{self.name}"
+
+    def others(self, stem: str) -> str:
+        return f"{stem}{self.prefix}"
+
+
+RHS = Role("rhs", "", "dx", "dx = f(t, x, p), the equations of motion solved for the accelerations")
+REACTIONS = Role("reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and ties in the motion")
 
 
 @dataclass(frozen=True)
@@ -53,12 +81,16 @@ class Description:
         origin: who made the file from what, one line.
         remarks: of an argument's name: its unit and what it is.
         vectors: right answers, for the self-test.
+        role: what the program is for.
+        outputs: names of the outputs, () where they are in the order of x.
     """
 
     title: str
     origin: str
     remarks: Mapping[str, str]
     vectors: tuple[Vector, ...] = ()
+    role: Role = RHS
+    outputs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,13 +99,13 @@ class Target:
 
     Args:
         name: as the user says it.
-        text: (program, stem) -> its functions in the language.
+        text: (program, stem, role) -> its functions in the language.
         files: (program, stem, description) -> {file name: text}, ready to be used by others.
         load: the program, callable.
     """
 
     name: str
-    text: Callable[[Program, str], str]
+    text: Callable[[Program, str, Role], str]
     files: Callable[[Program, str, Description], dict[str, str]]
     load: Callable[[Program], Functions]
 
@@ -137,14 +169,16 @@ def _read(nodes: Sequence[Node], values: Sequence[Scalar]) -> frozenset[Node]:
 
 
 def header(program: Program, description: Description) -> list[str]:
-    """Title, origin, and the order of x, p and inputs, a line each."""
-    symbols = program.symbols
-    lines = [f"{description.title}: dx = f(t, x, p), the equations of motion solved for the accelerations", ""]
+    """Title, origin, and the order of x, p, inputs and named outputs, a line each."""
+    symbols, result = program.symbols, description.role.result
+    lines = [f"{description.title}: {description.role.about}", ""]
     lines += [description.origin, ""]
     groups = {"x": program.states, "p": symbols.parameters.values(), "inputs": symbols.inputs.values()}
     for array, members in groups.items():
         for place, x in enumerate(members):
             remark = description.remarks.get(x.name, "")
             lines.append(f"    {array}[{place}]  {x.name}{'  ' + remark if remark else ''}")
-    lines.append(f"    dx  {len(program.outputs)} values, in the order of x")
+    lines += [f"    {result}[{place}]  {name}" for place, name in enumerate(description.outputs)]
+    if not description.outputs:
+        lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")
     return [" ".join(line.split("\n")) for line in lines]

@@ -1,4 +1,7 @@
-"""Program -> C99: `void NAME_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)`."""
+"""Program -> C99: `void NAME_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)`.
+
+The reactions alike: `NAME_reactions(..., double *out)`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from eomgen.codegen.build import library
 from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.targets.base import Description, Functions, Layout, Target, header, layout, used_symbols
+from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 from eomgen.codegen.targets.c_solving import solving_text
@@ -26,8 +29,8 @@ _WRITTEN = {
 ARGUMENTS = "double t, const double *x, const double *p"
 
 
-def c_text(program: Program, stem: str, remarks: Mapping[str, str] | None = None) -> str:
-    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many.
+def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or what its role says.
 
     Args:
         program: what is computed.
@@ -40,30 +43,32 @@ def c_text(program: Program, stem: str, remarks: Mapping[str, str] | None = None
     parts = [
         "#include <math.h>\n#include <stddef.h>\n",
         solve,
-        _constants(bodies, stem, remarks),
-        _evaluate(bodies, stem, remarks),
-        _wrappers(bodies, stem),
+        _constants(bodies, role.others(stem), remarks),
+        _evaluate(bodies, role.others(stem), role.result, remarks),
+        _wrappers(bodies, stem, role),
     ]
     return "\n".join(part for part in parts if part)
 
 
-def prototypes(program: Program, stem: str) -> str:
+def prototypes(program: Program, stem: str, role: Role = RHS) -> str:
     """The declarations of what `c_text` defines, and the sizes of its arrays."""
-    bodies, name = layout(program), stem.upper()
-    symbols = program.symbols
+    bodies, others, result = layout(program), role.others(stem), role.result
+    symbols, name = program.symbols, others.upper()
+    size = f"#define {name}_OUTPUTS {len(program.outputs)}\n" if role is not RHS else ""
+    rows = "states" if role is RHS else "outputs"
     return (
         f"#define {name}_STATES {len(program.states)}\n"
         f"#define {name}_PARAMETERS {len(symbols.parameters)}\n"
         f"#define {name}_INPUTS {len(symbols.inputs)}\n"
-        f"#define {name}_CONSTANTS {len(bodies.kept)}\n\n"
-        f"/* dx at (t, x, p); inputs NULL: the model's own. */\n"
-        f"void {stem}_rhs({ARGUMENTS}, const double *inputs, double *dx);\n\n"
+        f"#define {name}_CONSTANTS {len(bodies.kept)}\n{size}\n"
+        f"/* {result} at (t, x, p); inputs NULL: the model's own. */\n"
+        f"void {role.main(stem)}({ARGUMENTS}, const double *inputs, double *{result});\n\n"
         f"/* The same in two steps: c once for given p, then as often as one likes. */\n"
-        f"void {stem}_constants(const double *p, double *c);\n"
-        f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *dx);\n\n"
-        f"/* n instants at once: t n, x n x states, inputs NULL or n x inputs, dx n x states. */\n"
-        f"void {stem}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
-        f"double *dx);\n"
+        f"void {others}_constants(const double *p, double *c);\n"
+        f"void {others}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *{result});\n\n"
+        f"/* n instants at once: t n, x n x states, inputs NULL or n x inputs, {result} n x {rows}. */\n"
+        f"void {others}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
+        f"double *{result});\n"
     )
 
 
@@ -80,7 +85,7 @@ def _constants(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
     return _function(f"void {stem}_constants(const double *p, double *c)", lines)
 
 
-def _evaluate(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
+def _evaluate(bodies: Layout, stem: str, result: str, remarks: Mapping[str, str]) -> str:
     """Everything else."""
     program, solve = bodies.program, bodies.solve
     symbols = program.symbols
@@ -96,17 +101,16 @@ def _evaluate(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
     if solve:
         lines += _solve(solve, writer, bodies.names)
     lines += _assignments(writer, bodies.after, bodies.once)
-    results = [f"dx[{place}] = {writer.value(x)};" for place, x in enumerate(program.outputs)]
-    lines += results
-    head = f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *dx)"
-    return _function(head, [*_silenced(bodies, loaded, inputs), *lines])
+    lines += [f"{result}[{place}] = {writer.value(x)};" for place, x in enumerate(program.outputs)]
+    head = f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *{result})"
+    return _function(head, [*_silenced(bodies, loaded, inputs, result), *lines])
 
 
 def _names(bodies: Layout) -> dict[Node, str]:
     return bodies.names | {x: f"c[{place}]" for place, x in enumerate(bodies.kept)}
 
 
-def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node]) -> list[str]:
+def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], result: str) -> list[str]:
     """(void) for arguments that this program does not need."""
     program = bodies.program
     needed = {
@@ -115,7 +119,7 @@ def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node]) -
         "p": any(x in loaded for x in program.symbols.parameters.values()),
         "c": bool(bodies.kept),
         "inputs": bool(inputs),
-        "dx": bool(program.outputs),
+        result: bool(program.outputs),
     }
     return [f"(void){name};" for name, is_needed in needed.items() if not is_needed]
 
@@ -181,25 +185,27 @@ def _filled(array: str, entries: Sequence[tuple[int, Scalar]], writer: Writer) -
     return [f"{array}[{place}] = {writer.value(x)};" for place, x in filled]
 
 
-def _wrappers(bodies: Layout, stem: str) -> str:
+def _wrappers(bodies: Layout, stem: str, role: Role) -> str:
+    others, result = role.others(stem), role.result
     size = max(len(bodies.kept), 1)
     states, inputs, outputs = (
         len(bodies.program.states),
         len(bodies.program.symbols.inputs),
         len(bodies.program.outputs),
     )
-    one = [f"double c[{size}];", f"{stem}_constants(p, c);", f"{stem}_evaluate(t, x, p, c, inputs, dx);"]
+    one = [f"double c[{size}];", f"{others}_constants(p, c);", f"{others}_evaluate(t, x, p, c, inputs, {result});"]
     many = [
         f"double c[{size}];",
-        f"{stem}_constants(p, c);",
+        f"{others}_constants(p, c);",
         "for (size_t i = 0; i < n; i++)",
-        f"    {stem}_evaluate(t[i], x + i*{states}, p, c, inputs ? inputs + i*{inputs} : NULL, dx + i*{outputs});",
+        f"    {others}_evaluate(t[i], x + i*{states}, p, c, inputs ? inputs + i*{inputs} : NULL, "
+        f"{result} + i*{outputs});",
     ]
-    head = f"void {stem}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
+    head = f"void {others}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
     return "\n".join(
         [
-            _function(f"void {stem}_rhs({ARGUMENTS}, const double *inputs, double *dx)", one),
-            _function(f"{head}double *dx)", many),
+            _function(f"void {role.main(stem)}({ARGUMENTS}, const double *inputs, double *{result})", one),
+            _function(f"{head}double *{result})", many),
         ]
     )
 
@@ -221,16 +227,18 @@ def load(program: Program) -> Functions:
 
 def files(program: Program, stem: str, description: Description) -> dict[str, str]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
-    guard = f"{stem.upper()}_RHS_H"
+    role = description.role
+    name = role.main(stem)
+    guard = f"{name.upper()}_H"
     head = "\n".join(["/*", *(f" * {comment(line)}".rstrip() for line in header(program, description)), " */", ""])
     declared = (
         f"{head}#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n\n"
         '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
-        f"{prototypes(program, stem)}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n"
+        f"{prototypes(program, stem, role)}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n"
     )
-    defined = f'{head}#include "{stem}_rhs.h"\n\n{c_text(program, stem, description.remarks)}'
-    test = self_test(program, stem, description.vectors)
-    return {f"{stem}_rhs.c": f"{defined}\n{test}", f"{stem}_rhs.h": declared}
+    defined = f'{head}#include "{name}.h"\n\n{c_text(program, stem, role, description.remarks)}'
+    test = self_test(program, stem, description.vectors, role)
+    return {f"{name}.c": f"{defined}\n{test}", f"{name}.h": declared}
 
 
 TARGET = Target("c", c_text, files, load)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Vector
+from eomgen.codegen.targets.base import Role, Vector
 
 _MAIN = """\
 #ifdef EOMGEN_SELFTEST
 #include <stdio.h>
 
-static const struct {{ double t, x[{x}], p[{p}], inputs[{inputs}], dx[{dx}], tolerance; int given; }} vectors[] = {{
+static const struct {{ double t, x[{x}], p[{p}], inputs[{inputs}], {result}[{size}], tolerance; int given; }} \
+vectors[] = {{
 {rows}
 }};
 
@@ -19,13 +20,14 @@ int main(void)
 {{
     int wrong = 0;
     for (size_t i = 0; i < sizeof vectors/sizeof *vectors; i++) {{
-        double dx[{dx}], largest = 1;
-        {stem}_rhs(vectors[i].t, vectors[i].x, vectors[i].p, vectors[i].given ? vectors[i].inputs : NULL, dx);
+        double {result}[{size}], largest = 1;
+        {main}(vectors[i].t, vectors[i].x, vectors[i].p, vectors[i].given ? vectors[i].inputs : NULL, {result});
         for (int j = 0; j < {outputs}; j++)
-            if (fabs(vectors[i].dx[j]) > largest) largest = fabs(vectors[i].dx[j]);
+            if (fabs(vectors[i].{result}[j]) > largest) largest = fabs(vectors[i].{result}[j]);
         for (int j = 0; j < {outputs}; j++)
-            if (!(fabs(dx[j] - vectors[i].dx[j]) <= vectors[i].tolerance*largest)) {{
-                fprintf(stderr, "vector %d: dx[%d] is %.17g, not %.17g\\n", (int)i, j, dx[j], vectors[i].dx[j]);
+            if (!(fabs({result}[j] - vectors[i].{result}[j]) <= vectors[i].tolerance*largest)) {{
+                fprintf(stderr, "vector %d: {result}[%d] is %.17g, not %.17g\\n", (int)i, j, \
+{result}[j], vectors[i].{result}[j]);
                 wrong = 1;
             }}
     }}
@@ -35,7 +37,7 @@ int main(void)
 """
 
 
-def self_test(program: Program, stem: str, vectors: Sequence[Vector]) -> str:
+def self_test(program: Program, stem: str, vectors: Sequence[Vector], role: Role) -> str:
     """The main, or nothing where there are no vectors."""
     if not vectors:
         return ""
@@ -43,17 +45,18 @@ def self_test(program: Program, stem: str, vectors: Sequence[Vector]) -> str:
         "x": len(program.states),
         "p": len(program.symbols.parameters),
         "inputs": len(program.symbols.inputs),
-        "dx": len(program.outputs),
+        "size": len(program.outputs),
     }
     return _MAIN.format(
         rows=",\n".join(f"    {_row(vector)}" for vector in vectors),
-        stem=stem,
-        outputs=sizes["dx"],
+        main=role.main(stem),
+        result=role.result,
+        outputs=sizes["size"],
         **{name: max(size, 1) for name, size in sizes.items()},
     )
 
 
 def _row(vector: Vector) -> str:
-    arrays = (vector.x, vector.p, vector.inputs or (), vector.dx)
-    x, p, inputs, dx = ("{" + (", ".join(map(repr, array)) or "0") + "}" for array in arrays)
-    return f"{{{vector.t!r}, {x}, {p}, {inputs}, {dx}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"
+    arrays = (vector.x, vector.p, vector.inputs or (), vector.result)
+    x, p, inputs, result = ("{" + (", ".join(map(repr, array)) or "0") + "}" for array in arrays)
+    return f"{{{vector.t!r}, {x}, {p}, {inputs}, {result}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"

@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.codegen import solving
 from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Assign, Program, Solve
-from eomgen.codegen.targets.base import Description, Functions, Layout, Target, header, layout, used_symbols
+from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
 from eomgen.symbolic.graph import Node
 
 SCALARS = {
@@ -56,15 +56,15 @@ _constants, _evaluate = _written({scalars})
 _constants_of_arrays, _evaluate_arrays = _written({arrays})
 
 
-def {stem}_rhs(t, x, p, inputs=None):
-    """dx at one state: a list of {outputs}; inputs None: the model's own."""
+def {main}(t, x, p, inputs=None):
+    """{result} at one state: a list of {outputs}; inputs None: the model's own."""
     x, p = [float(value) for value in x], [float(value) for value in p]
     inputs = None if inputs is None else [float(value) for value in inputs]
     return evaluate(float(t), x, p, constants(p), inputs)
 
 
-def {stem}_many(t, x, p, inputs=None):
-    """dx at n states: t n, x n x {states}, p {parameters}, inputs None or n x {inputs} -> n x {outputs}."""
+def {others}_many(t, x, p, inputs=None):
+    """{result} at n states: t n, x n x {states}, p {parameters}, inputs None or n x {inputs} -> n x {outputs}."""
     x, p = np.asarray(x, dtype=float), [float(value) for value in p]
     return evaluate_many(np.asarray(t, dtype=float), x, p, inputs)
 
@@ -79,7 +79,7 @@ def constants(p):
 
 
 def evaluate(t, x, p, c, inputs):
-    """dx at one state, all lists of floats; outside a function's domain nan, as in C."""
+    """{result} at one state, all lists of floats; outside a function's domain nan, as in C."""
     try:
         return _evaluate(t, x, p, c, inputs)
     except (ValueError, ArithmeticError):
@@ -88,22 +88,25 @@ def evaluate(t, x, p, c, inputs):
 
 
 def evaluate_many(t, x, p, inputs):
-    """dx at n states."""
+    """{result} at n states."""
     with np.errstate(all="ignore"):
         p = [np.float64(value) for value in p]
         rows = None if inputs is None else np.asarray(inputs, dtype=float).T
-        dx = _evaluate_arrays(t, x.T, p, _constants_of_arrays(p), rows)
-        return np.stack([np.broadcast_to(value, t.shape) for value in dx], axis=-1) if dx else np.empty((len(t), 0))
+        {result} = _evaluate_arrays(t, x.T, p, _constants_of_arrays(p), rows)
+        return np.stack([np.broadcast_to(value, t.shape) for value in {result}], axis=-1) if {result} else \
+np.empty((len(t), 0))
 '''
 
 
-def python_text(program: Program, stem: str) -> str:
-    """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many."""
+def python_text(program: Program, stem: str, role: Role = RHS) -> str:
+    """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many, or what the role says."""
     bodies = layout(program)
     used = sorted(_functions(program))
     written = textwrap.indent("\n".join([*_constants(bodies), "", *_evaluate(bodies)]), "    ")
     calls = _CALLS.format(
-        stem=stem,
+        main=role.main(stem),
+        others=role.others(stem),
+        result=role.result,
         scalars=", ".join(SCALARS[name] for name in used),
         arrays=", ".join(ARRAYS[name] for name in used),
         outputs=len(program.outputs),
@@ -149,7 +152,8 @@ def load(program: Program) -> Functions:
 def files(program: Program, stem: str, description: Description) -> dict[str, str]:
     """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours."""
     head = "\n".join(header(program, description)).replace("\\", "/").replace('"""', "'''")
-    return {f"{stem}_rhs.py": f'"""{head}\n"""\n\n{python_text(program, stem)}'}
+    text = python_text(program, stem, description.role)
+    return {f"{description.role.main(stem)}.py": f'"""{head}\n"""\n\n{text}'}
 
 
 def _constants(bodies: Layout) -> list[str]:

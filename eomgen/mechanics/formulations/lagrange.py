@@ -1,17 +1,23 @@
 """Lagrange's equations of the second kind, by derivatives of the energies.
 
     d/dt dT/du_k - dT/dq_k = Q_k,   M = d2T/du du,   c = (d/dt dT/du at a = 0) - dT/dq
+
+Where coordinates were eliminated, u_free = N u + nu, the equations of the free system are reduced:
+
+    M_r = N^T M N,   c_r = N^T (c + M (N' u + nu')),   Q_r = N^T Q
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from eomgen.mechanics.assembly import Assembly, Row, assembled
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces, per_speed
-from eomgen.symbolic.derivative import gradient, jacobian
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.derivative import gradient, jacobian, substituted
+from eomgen.symbolic.graph import Scalar, is_zero
 
 name = "lagrange"
 title = "Lagrange's equations"
@@ -24,9 +30,43 @@ def applies(system: System) -> bool:
 
 def assemble(system: System) -> Assembly:
     """The equations of motion from the energies; closing rows by multipliers."""
+    if system.free is not None:
+        return _reduced(system, system.free)
     T = kinetic_energy(system.motion)
     M, c = inertia_side(system.motion, T)
     return assembled(system, M=M, c=c, Q=generalized_forces(system.loads), T=T)
+
+
+def _reduced(system: System, free: System) -> Assembly:
+    """The free system's M, c and Q along the motions that are left, its speeds in terms of the independent ones."""
+    whole = assemble(free)
+    rates = free_rates(system, free)
+    known = dict(zip(free.scope.symbols.u, rates, strict=True))
+    N = jacobian(rates, system.scope.symbols.u)
+    bias = system.scope.time_derivative(rates)
+    M = tuple(substituted(row, known) for row in whole.M)
+    (T, *rest) = substituted((whole.T, *whole.c, *whole.Q), known)
+    c, Q = rest[: len(M)], rest[len(M) :]
+    carried = [inertia + _dot(row, bias) for inertia, row in zip(c, M, strict=True)]
+    columns = tuple(zip(*N, strict=True))
+    columned = [[_dot(row, column) for row in M] for column in columns]
+    return assembled(
+        system,
+        M=tuple(tuple(_dot(column, momentum) for momentum in columned) for column in columns),
+        c=tuple(_dot(column, carried) for column in columns),
+        Q=tuple(_dot(column, Q) for column in columns),
+        T=T,
+    )
+
+
+def free_rates(system: System, free: System) -> Row:
+    """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
+    rates = {q.name: rate for q, rate in zip(system.scope.symbols.q, system.scope.rates, strict=True)}
+    return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
+
+
+def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
 
 
 def inertia_side(motion: Motion, T: Scalar) -> tuple[tuple[Row, ...], Row]:

@@ -36,6 +36,8 @@ def ties(catalog: Catalog) -> Iterator[Finding]:
             elif part.kind == "slider" and _lacks_line(catalog, part.on):
                 what = f"'{name}' slides on the line of body '{part.on}', which has none"
                 yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
+            if table == "constraints":
+                yield from _on_itself(path, part)
             friction = getattr(part, "friction", None)
             if friction is not None:
                 yield from one_of(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
@@ -51,6 +53,29 @@ def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> It
         yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
 
 
+def _on_itself(path: Path, part: Any) -> Iterator[Finding]:
+    """A tie that joins a body to itself, or the ground to the ground."""
+    name = path[1]
+    bodies = getattr(part, "bodies", None)
+    if bodies and bodies[0] == bodies[1]:
+        yield Finding((*path, "bodies", 1), f"'{name}' gears body '{bodies[0]}' with itself", "name two bodies")
+    point = getattr(part, "point", None)
+    if point is not None and "." not in point and part.kind not in ("slider", "force"):
+        yield Finding((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
+    elif point is not None and part.kind == "slider" and _owner(point) == part.on:
+        yield Finding((*path, "point"), f"the point '{point}' of '{name}' is on the body along which it should slide")
+    points = getattr(part, "points", None) or ()
+    owners = {_owner(point) for point in points}
+    if len(owners) == 1 and (len(points) > 1 or "" in owners):
+        whose = f"body '{owner}'" if (owner := owners.pop()) else "the ground"
+        yield Finding((*path, "points"), f"'{name}' joins {whose} to itself", "name points of different bodies")
+
+
+def _owner(point: str) -> str:
+    """The body of a point; "" of the ground's."""
+    return point.partition(".")[0] if "." in point else ""
+
+
 def _lacks_line(catalog: Catalog, body: Any) -> bool:
     part = catalog.table("bodies").get(body)
     return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken
@@ -63,13 +88,23 @@ def _round(catalog: Catalog, body: Any) -> bool:
 
 
 def _rolling(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
-    tracks = ("line", "plane", "circle") if part.on is None or part.line or part.plane else ("on",)
-    yield from one_of(catalog, path, part, tracks if part.on else (*tracks, "on"))
+    tracks = ("line", "plane", "circle")
+    alone = part.on is not None and all(getattr(part, track) is None for track in tracks)
+    yield from one_of(catalog, path, part, (*tracks, "on") if part.on is None or alone else tracks)
     if part.radius is None and part.ellipsoid is None and not _round(catalog, part.body):
         what = f"the radius of '{part.body}', which rolls, is not known"
         yield Finding(path, what, "give 'radius', or the body a round shape")
-    if part.plane is not None and catalog.model.space == "plane":
-        yield Finding((*path, "plane"), "in the plane a body rolls on a 'line'", "write 'line'", key=True)
+    if alone and not _round(catalog, part.on):
+        what = f"'{part.body}' rolls on body '{part.on}', which is not round"
+        yield Finding((*path, "on"), what, "give the line or circle of it, or the body a round shape")
+    track = part.line or part.plane or part.circle
+    if part.on is not None and track is not None and isinstance(track.at, str):
+        what = f"'{track.at}' is a point of the ground, but the track is fixed in body '{part.on}'"
+        yield Finding(path, what, f"give 'at' as coordinates in the axes of '{part.on}'")
+    for key in ("plane", "axis", "ellipsoid") if catalog.model.space == "plane" else ():
+        if getattr(part, key) is not None:
+            mend = "in the plane a body rolls on a 'line'" if key == "plane" else "leave it out"
+            yield Finding((*path, key), f"'{key}' of '{path[1]}' is for space", mend, key=True)
     if part.on is not None and part.on == part.body:
         yield Finding((*path, "on"), f"'{part.body}' cannot roll on itself")
     if part.friction is not None and not part.slip:
@@ -86,6 +121,12 @@ def _string(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
             yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
         if wrap.turn is None and (*where, "turn") not in catalog.broken:
             yield Finding(where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"')
+        if wrap.slip and k in (0, len(part.path) - 1):
+            yield Finding((*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True)
+    owners = {_owner(stop) if isinstance(stop, str) else stop.body or "" for stop in part.path or ()}
+    if len(owners) == 1:
+        what = f"the string '{path[1]}' has nothing on it that it could hold: all of it is on one body or the ground"
+        yield Finding((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
     pieces = len(part.path or ()) - 1
     if part.strands is not None and part.path is not None and len(part.strands) != pieces:
         what = f"the string has {pieces} strands, but {len(part.strands)} directions are given"

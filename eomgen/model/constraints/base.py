@@ -1,28 +1,33 @@
 """What every tie is: fields that say what touches what."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
-from eomgen.errors import NotYet
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
 
 
 @dataclass(frozen=True, kw_only=True)
-class Constraint(Part):
+class Constraint(Part, ABC):
     """A tie between bodies, or between coordinates.
 
-    `works` is False for a kind that is read and checked but whose rows are not built yet.
+    `spaces` are those in which this version states its rows; elsewhere it is read, checked and not derived yet.
     """
 
     kind: ClassVar[str]
-    works: ClassVar[bool] = False
+    spaces: ClassVar[tuple[str, ...]] = ("plane", "space")
 
+    @classmethod
+    def works_in(cls, space: str) -> bool:
+        """Whether this version derives the tie in this space."""
+        return space in cls.spaces
+
+    @abstractmethod
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """The rows of the tie.
+        """The rows of the tie, asked only where it works.
 
         Raises:
-            NotYet: a kind whose rows are not built yet.
+            ModelError: it cannot hold as it is said.
         """
-        raise NotYet(f"the rows of '{self.kind}' are not built yet")

@@ -14,7 +14,6 @@ class Equation(Constraint):
     """gap = 0 (holonomic), or rate = 0 (in the rates)."""
 
     kind: ClassVar[str] = "equation"
-    works: ClassVar[bool] = True
     gap: Gap | None = None
     rate: RateLaw | None = None
 

@@ -1,10 +1,16 @@
 """Link: a massless rod or wire of constant length."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import ClassVar
 
+from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import PointForce, Scalar, Scene, Vector
 from eomgen.model.kinds import Flag, Length, TwoPoints
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.spatial import dot, minus, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,3 +27,25 @@ class Link(Constraint):
     points: TwoPoints
     length: Length | None = None
     unilateral: Flag = False
+
+    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+        """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.
+
+        It is L - |r| to first order, without a root.
+        """
+        first, second = (scene.place(point) for point in self.points)
+        r = minus(scene.position(second), scene.position(first))
+        L = self._length(scene, r)
+        d: Vector = tuple(over(x, L) for x in r)  # type: ignore[assignment]
+        pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
+        return (TieRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
+
+    def _length(self, scene: Scene, r: Vector) -> Scalar:
+        if self.length is not None:
+            return scene.value(self.length)
+        square = scene.start(dot(r, r))
+        if scene.worth(square) == 0 or scene.vanishes(square):
+            ends = " and ".join(f"'{point}'" for point in self.points)
+            raise ModelError(f"{ends} are at one place at the start: the link has no length there", scene.where,
+                             "give its 'length', or use a pin")  # fmt: skip
+        return sqrt(square)

@@ -4,7 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import CoordinateName, TimeLaw
+from eomgen.symbolic.expressions import as_expression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,3 +17,7 @@ class Motion(Constraint):
     kind: ClassVar[str] = "motion"
     coordinate: CoordinateName
     value: TimeLaw
+
+    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+        """q - f(t) = 0; lam is the generalized force along q."""
+        return (TieRow((), scene.value(as_expression(self.coordinate)) - scene.value(self.value)),)

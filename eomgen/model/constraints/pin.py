@@ -21,7 +21,6 @@ class Pin(Constraint):
     """
 
     kind: ClassVar[str] = "pin"
-    works: ClassVar[bool] = True
     points: Points
     axis: SpaceDirection | None = None
 
@@ -30,19 +29,27 @@ class Pin(Constraint):
 
         With an axis in space also n_P . e = 0 for the two directions e of the first body across the axis.
         """
-        first, *others = (scene.place(point) for point in self.points)
-        if not others:
-            x, y, z = scene.position(first)
-            others = [(None, (scene.start(x), scene.start(y), scene.start(z)))]
+        first, *_ = named = [scene.place(point) for point in self.points]
         rows = []
-        for other in others:
-            rows += _held_together(scene, first, other)
+        for other in others_of(scene, named):
+            rows += held_together(scene, first, other)
             if self.axis is not None and not scene.plane:
-                rows += _kept_in_line(scene, (first[0], other[0]), unit(scene.vector(self.axis)))
+                n = unit(scene.vector(self.axis))
+                rows += [across_from(scene, (first[0], other[0]), e, n) for e in across(n)]
         return tuple(rows)
 
 
-def _held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
+def others_of(scene: Scene, named: list[Place]) -> list[Place]:
+    """The places to which the first is held: the others, or where it stands at the start."""
+    first, *others = named
+    if others:
+        return others
+    x, y, z = scene.position(first)
+    return [(None, (scene.start(x), scene.start(y), scene.start(z)))]
+
+
+def held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
+    """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other."""
     gap = minus(scene.position(first), scene.position(other))
     return [
         TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap), component=name)
@@ -50,17 +57,12 @@ def _held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
     ]
 
 
-def _kept_in_line(scene: Scene, bodies: tuple[str | None, str | None], axis: Vector) -> list[TieRow]:
-    """n . e = 0: n the axis fixed in the second body, e across it in the first; the couple on the first is e x n."""
-    e_1, e_2 = across(axis)
-    n = carried(scene, bodies[1], axis)
-    rows = []
-    for direction in (e_1, e_2):
-        e = carried(scene, bodies[0], direction)
-        couple = cross(e, n)
-        pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
-        rows.append(TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple"))
-    return rows
+def across_from(scene: Scene, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
+    """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n."""
+    n, e = carried(scene, bodies[1], n), carried(scene, bodies[0], e)
+    couple = cross(e, n)
+    pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
+    return TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple")
 
 
 def carried(scene: Scene, body: str | None, direction: Vector) -> Vector:

@@ -1,11 +1,16 @@
-"""String: over pulleys and pegs. Read and checked; not derived yet."""
+"""String: over pulleys and pegs, fastened or wound at its ends."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, ClassVar
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.strand import Stop, common_tangent, rope_row, side_row, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
+from eomgen.model.forces.load import Scene, Vector
+from eomgen.model.joints.base import unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression
@@ -30,8 +35,8 @@ class Wrap(Part):
     slip: Flag = False
 
 
-DIRECTIONS = ("up", "down", "left", "right")
-StrandRule = EitherRule(TextRule(DIRECTIONS), VectorRule(nonzero=True))
+DIRECTIONS = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
+StrandRule = EitherRule(TextRule(tuple(DIRECTIONS)), VectorRule(nonzero=True))
 Route = Annotated[tuple[str | Wrap, ...], ListRule(EitherRule(NameRule("point"), PartRule(Wrap)), least=2)]
 Strands = Annotated[tuple[str | tuple[Expression, ...], ...], ListRule(StrandRule)]
 
@@ -47,6 +52,48 @@ class String(Constraint):
     """
 
     kind: ClassVar[str] = "string"
+    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     path: Route
     strands: Strands | None = None
     unilateral: Flag = False
+
+    def strand_rows(self) -> tuple[int, ...]:
+        """Of each strand the row that holds its tension, from 1: strands joined by what slips have one row.
+
+        In the middle a point is a smooth eyelet; a wrap lets the string through where it says `slip`.
+        """
+        numbers = [1]
+        for item in self.path[1:-1]:
+            passes = isinstance(item, str) or item.slip
+            numbers.append(numbers[-1] if passes else numbers[-1] + 1)
+        return tuple(numbers)
+
+    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+        """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.
+
+        A strand with travel direction d pulls + d on what it leaves and - d on what it reaches.
+        """
+        stops = [_stop(scene, item) for item in self.path]
+        pairs = pairwise(stops)
+        if self.strands is None:
+            strands = [common_tangent(scene, *pair) for pair in pairs]
+        else:
+            ways = [_direction(scene, way) for way in self.strands]
+            strands = [strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True)]
+        numbers = self.strand_rows()
+        ropes = [[s for s, k in zip(strands, numbers, strict=True) if k == row] for row in range(1, numbers[-1] + 1)]
+        sides = [] if self.strands is None else [side for s in strands if (side := side_row(scene, s)) is not None]
+        return (*(rope_row(scene, rope) for rope in ropes), *sides)
+
+
+def _stop(scene: Scene, item: str | Wrap) -> Stop:
+    """A point, or a wrap about a body's origin or a place on the ground."""
+    if isinstance(item, str):
+        return Stop(scene, scene.place(item))
+    place = (None, scene.ground_place(item.at)) if item.body is None else scene.own_place(item.body, None)
+    radius = scene.radius(str(item.body)) if item.radius is None else scene.value(item.radius)
+    return Stop(scene, place, radius if item.turn == "cw" else -radius)
+
+
+def _direction(scene: Scene, way: str | tuple[Expression, ...]) -> Vector:
+    return DIRECTIONS[way] if isinstance(way, str) else unit(scene.vector(way))

@@ -25,7 +25,6 @@ class Support(Constraint):
     """
 
     kind: ClassVar[str] = "support"
-    works: ClassVar[bool] = True
     point: PointName
     normal: Direction
     at: GroundPlace | None = None

@@ -1,14 +1,17 @@
-"""Path: a point on pieces of lines and arcs. Read and checked; not derived yet."""
+"""Path: a point on pieces of lines and arcs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.joints.base import Joint
-from eomgen.model.kinds import ConstantAngle, Displacement, Length, Text, Turn
-from eomgen.model.part import Part, PartRule
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
+from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn
+from eomgen.model.part import Part, PartRule, made, slots_of
 from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import chosen, cos, over, sin
+from eomgen.symbolic.spatial import Pose, Vector, plus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,12 +27,61 @@ class PathPiece(Part):
     friction: FrictionLaw | None = None
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """A piece and where it begins, over any scalar.
+
+    Args:
+        begin: its first point, from the path's seat [m].
+        heading: of travel there, from x [rad].
+        start: the arc length s there [m].
+        length: of the piece [m].
+        bend: radius of an arc to the left, minus that of one to the right, None of a line [m].
+    """
+
+    begin: Vector
+    heading: Any
+    start: Any
+    length: Any
+    bend: Any
+
+    @property
+    def end(self) -> Any:
+        return self.start + self.length
+
+    def turned(self, s: Any) -> Any:
+        """The heading at s: heading + (s - start) / bend [rad]."""
+        return self.heading if self.bend is None else self.heading + over(s - self.start, self.bend)
+
+    def direction(self, s: Any) -> Vector:
+        """The unit direction of travel."""
+        angle = self.turned(s)
+        return (cos(angle), sin(angle), 0)
+
+    def place(self, s: Any) -> Vector:
+        """The point at s."""
+        return self.reached(s - self.start, self.turned(s))
+
+    def reached(self, way: Any, h: Any) -> Vector:
+        """The point at `way` behind the beginning with heading h.
+
+        Of a line begin + way (cos h, sin h), of an arc begin + bend (sin h - sin h_0, cos h_0 - cos h).
+        """
+        h_0, bend = self.heading, self.bend
+        if bend is None:
+            return plus(self.begin, (way * cos(h), way * sin(h), 0))
+        return plus(self.begin, (bend * (sin(h) - sin(h_0)), bend * (cos(h_0) - cos(h)), 0))
+
+
 Pieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Path(Joint):
-    """A point that moves along pieces, `along` from the first one's beginning at `at`.
+    """A point that moves along pieces, `along` from the first one's beginning at `at`; its axes do not turn.
+
+    X = (p(s), 1), S = (0, t), t the direction of travel; W: the force along its left normal, every torque and the
+    force out of the plane. Before its beginning and after its end the first and the last piece go on.
 
     Args:
         along: the arc length s [m].
@@ -38,10 +90,104 @@ class Path(Joint):
     """
 
     kind: ClassVar[str] = "path"
-    works: ClassVar[bool] = False
     along: Displacement
     heading: ConstantAngle | None = None
     pieces: Pieces
 
+    @property
+    def friction(self) -> FrictionLaw | None:
+        """The friction of its piece, where it has only one."""
+        return self.pieces[0].friction if len(self.pieces) == 1 else None
+
+    def works_in(self, space: str) -> bool:
+        return space == "plane"
+
     def turns(self) -> tuple[Expression, ...]:
         return ()
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.along,)
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        return Pose(p=self._along(s[0], value, Stretch.place))
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return (linear(self._along(s[0], value, Stretch.direction)),)
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        x, y, _ = self._along(s[0], value, Stretch.direction)
+        return (linear((-y, x, 0)), angular(Z), angular(X), angular(Y), linear(Z))
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (None,)
+
+    def stretches(self, value: Value) -> tuple[Stretch, ...]:
+        """The pieces, each from where the one before ends."""
+        found: list[Stretch] = []
+        heading = 0 if self.heading is None else value(self.heading)
+        begin, start = self._begin(value), 0
+        for piece in self.pieces:
+            bend, turn, length = _bend(piece, value)
+            stretch = Stretch(begin, heading, start, length, bend)
+            found.append(stretch)
+            heading = heading + turn
+            begin, start = stretch.reached(length, heading), stretch.end
+        return tuple(found)
+
+    def bounds(self) -> tuple[tuple[Expression, Expression], ...]:
+        """The arc lengths between which each piece is."""
+        return tuple((_expression(x.start), _expression(x.end)) for x in self.stretches(_itself))
+
+    def piece(self, number: int) -> "OnePiece":
+        """The same path with one of its pieces alone (from 0), which goes on before its beginning and after its end."""
+        stretch = self.stretches(_itself)[number]
+        kept = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
+        return made(OnePiece, kept | {
+            "along": _expression(self.along - stretch.start), "heading": _expression(stretch.heading),
+            "pieces": (self.pieces[number],), "begin": tuple(_expression(x) for x in stretch.begin[:2]),
+        })  # fmt: skip
+
+    def _begin(self, value: Value) -> Vector:
+        return (0, 0, 0)
+
+    def _along(self, s: Any, value: Value, what: Callable[[Stretch, Any], Vector]) -> Vector:
+        """Place or direction at s, of the piece on which s is."""
+        *before, last = self.stretches(value)
+        here = what(last, s)
+        for stretch in reversed(before):
+            there = what(stretch, s)
+            here = tuple(chosen(s, stretch.end, a, b) for a, b in zip(there, here, strict=True))  # type: ignore[assignment]
+        return here
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnePiece(Path):
+    """One piece of a path, as a path of its own.
+
+    Args:
+        begin: where it begins, from the seat of the whole path [m].
+    """
+
+    begin: MovingPlace
+
+    def _begin(self, value: Value) -> Vector:
+        return (value(self.begin[0]), value(self.begin[1]), 0)
+
+
+def _bend(piece: PathPiece, value: Value) -> tuple[Any, Any, Any]:
+    """(signed radius or None, angle turned, length) of a piece."""
+    if piece.line is not None:
+        return None, 0, value(piece.line)
+    assert piece.arc is not None and piece.angle is not None, "an arc has a radius and an angle"
+    radius, angle = value(piece.arc), value(piece.angle)
+    sense = 1 if piece.turn == "ccw" else -1
+    return sense * radius, sense * angle, radius * angle
+
+
+def _itself(expression: Expression) -> Expression:
+    """The value of an expression where formulas are the scalars."""
+    return expression
+
+
+def _expression(x: Any) -> Expression:
+    return x if isinstance(x, Expression) else Expression.number(x)

@@ -1,0 +1,105 @@
+"""System -> the forces that act along coordinates: what drives a given motion, and multipliers of ties of coordinates.
+
+With the coordinate k freed, the equations of motion say what force along it keeps it moving as given:
+
+    F_k = (M a + c - Q - J^T lam)_k,   all of them at the given motion
+"""
+
+from __future__ import annotations
+
+import operator
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.system import System, system_of
+from eomgen.model.part import altered
+from eomgen.model.table import Table
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import Arithmetic, evaluate
+from eomgen.symbolic.functions import NAMES, function, over
+from eomgen.symbolic.graph import Node, Scalar
+
+FUNCTIONS = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
+RING = {"neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
+        "pow": operator.pow}  # fmt: skip
+
+
+def drive(system: System, coordinate: str) -> Scalar:
+    """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
+
+    Raises:
+        DerivationError: the coordinate is not driven.
+    """
+    model = system.scope.model
+    part = model.coordinates[coordinate]
+    if not part.driven:
+        raise DerivationError(f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
+                              mend="ask it of a coordinate with `motion`, `rate` or `acceleration`")  # fmt: skip
+    freed = altered(part, motion=None, rate=None, acceleration=None)
+    free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
+    assembly = recursive.assemble(free)
+    k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
+    return _carried(residual(free, assembly, k), system)
+
+
+def residual(system: System, assembly: Assembly, k: int, without: str = "") -> Scalar:
+    """(M a + c - Q - J^T lam)_k, the multiplier of one tie left out."""
+    symbols = system.symbols
+    value = sum((m * a for m, a in zip(assembly.M[k], symbols.a, strict=True)), start=-assembly.forcing[k])
+    for row, J, lam in zip(system.ties.closing, assembly.J, symbols.lam, strict=True):
+        value = value if row.tie == without else value - J[k] * lam
+    return value
+
+
+def _carried(value: Scalar, system: System) -> Scalar:
+    """A scalar of the freed model's graph in the symbols of the system, at its motion."""
+    scope = system.scope
+    meanings = {**scope.names, **{lam.name: lam for lam in system.symbols.lam}}
+    values: dict[Node, Scalar] = {}
+    for symbol in symbols_of((value,)):
+        if symbol.name not in meanings:
+            raise DerivationError(f"what drives the coordinate cannot be told apart from {symbol.name}")
+        values[symbol] = meanings[symbol.name]
+    onto = Arithmetic("graph", lambda c: c, RING | FUNCTIONS | {"pi": lambda: scope.graph.pi}, _no_value)
+    return evaluate((value,), values, onto)[0]
+
+
+def _no_value(node: Node) -> Scalar:
+    raise DerivationError(f"'{node.op}' has no value there")
+
+
+def multiplier(system: System, tie: str) -> Scalar:
+    """lam of a tie of one row that acts along coordinates; a symbol where it closes.
+
+    Raises:
+        DerivationError: it has no single row, carries nothing, or is eliminated together with others.
+    """
+    rows = [row for row in system.ties.rows if row.tie == tie]
+    if len(rows) != 1:
+        raise DerivationError(f"multiplier({tie}): the tie has {len(rows)} rows")
+    (row,) = rows
+    if row.status == "identical":
+        raise DerivationError(f"multiplier({tie}): the coordinates satisfy it by themselves, and it acts on no body")
+    if row.status == "closing":
+        return next(lam for lam in system.symbols.lam if lam.name == row.label)
+    return _eliminated(system, tie)
+
+
+def _eliminated(system: System, tie: str) -> Scalar:
+    """lam of an eliminated tie: the residual along the coordinate that it determines, over its own coefficient."""
+    free = system.free
+    assert free is not None, "a row is eliminated from the free system"
+    (own,) = (row for row in system.ties.rows if row.tie == tie)
+    others = [row for row in system.ties.rows if row.status == "eliminated" and row.tie != tie]
+    if others:
+        raise DerivationError(f"multiplier({tie}): it is eliminated together with {others[0].tie}",
+                              mend="leave out `dependent`: then each has its multiplier")  # fmt: skip
+    k = [u.name for u in free.symbols.u].index(f"{own.eliminates}'")
+    coefficient = free.ties.J[[row.tie for row in free.ties.closing].index(tie)][k]
+    known: dict[Node, Scalar] = {}
+    for u, a in zip(free.symbols.u, free.symbols.a, strict=True):
+        if u not in system.symbols.u:
+            known |= {u: system.scope.names[u.name], a: system.scope.names[a.name]}
+    (value,) = substituted((residual(free, recursive.assemble(free), k, tie) / coefficient,), known)
+    return value

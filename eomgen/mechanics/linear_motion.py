@@ -1,0 +1,153 @@
+"""Linear equations of motion with constant coefficients -> their solutions in closed form.
+
+    q'' = A q + B q' + f(t)          one coordinate
+    q'' = A q + b                    two coordinates, by the eigenvalues of A
+
+A root of a number of unknown sign is real or imaginary: `sign` decides, and where it cannot, there is no answer (None).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.scope import integral_from_zero
+from eomgen.mechanics.ties import holds_identically
+from eomgen.symbolic.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.functions import cos, function, over, sin, sqrt
+from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
+from eomgen.symbolic.normal_form import readable
+
+HIGHEST_DEGREE = 6  # of a polynomial on the right side
+
+Simplify = Callable[[Scalar], Scalar]
+Sign = Callable[[Scalar], int | None]
+
+
+@dataclass(frozen=True)
+class Constants:
+    """How constants are judged and written.
+
+    Args:
+        t: time.
+        sign: -1, 0 or 1 of a constant; None where it is not known.
+        simple: a constant in its shortest form.
+    """
+
+    t: Node
+    sign: Sign
+    simple: Simplify
+
+
+@dataclass(frozen=True)
+class Line:
+    """q'' = A q + B q' + f(t)."""
+
+    A: Scalar
+    B: Scalar
+    f: Scalar
+
+
+def solution(line: Line, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
+    """q(t) with q(0) = q0, q'(0) = u0; None where no closed form is known."""
+    found = particular(line, of)
+    if found is None:
+        return None
+    at, slope = substituted((found, derivative(found, of.t)), {of.t: 0})
+    free = homogeneous(line.A, line.B, q0 - at, u0 - slope, of)
+    return None if free is None else found + free
+
+
+def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
+    """The solution of q'' = A q + B q': with d = B/2 and D = d^2 + A, e^(d t) times cos, cosh or 1 of sqrt(|D|) t."""
+    t = of.t
+    if is_zero(A):
+        return q0 + u0 * t if is_zero(B) else q0 + over(u0, B) * (function("exp", B * t) - 1)
+    d = over(B, 2)
+    waves = _waves(of.simple(d * d + A), of)
+    if waves is None:
+        return None
+    even, odd, _ = waves
+    return function("exp", d * t) * (q0 * even + (u0 - d * q0) * odd)
+
+
+def pair(A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Sequence[Scalar]], of: Constants) -> tuple[Scalar, Scalar] | None:  # fmt: skip
+    """(q1, q2) of q'' = A q + b:  f(A) v = sum over k of f(lambda_k) (A - lambda_other) v / (lambda_k - lambda_other).
+
+    Args:
+        start: (q0, u0), each of two.
+    """
+    half = over(A[0][0] + A[1][1], 2)
+    inside = of.simple(half * half - (A[0][0] * A[1][1] - A[0][1] * A[1][0]))
+    if of.sign(inside) != 1:
+        return None
+    root = of.simple(sqrt(inside))
+    total: list[Scalar] = [0, 0]
+    for sign in (1, -1):
+        own, other = half + sign * root, half - sign * root
+        waves = _waves(of.simple(own), of)
+        if waves is None:
+            return None
+        for wave, v in zip(waves, (*start, b), strict=True):
+            for i in range(2):
+                share = A[i][0] * v[0] + A[i][1] * v[1] - other * v[i]
+                total[i] = total[i] + wave * of.simple(over(share, own - other))
+    return total[0], total[1]
+
+
+def _waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
+    """(cosh(w t), sinh(w t)/w, (cosh(w t) - 1)/w^2), w^2 = D: of a negative D cosines and sines, of 0 powers of t."""
+    t, sign = of.t, of.sign(D)
+    if sign is None:
+        return None
+    if sign == 0:
+        return 1, t, over(t * t, 2)
+    w = of.simple(sqrt(sign * D))
+    even, odd = (cos(w * t), sin(w * t)) if sign < 0 else (function("cosh", w * t), function("sinh", w * t))
+    return even, over(odd, w), over(even - 1, D)
+
+
+def particular(line: Line, of: Constants) -> Scalar | None:
+    """One solution of q'' = A q + B q' + f(t)."""
+    try:
+        if is_zero(line.A) and is_zero(line.B):
+            return integral_from_zero(integral_from_zero(line.f, of.t, ""), of.t, "")
+        total: Scalar = 0
+        for node, c in linear_terms(readable(line.f)).items():
+            part = _of_term(line.A, line.B, 1 if node is None else node, of)
+            if part is None:
+                return None
+            total = total + c * part
+        return total
+    except DerivationError:  # no integral in closed form
+        return None
+
+
+def _of_term(A: Scalar, B: Scalar, g: Scalar, of: Constants) -> Scalar | None:
+    """One solution for f = g, g a polynomial in t or a g with g'' = mu g."""
+    t = of.t
+    second = derivative(derivative(g, t), t)
+    mu = 0 if is_zero(second) else of.simple(over(second, g))
+    if is_zero(second) or depends_on(mu, (t,)):
+        return _of_polynomial(A, B, g, t)
+    # x g + y g':  (mu - A) x - B mu y = 1,  (mu - A) y = B x
+    below = of.simple((mu - A) * (mu - A) - B * B * mu)
+    if holds_identically(below):
+        return None  # resonance
+    return over((mu - A) * g + B * derivative(g, t), below)
+
+
+def _of_polynomial(A: Scalar, B: Scalar, g: Scalar, t: Node) -> Scalar | None:
+    """Of a polynomial g: A q = q'' - B q' - g, or B u = u' - g with A = 0, solved by repeated insertion."""
+    degrees = [g]
+    while not is_zero(degrees[-1]) and len(degrees) <= HIGHEST_DEGREE + 1:
+        degrees.append(readable(derivative(degrees[-1], t)))
+    if not is_zero(degrees[-1]):
+        return None
+    found: Scalar = 0
+    for _ in degrees:
+        rate = derivative(found, t)
+        known = rate - g if is_zero(A) else derivative(rate, t) - B * rate - g
+        found = readable(over(known, B if is_zero(A) else A))
+    return integral_from_zero(found, t, "") if is_zero(A) else found

@@ -1,0 +1,134 @@
+"""Reactions -> what an output asks of them by name, every one: reaction_x(B), reaction_n(wall), tension(rope, 2).
+
+In the plane these are the components themselves; in space, and at hinges of several bodies, sums of them in the
+ground's axes. Beside each contact that rubs stands its friction, reaction_t(wall), along the contact's tangent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from eomgen.mechanics.balance import Balance, Component, Effect, efforts_of, joint_friction
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
+
+FORCE, COUPLE = "N", "N*m"
+OWN = frozenset(("n", "t", "tension", ""))  # components that are asked for as they are, in space too
+
+Part = Callable[[Effect], Vector]
+
+
+@dataclass(frozen=True)
+class NamedReaction:
+    """sum of combination * components + given.
+
+    Args:
+        name: as an output asks for it.
+        owner: the tie, or the body whose joint it is.
+        unit: FORCE or COUPLE.
+        combination: {index of the component: factor}.
+        given: what drive, spring and damper of the joint do.
+    """
+
+    name: str
+    owner: str
+    unit: str
+    combination: dict[int, Scalar]
+    given: Scalar = 0
+
+
+def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
+    """Every reaction by its name, in the order of the components."""
+    owners = dict.fromkeys(c.owner for c in balance.components)
+    return tuple(named for owner in owners for named in _of_owner(balance, owner))
+
+
+def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
+    mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
+    ties = [(j, c) for j, c in mine if c.kind != "drive"]
+    plane = balance.system.scope.model.space == "plane"
+    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y"))]
+    if len(apart) < len(ties):
+        along = (0, 1) if plane else (0, 1, 2)
+        for side in dict.fromkeys(("", *(c.side for _, c in ties))):
+            yield from _vector(balance, owner, side, "", FORCE, along)
+        if not plane and any(_has_couple(c) for _, c in ties):
+            yield from _vector(balance, owner, "", "couple_", COUPLE, along)
+    for j, c in apart:
+        yield NamedReaction(_name(balance, c), owner, _unit(c), {j: 1})
+        if c.rubbing:
+            yield NamedReaction(f"reaction_t({owner})", owner, FORCE, {j: _friction(balance, c)})
+    for j, c in mine:
+        if c.kind == "drive":
+            yield NamedReaction(_drive(balance, c), owner, _unit(c), {j: 1})
+
+
+def _vector(
+    balance: Balance, owner: str, side: str, prefix: str, unit: str, along: Sequence[int]
+) -> Iterable[NamedReaction]:
+    """Force or couple on the first-named body, or on `side`, in the ground's axes."""
+    motion = balance.system.motion
+    part: Part = (lambda e: e.couple) if unit == COUPLE else (lambda e: e.force)
+    mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
+    on = motion.index[side] if side else next(c for _, c in mine if c.kind != "drive").effects[0].link
+    units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.rubbing))) for j, c in mine}
+    efforts = efforts_of(balance.system, owner) if owner in motion.index else []
+    given = _turned(balance, on, _sum(part, on, efforts))
+    place = f"{owner}.{side}" if side else owner
+    for k in along:
+        combination = {j: vector[k] for j, vector in units.items() if not is_zero(vector[k])}
+        yield NamedReaction(f"reaction_{prefix}{'xyz'[k]}({place})", owner, unit, combination, given[k])
+
+
+def _sum(part: Part, on: int, effects: Sequence[Effect]) -> Vector:
+    total = ZERO
+    for effect in effects:
+        if effect.link == on:
+            total = plus(total, part(effect))
+    return total
+
+
+def _turned(balance: Balance, on: int, vector: Vector) -> Vector:
+    """From the axes of the body's equations to the ground's."""
+    plane = balance.system.scope.model.space == "plane"
+    return vector if plane else apply(balance.system.motion.links[on].pose.R, vector)
+
+
+def _has_couple(component: Component) -> bool:
+    return any(not is_zero(x) for effect in component.effects for x in effect.couple)
+
+
+def _unit(component: Component) -> str:
+    forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
+    return FORCE if forces else COUPLE
+
+
+def _name(balance: Balance, component: Component) -> str:
+    """A strand has the number that the string gives it; several may have one tension, the first gives the name."""
+    if component.label != "tension":
+        return component.name
+    tie = balance.system.scope.model.constraints[component.owner]
+    numbers = tie.strand_rows() if hasattr(tie, "strand_rows") else (1,)
+    strand = numbers.index(component.number) + 1
+    return f"tension({component.owner})" if strand == 1 else f"tension({component.owner}, {strand})"
+
+
+def _friction(balance: Balance, component: Component) -> Scalar:
+    """What a unit of the normal reaction rubs with along the tangent."""
+    system = balance.system
+    if component.kind == "joint":
+        factor = joint_friction(system, system.motion.link(component.owner))
+    else:
+        factor = next(r.friction for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
+    assert factor is not None, "a component that rubs has its factor"
+    return factor
+
+
+def _drive(balance: Balance, component: Component) -> str:
+    """drive(q) where the joint alone follows the coordinate q, else by the joint."""
+    motion = balance.system.motion
+    s = motion.link(component.owner).s[component.number - 1]
+    followers = [other for link in motion.links for other in link.s if s in motion.scope.symbols.q and depends_on(other, (s,))]
+    return f"drive({s.name})" if len(followers) == 1 else component.name

@@ -1,0 +1,366 @@
+"""Balance -> Reactions: every reaction of every joint and tie, as functions of q, u and the accelerations.
+
+The equations of the bodies hold more rows than there are reactions: those left over are the equations of motion. Where
+they hold fewer independent ones, some reactions are indeterminate, and the null space says how they may be shared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance import DIRECTIONS, Balance, Component, Effect, balance_of, efforts_of
+from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.linear import Solution, solved
+from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.spatial import ZERO, Vector, apply, plus, transposed, vector_of
+
+TRIES = 20
+HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
+
+Combination = dict[int, Scalar]
+
+
+class Indeterminate(DerivationError):
+    """A reaction that the equations of the rigid bodies do not determine."""
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """All reactions of a system.
+
+    Args:
+        balance: the equations of the bodies.
+        solution: of them, for the components.
+        at: what stands in place of coordinates, speeds and accelerations, {} where they are left as symbols.
+    """
+
+    balance: Balance
+    solution: Solution
+    at: Mapping[Node, Scalar]
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        return self.balance.components
+
+    @property
+    def indeterminate(self) -> tuple[Component, ...]:
+        """The components that have no single value."""
+        return tuple(c for j, c in enumerate(self.components) if not self.solution.determined(j))
+
+    @property
+    def null_space(self) -> tuple[dict[str, Scalar], ...]:
+        """Of each free component: what may be added to all reactions without a trace, by name."""
+        found = []
+        for f in self.solution.free:
+            row = {self.components[f].name: 1}
+            row |= {self.components[j].name: -s[f] for j, s in self.solution.shares.items() if f in s}
+            found.append(row)
+        return tuple(found)
+
+    def value(self, j: int) -> Scalar:
+        """Component j.
+
+        Raises:
+            Indeterminate: it has no single value.
+        """
+        return self.combined({j: 1}, self.components[j].name)
+
+    @property
+    def values(self) -> tuple[Scalar | None, ...]:
+        """Every component, None for those that are indeterminate."""
+        return tuple(
+            self.solution.constants[j] if self.solution.determined(j) else None for j in range(len(self.components))
+        )
+
+    def force(self, owner: str, side: str = "", frame: str = "") -> Vector:
+        """Force of a joint on its child, of a tie on its first-named body or on `side`; ground axes or `frame`'s.
+
+        Raises:
+            DerivationError: there is no such reaction, or it is indeterminate.
+        """
+        return self._vector(owner, side, frame, lambda effect: effect.force)
+
+    def couple(self, owner: str, side: str = "", frame: str = "") -> Vector:
+        """Couple, as `force`, about the point of the joint or tie."""
+        return self._vector(owner, side, frame, lambda effect: effect.couple)
+
+    def is_open(self, owner: str) -> bool:
+        """Whether a contact has ended: its reaction is 0."""
+        mode = self.balance.system.modes.get(owner)
+        return mode is not None and not mode.closed
+
+    def normal(self, owner: str) -> Scalar:
+        """The normal reaction, positive along the tie's normal; friction is not in it."""
+        if self.is_open(owner):
+            return 0
+        return self._labelled(owner, "n", "normal reaction")
+
+    def tension(self, owner: str, strand: int = 1) -> Scalar:
+        """Tension of a link, or of a strand of a string."""
+        if self.is_open(owner):
+            return 0
+        rows = getattr(self.balance.system.scope.model.constraints.get(owner), "strand_rows", None)
+        number = strand
+        if rows is not None:
+            numbers = rows()
+            if not 1 <= strand <= len(numbers):
+                raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
+            number = numbers[strand - 1]
+        found = [j for j, c in enumerate(self.components)
+                 if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number]  # fmt: skip
+        if not found:
+            raise DerivationError(f"tension({owner}): '{owner}' has no tension there, it pulls on no body")
+        return self.value(found[0])
+
+    def multiplier(self, owner: str) -> Scalar:
+        """The multiplier of a tie of one row."""
+        if self.is_open(owner):
+            return 0
+        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "tie"]
+        if len(found) != 1:
+            raise DerivationError(f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them")
+        return self.value(found[0])
+
+    def _labelled(self, owner: str, label: str, words: str) -> Scalar:
+        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.label == label]
+        if len(found) != 1:
+            others = ", ".join(c.name for c in self.components if c.owner == owner) or "none"
+            raise DerivationError(f"'{owner}' has no {words}", mend=f"its reactions: {others}")
+        return self.value(found[0])
+
+    def _vector(self, owner: str, side: str, frame: str, part: Any) -> Vector:
+        """The sum of a part of the effects of the owner's components on one body."""
+        if self.is_open(owner):
+            return ZERO
+        motion = self.balance.system.motion
+        mine = [(j, c) for j, c in enumerate(self.components) if c.owner == owner and c.kind != "drive"]
+        efforts = self._efforts(owner)
+        if not mine and not efforts:
+            raise DerivationError(f"'{owner}' carries no reaction", mend="what is placed carries none: name the tie")
+        on = self._side(owner, side, [e for _, c in mine for e in c.effects] or efforts)
+        combos: list[Combination] = [{}, {}, {}]
+        for j, component in enumerate(self.components):
+            if component.owner != owner:
+                continue
+            total = self._on(component, on, part)
+            for k in range(3):
+                if not is_zero(total[k]):
+                    combos[k][j] = total[k]
+        given = vector_of(sum(x) for x in zip(ZERO, *(part(e) for e in efforts if e.link == on), strict=True))
+        sign = 1 if on >= 0 else -1
+        combos = [self._replaced(c) for c in combos]
+        known = self._replaced_vector(given)
+        vector = vector_of(
+            known[k] + sign * self.combined(combos[k], f"reaction_{'xyz'[k]}({owner})") for k in range(3)
+        )
+        return self._in_axes(vector, on if on >= 0 else None, frame, motion)
+
+    def _on(self, component: Component, on: int, part: Any) -> Vector:
+        """What a unit of the component does to one body (-1: to the ground, then with the other sign)."""
+        total = ZERO
+        for effect in (*component.effects, *component.rubbing):
+            if effect.link == on or on < 0:
+                total = plus(total, part(effect))
+        return total
+
+    def _side(self, owner: str, side: str, effects: Sequence[Effect]) -> int:
+        """The body on which the reaction is asked: an index, -1 for the ground."""
+        motion = self.balance.system.motion
+        if not side:
+            return effects[0].link
+        if side == "ground":
+            return -1
+        index = motion.index[side]
+        if all(effect.link != index for effect in effects):
+            raise DerivationError(f"'{owner}' does not act on body '{side}'")
+        return index
+
+    def _efforts(self, owner: str) -> list[Effect]:
+        """Drive, spring and damper of a joint: an actuated joint's reaction holds its torque."""
+        return efforts_of(self.balance.system, owner)
+
+    def _in_axes(self, vector: Vector, body: int | None, frame: str, motion: Any) -> Vector:
+        if motion.scope.model.space != "plane" and body is not None:
+            vector = apply(self._replaced_matrix(motion.links[body].pose.R), vector)
+        if frame and frame != "ground":
+            vector = apply(transposed(self._replaced_matrix(motion.link(frame).pose.R)), vector)
+        return vector
+
+    def _replaced(self, combination: Combination) -> Combination:
+        if not self.at:
+            return combination
+        return dict(zip(combination, substituted(tuple(combination.values()), self.at), strict=True))
+
+    def _replaced_vector(self, vector: Vector) -> Vector:
+        return vector_of(substituted(tuple(vector), self.at)) if self.at else vector
+
+    def _replaced_matrix(self, R: Any) -> Any:
+        return tuple(self._replaced_vector(row) for row in R)
+
+    def combined(self, combination: Combination, name: str) -> Scalar:
+        """sum of k_j x_j.
+
+        Raises:
+            Indeterminate: it has no single value; `name` says what it is.
+        """
+        constants, shares = self.solution.constants, self.solution.shares
+        total: Scalar = 0
+        open_: dict[int, Scalar] = {}
+        for j, k in combination.items():
+            if j not in constants:
+                open_[j] = open_.get(j, 0) + k
+                continue
+            total = total + k * constants[j]
+            for f, share in shares[j].items():
+                open_[f] = open_.get(f, 0) - k * share
+        left = [f for f, k in open_.items() if not _vanishes(k)]
+        if left:
+            raise Indeterminate(
+                f"{name} is statically indeterminate: rigid bodies in balance leave it open, together with "
+                + ", ".join(c.name for c in self.indeterminate if c.name != name),
+                mend="take a redundant tie away, or let something give",
+            )
+        return total
+
+
+def _vanishes(k: Scalar) -> bool:
+    from eomgen.mechanics.ties import holds_identically
+
+    return is_zero(k) or holds_identically(k)
+
+
+def reactions_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Reactions:
+    """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
+
+    Args:
+        at: exact scalars in place of coordinates, speeds, accelerations and t.
+    Raises:
+        DerivationError: a body is held by nothing; a force acts at no place.
+    """
+    balance = balance_of(system)
+    if at:
+        return Reactions(balance, _solved(balance, at), at)
+    solution = _solved(balance, {})
+    _refuse_unheld(balance, solution)
+    return Reactions(balance, solution, {})
+
+
+def _solved(balance: Balance, at: Mapping[Node, Scalar]) -> Solution:
+    entries = [x for e in balance.equations for x in e.coefficients.values()]
+    needed = tuple(e.needed for e in balance.equations)
+    if at:
+        entries = list(readable_all(substituted(tuple(entries), at)))
+        needed = readable_all(substituted(needed, at))
+    flat = iter(entries)
+    rows = [{j: next(flat) for j in e.coefficients} for e in balance.equations]
+    parameters = frozenset(balance.system.symbols.parameters.values())
+
+    def simple(a: Scalar) -> int:
+        return 0 if type(a) is not Node else 1 if parameters.issuperset(symbols_of((a,))) else 2
+
+    last = [j for j, c in enumerate(balance.components) if c.rubbing]
+    values = values_at_a_state(balance.system, entries)
+    return solved(rows, needed, len(balance.components), values, simple=simple, last=last)
+
+
+def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
+    """Values at the first generic state at which all entries have one.
+
+    Parameters have values of their own, so that nothing vanishes for the model's numbers alone; where ties close they
+    have the model's, with which the ties can hold.
+    """
+    closes = any(row.status != "identical" and row.gap is not None for row in system.ties.rows)
+    for seed in range(1, TRIES):
+        rng = Random(seed)
+        state = generic_state(system.ties, rng)
+        if not closes:
+            state |= {p: state[p] * _near_one(rng) for p in system.symbols.parameters.values()}
+        try:
+            evaluate(entries, state, fifty_digits())
+        except NoValue:
+            continue
+        return lambda scalars, state=state: evaluate(scalars, state, fifty_digits())
+    raise DerivationError(f"no state with values for the reactions was found in {TRIES} tries")
+
+
+def _near_one(rng: Random) -> Any:
+    return fifty_digits().number(1) * rng.randint(80_000, 120_000) / 100_000
+
+
+# -- bodies that nothing holds ---------------------------------------------------------------------
+
+
+def _refuse_unheld(balance: Balance, solution: Solution) -> None:
+    """Refuse a motion of bodies that no reaction resists and no coordinate describes.
+
+    Raises:
+        DerivationError: the body that moves most in it, and the direction.
+    """
+    system = balance.system
+    closing = len(system.ties.closing) - len(redundant_rows(system.ties))
+    if len(solution.left) <= len(system.symbols.u) - closing:
+        return
+    free, allowed = _virtual_motions(balance)
+    Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
+    unheld = free - Q @ (Q.T @ free)
+    worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
+    if np.max(np.abs(unheld)) < HELD:
+        return
+    equation = balance.equations[worst]
+    direction = DIRECTIONS[equation.direction]
+    turning = direction.startswith("moment")
+    what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
+    raise DerivationError(f"body '{equation.body}' is {what}", f"bodies.{equation.body}",
+                          "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
+
+
+def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities along the rows: a basis of those that no reaction resists, and those of the coordinates."""
+    system = balance.system
+    rows, columns = len(balance.equations), len(balance.components)
+    state = generic_state(system.ties, Random(1))
+
+    def numbers(scalars: Sequence[Scalar]) -> list[float]:
+        return [float(x) for x in evaluate(tuple(scalars), state, fifty_digits())]
+
+    G = np.zeros((rows, columns))
+    for i, e in enumerate(balance.equations):
+        if e.coefficients:
+            G[i, list(e.coefficients)] = numbers(list(e.coefficients.values()))
+    U, sizes, _ = np.linalg.svd(G)
+    free = U[:, int(np.sum(sizes > HELD * max(sizes, default=1.0))) :]
+    return free, _allowed(balance, numbers)
+
+
+def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
+    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow."""
+    system = balance.system
+    motion = system.motion
+    plane = motion.scope.model.space == "plane"
+    columns = []
+    for e in balance.equations:
+        i = motion.index[e.body]
+        link, com = motion.links[i], mass_properties(motion.scope, e.body).com
+        B = np.array(numbers([x for row in motion.B[i] for x in row])).reshape(6, -1)
+        r = np.array(numbers(com))
+        R = np.array(numbers([x for row in link.pose.R for x in row])).reshape(3, 3) if plane else np.eye(3)
+        v = R @ (B[3:] + np.cross(B[:3].T, r).T)
+        columns.append(np.vstack([v, R @ B[:3]])[e.direction])
+    moved = np.array(columns)
+    if not system.ties.closing:
+        return moved
+    J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
+    _, sizes, V = np.linalg.svd(J)
+    return moved @ V[int(np.sum(sizes > HELD * max(sizes, default=1.0))) :].T

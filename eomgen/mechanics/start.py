@@ -1,0 +1,172 @@
+"""System -> the state at the start: dependent coordinates where the ties put them, and the ties found to hold.
+
+Coordinates of their own stay as given. Of the dependent ones those that position ties fix are sought from `near`,
+else from `start`; those that only velocity ties move really start at `start`.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.closure import closed, gaps_of, number
+from eomgen.mechanics.elimination import dependent_coordinates
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import Row
+from eomgen.model.values import first_guesses, numeric_parameters, start_values
+from eomgen.symbolic.derivative import depends_on, gradient, symbols_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
+from eomgen.symbolic.graph import Node, Scalar
+
+OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
+NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so little is rounding
+
+State = dict[Node, Any]
+
+
+def start_state(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """Every coordinate and independent speed at the start, at which all ties hold.
+
+    Args:
+        parameters: values in place of the model's own.
+        start: values of coordinates and speeds in place of the model's own; of a dependent coordinate the first guess.
+    Raises:
+        UsageError: a name in `start` that is no coordinate and no speed.
+        MissingValues: a start value, or a tie, needs parameters without values.
+        DerivationError: a tie that does not close there.
+    """
+    values = _given(system, parameters, start or {})
+    ties = system.ties
+    if all(row.identical for row in ties.rows):
+        return values
+    state = _numbers(system, values, parameters)
+    sought = fixed_by_position(system)
+    if sought:
+        state = closed(ties, state, sought) or state
+    _refuse_open_gaps(system, state)
+    _refuse_open_rates(system, state)
+    return {node.name: float(state[node]) for node in (*system.symbols.q, *system.symbols.u)}
+
+
+def fixed_by_position(system: System) -> list[Node]:
+    """The dependent coordinates that stand in a gap."""
+    names = dependent_coordinates(system.scope)
+    standing = set(symbols_of(gaps_of(system.ties)))
+    return [q for q in system.symbols.q if q.name in names and q in standing]
+
+
+def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[str, float]) -> dict[str, float]:
+    """The start values as they are written, and those in their place."""
+    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
+    unknown = [name for name in start if name not in names]
+    if unknown:
+        raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
+    q, u = start_values(system.scope.model, parameters)
+    guesses = first_guesses(system.scope.model, parameters)
+    sought = {node.name for node in fixed_by_position(system)}
+    values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
+    return {name: float(values[name]) for name in names}
+
+
+def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None) -> State:
+    """A value of every symbol that may stand in a tie, at t = 0, with 50 digits; what is not needed may be missing."""
+    symbols = system.symbols
+    rows = [row for row in system.ties.rows if not row.identical]
+    used = set(symbols_of([x for row in rows for x in (row.velocity, 0 if row.gap is None else row.gap)]))
+    used |= set(symbols_of(system.inputs.values()))
+    needed = [name for name, node in symbols.parameters.items() if node in used]
+    p = numeric_parameters(system.scope.model, parameters, needed=needed)
+    state = {symbols.parameters[name]: number(value) for name, value in p.items()} | {symbols.t: number(0)}
+    state |= {node: number(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    for name, node in symbols.inputs.items():
+        state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
+    return state
+
+
+# -- whether the ties hold ---------------------------------------------------------------------------
+
+
+def _refuse_open_gaps(system: System, state: State) -> None:
+    """Raises DerivationError for the tie that is open by most."""
+    q = system.symbols.q
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    found = _worst(((row, row.gap) for row in rows), q, state)
+    if found is None:
+        return
+    row, size = found
+    what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
+    raise DerivationError(what, f"constraints.{row.tie}", _mend(system, row))
+
+
+def _mend(system: System, row: Row) -> str:
+    """What closes a gap: another guess, a coordinate marked dependent, other start values."""
+    gap = (row.gap,)
+    dependent = dependent_coordinates(system.scope)
+    standing = [q.name for q in system.symbols.q if depends_on(gap[0], (q,))]
+    sought = [name for name in standing if name in dependent]
+    if sought:
+        return f"give start values at which it can close, or another guess: `near` of {_listed(sought)}"
+    free = [name for name in standing if not system.scope.model.coordinates[name].driven]
+    if not free:
+        return "change the given motions"
+    return f"give start values that close it, or mark a coordinate as `dependent`: {_listed(free)}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def _refuse_open_rates(system: System, state: State) -> None:
+    """Raises DerivationError for the closing tie whose velocity row is off by most."""
+    u = system.symbols.u
+    found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
+    if found is None:
+        return
+    row, size = found
+    speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
+    what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
+    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {_listed(speeds)}")
+
+
+def _worst(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[Row, float] | None:
+    """(row, size) of the largest scalar that ought to be zero and is not; None where all are."""
+    found = []
+    for row, x in pairs:
+        size = _excess(x, symbols, state)
+        if size:
+            found.append((size, row))
+    if not found:
+        return None
+    size, row = max(found, key=lambda each: each[0])
+    return row, size
+
+
+def _excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:
+    """|x|, where it is more than rounding: against its terms, and against what the symbols would have to move."""
+    try:
+        slopes = evaluate(gradient(x, symbols), state, fifty_digits())
+        value, terms = _value_and_terms(x, state)
+    except (NoValue, ZeroDivisionError):
+        return float("inf")
+    steepest = float(max((abs(slope) for slope in slopes), default=0))
+    return value if value > OPEN * terms and value > NEGLIGIBLE * steepest else 0.0
+
+
+def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
+    """(|x|, the same with every sum taken of absolute values): how large the terms are that cancel."""
+    nodes = order((x,))
+    values = dict(zip(nodes, evaluate(nodes, state, fifty_digits()), strict=True))
+    terms = {node: abs(value) for node, value in values.items()}
+    for node in nodes:
+        if node.op in _OF_TERMS:
+            terms[node] = _OF_TERMS[node.op](*(terms[a] if type(a) is Node else abs(number(a)) for a in node.args))
+    return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
+
+
+_OF_TERMS: dict[str, Callable[..., Any]] = {
+    "add": operator.add, "sub": operator.add, "mul": operator.mul, "neg": operator.pos,
+}  # fmt: skip

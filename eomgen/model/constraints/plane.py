@@ -1,0 +1,63 @@
+"""Directions, turns and round bodies in the plane, as ties need them; vectors are 3 with z = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
+from eomgen.symbolic.spatial import ZERO, cross, times
+
+Push = PointForce | Couple
+
+
+def left(d: Vector) -> Vector:
+    """d turned by a quarter, counter-clockwise."""
+    return (-d[1], d[0], 0)
+
+
+def right(d: Vector) -> Vector:
+    """d turned by a quarter, clockwise."""
+    return (d[1], -d[0], 0)
+
+
+def angle_of(scene: Scene, body: str | None) -> Scalar:
+    """The angle of a body against the ground's axes; the ground's is 0 [rad]."""
+    return 0 if body is None else scene.angle(body)
+
+
+def couples(first: str | None, second: str | None, ratio: Scalar = 1) -> tuple[Push, ...]:
+    """A unit couple on the first body and - ratio on the second (none on the ground)."""
+    pairs = ((first, 1), (second, -ratio))
+    return tuple(Couple(body, (0, 0, tau)) for body, tau in pairs if body is not None)
+
+
+def same_turn(scene: Scene, first: str | None, second: str | None, ratio: Scalar = 1) -> TieRow:
+    """theta_1 - ratio theta_2 stays as at the start: a couple on the first body, - ratio times it on the second."""
+    turned = angle_of(scene, first) - ratio * angle_of(scene, second)
+    return TieRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Where a force acts on a body: at `arm` (ground axes) from a place of it that does not move in it.
+
+    The place of contact wanders in a round body; its centre stays, and the moment arm x F goes beside the force.
+    """
+
+    place: Place
+    arm: Vector = ZERO
+
+    def pushed(self, force: Vector) -> tuple[Push, ...]:
+        """The force, as the same force at the place and its moment."""
+        body, _ = self.place
+        moment = cross(self.arm, force)
+        at_place = PointForce(self.place, force)
+        if body is None or all(type(x) is int and x == 0 for x in moment):
+            return (at_place,)
+        return (at_place, Couple(body, moment))
+
+
+def opposite(touch: Touch, other: Touch, force: Vector) -> tuple[Push, ...]:
+    """A force on the first, its opposite on the other."""
+    return (*touch.pushed(force), *other.pushed(times(-1, force)))

@@ -1,0 +1,135 @@
+"""Model -> its contacts: what can end, rub or stick, and the pieces of its paths; and how all of them are at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from eomgen.mechanics.contacts import Mode
+from eomgen.model.friction import Resistance
+from eomgen.model.part import altered
+from eomgen.model.parts import Model
+from eomgen.model.table import Table
+from eomgen.symbolic.expressions import Expression
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A tie, or the joint of a body on a path.
+
+    Args:
+        name: of the tie, or of the body.
+        kind: as the model file says it: "support", "link", "path".
+        unilateral: it can end.
+        friction: its law, or None.
+    """
+
+    name: str
+    kind: str
+    unilateral: bool
+    friction: Resistance | None
+
+    @property
+    def words(self) -> str:
+        return f"the body '{self.name}'" if self.kind == "path" else f"the {self.kind} '{self.name}'"
+
+    @property
+    def mu(self) -> Expression | None:
+        """The coefficient of Coulomb friction."""
+        return None if self.friction is None else self.friction.coulomb
+
+    @property
+    def pulls(self) -> bool:
+        """A wire or string, which goes slack; anything else opens."""
+        return self.kind in ("link", "string")
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """How all contacts are in one phase.
+
+    Args:
+        modes: of each contact.
+        pieces: the piece of the path on which each body on a path is, from 0.
+    """
+
+    modes: Table[Mode] = field(default_factory=Table)
+    pieces: Table[int] = field(default_factory=Table)
+
+    @property
+    def open(self) -> tuple[str, ...]:
+        """The ties that do not hold."""
+        return tuple(name for name, mode in self.modes.items() if not mode.closed)
+
+
+
+def has_phases(model: Model) -> bool:
+    """Whether the model has anything that can change as it moves."""
+    return bool(contacts_of(model)) or any(_pieces(body) > 1 for body in model.bodies.values())
+
+
+def contacts_of(model: Model) -> tuple[Contact, ...]:
+    """Every tie that can end or rubs, and every body that rubs on its path."""
+    found = []
+    for name, tie in model.constraints.items():
+        friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
+        if unilateral or friction is not None:
+            found.append(Contact(name, tie.kind, unilateral, friction))
+    for name, body in model.bodies.items():
+        friction = getattr(body.joint, "friction", None)
+        if friction is not None:
+            found.append(Contact(name, "path", False, friction))
+    return tuple(found)
+
+
+def _pieces(body: Any) -> int:
+    return len(getattr(body.joint, "pieces", ()))
+
+
+def paths_of(model: Model) -> tuple[str, ...]:
+    """The bodies on a path of several pieces."""
+    return tuple(name for name, body in model.bodies.items() if _pieces(body) > 1)
+
+
+def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
+    """The model with every path reduced to one of its pieces."""
+    if not pieces:
+        return model
+    bodies = dict(model.bodies)
+    for name, k in pieces.items():
+        bodies[name] = altered(bodies[name], joint=bodies[name].joint.piece(k))
+    return altered(model, bodies=Table(bodies))
+
+
+def changed(model: Model, before: Configuration, after: Configuration) -> tuple[str, ...]:
+    """What is different after, a phrase each: "the support 'wall' opens"."""
+    contacts = {contact.name: contact for contact in contacts_of(on_pieces(model, after.pieces))}
+    phrases = [_moved_on(model, name, k) for name, k in after.pieces.items() if before.pieces.get(name, k) != k]
+    for name, mode in after.modes.items():
+        old = before.modes.get(name)
+        if old is not None and old != mode:
+            phrases += _phrases(contacts[name], old, mode)
+    return tuple(phrases)
+
+
+def _moved_on(model: Model, body: str, k: int) -> str:
+    named = model.bodies[body].joint.pieces[k].name
+    return f"the body '{body}' comes to " + (f"the piece '{named}'" if named else f"piece {k + 1}") + " of its path"
+
+
+def _phrases(contact: Contact, old: Mode, new: Mode) -> Iterable[str]:
+    if old.closed and not new.closed:
+        yield f"{contact.words} goes slack" if contact.pulls else f"{contact.words} opens"
+    elif new.closed and not old.closed:
+        yield f"{contact.words} is taut again" if contact.pulls else f"{contact.words} closes"
+    elif old.sense != new.sense:
+        yield _sliding(contact, old.sense, new.sense)
+    elif old.push != new.push:
+        yield f"{contact.words} pushes from the other side"
+
+
+def _sliding(contact: Contact, old: int | None, new: int | None) -> str:
+    if new == 0:
+        return f"{contact.words} sticks"
+    return f"{contact.words} begins to slide" if old == 0 else f"{contact.words} slides back"

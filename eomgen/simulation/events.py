@@ -1,0 +1,110 @@
+"""Functions of the state -> the instant at which the first of them changes sign, within one step of an integrator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+PARTS = 8  # of a step: how often the functions are looked at
+RELATIVE = 4 * np.finfo(float).eps  # of the instant of an event, and one part in 1e12 of the step
+
+
+@dataclass(frozen=True)
+class Events:
+    """Functions that end a run where they fall to zero.
+
+    A function must first have been above its floor: one that starts at zero (a gap that has just opened) ends nothing
+    until it was positive, unless it falls below minus its floor first.
+
+    Args:
+        values: (t n, x n x states) -> n x k.
+        floors: what is rounding, of each function, k.
+    """
+
+    values: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    floors: np.ndarray
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """An event: function `index` of Events reached zero at t, in the state x."""
+
+    index: int
+    t: float
+    x: np.ndarray
+
+
+@dataclass
+class Watch:
+    """Follows the functions of `events` from step to step; `armed` are those that have been above their floor."""
+
+    events: Events
+    t: float
+    x: np.ndarray
+    armed: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.armed = self.events.values(np.array([self.t]), self.x[None, :])[0] > self.events.floors
+
+    def step(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> Crossing | None:
+        """The first crossing in the step from t_old to t_new; `dense` gives the state at instants in it."""
+        times = np.linspace(t_old, t_new, PARTS + 1)
+        g = self.events.values(times, dense(times).T)
+        found = [
+            root for k in range(g.shape[1])
+            if (root := self._first(k, times, g[:, k], dense)) is not None
+        ]  # fmt: skip
+        if not found:
+            return None
+        t, index = min(found)
+        return Crossing(index, t, dense(t))
+
+    def _first(self, k: int, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]) -> tuple[float, int] | None:
+        """The first time at which function k crosses, and k."""
+        floor = self.events.floors[k]
+
+        def value(t: float, level: float = 0.0) -> float:
+            return float(self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
+
+        for i in range(1, len(times)):
+            if self.armed[k]:
+                dip = _dip(value, times[max(i - 2, 0) : i + 1], g[max(i - 2, 0) : i + 1])
+                if dip is not None:
+                    return _root(value, dip[0], dip[1]), k
+                if g[i] <= 0:
+                    return _root(value, times[i - 1], times[i]), k
+            elif g[i] < -floor:
+                return _root(lambda t: value(t, -floor), times[i - 1], times[i]), k
+            elif g[i] > floor:
+                self.armed[k] = True
+        return None
+
+
+def _dip(value: Callable[[float], float], t: np.ndarray, g: np.ndarray) -> tuple[float, float] | None:
+    """Between three positive values the middle one of which is the least: (before, below zero), where it dips so far.
+
+    The parabola through the three says whether it is worth a look.
+    """
+    if len(t) < 3 or not (g > 0).all() or not (g[1] <= g[0] and g[1] <= g[2]):
+        return None
+    curvature = g[0] - 2 * g[1] + g[2]
+    if curvature <= 0 or g[1] - (g[2] - g[0]) ** 2 / (8 * curvature) > 0.5 * g[1]:
+        return None
+    from scipy.optimize import minimize_scalar
+
+    least = minimize_scalar(value, bounds=(t[0], t[2]), method="bounded", options={"xatol": 1e-10 * (t[2] - t[0])})
+    return (float(t[0]), float(least.x)) if least.fun < 0 else None
+
+
+def _root(value: Callable[[float], float], before: float, after: float) -> float:
+    """Where the function is zero between two instants."""
+    from scipy.optimize import brentq
+
+    if not value(before) > 0:
+        return before
+    if not value(after) < 0:
+        return after
+    return float(brentq(value, before, after, xtol=1e-12 * (after - before), rtol=RELATIVE))

@@ -1,0 +1,114 @@
+"""State -> Configuration: which contacts hold, and which of them slide, stick or open, from this instant on.
+
+Of all configurations that the positions and velocities allow, the first whose forces and accelerations agree with it:
+
+    closed   N >= 0              sticks   |F| <= mu |N|
+    open     gap'' >= 0          slides from rest along its sense   sense v' >= 0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import islice, product
+
+import numpy as np
+
+from eomgen.mechanics.contacts import Mode
+from eomgen.model.table import Table
+from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
+from eomgen.simulation.stage import FORCE, RATE, Stage, Stages, Values
+
+MOST_TRIED = 2000  # configurations at one instant
+STICKS = Mode(sense=0)
+OPEN = Mode(closed=False)
+
+
+def settled(
+    stages: Stages, t: float, values: Values, *, pieces: Mapping[str, int], apart: frozenset[str],
+    ended: frozenset[Configuration] = frozenset(), before: Configuration | None = None,
+) -> Configuration | None:  # fmt: skip
+    """The configuration from here on; None where no forces agree with any.
+
+    Args:
+        pieces: of the paths, on which bodies are.
+        apart: contacts that are open for certain: they do not touch, or move apart.
+        ended: configurations that have just ended: taken only where there is no other.
+        before: the configuration so far; contacts keep what they can of it.
+    """
+    contacts = contacts_of(on_pieces(stages.model, pieces))
+    still = Configuration(Table({c.name: OPEN if c.name in apart else STICKS if c.mu else Mode() for c in contacts}),
+                          Table(pieces))  # fmt: skip
+    sliding = _sliding(stages.of(still), t, values) if any(c.mu for c in contacts) else {}
+    last: Configuration | None = None
+    for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
+        tried = Configuration(Table(modes), Table(pieces))
+        if not agrees(stages.of(tried), t, values, sliding=sliding, apart=apart):
+            continue
+        if tried not in ended:
+            return tried
+        last = last or tried
+    return last
+
+
+def _sliding(stage: Stage, t: float, values: Values) -> dict[str, int]:
+    """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
+    x = stage.state(values)
+    found = stage.look(t, x)
+    size = RATE * max(1.0, float(np.max(np.abs(x[len(stage.coordinates) :]), initial=0.0)))
+    return {owner: 0 if abs(v) <= size else 1 if v > 0 else -1 for (owner, what), v in found.items() if what == "slide"}
+
+
+def _choices(
+    contacts: tuple[Contact, ...], apart: frozenset[str], sliding: Mapping[str, int], before: Configuration | None
+) -> Iterator[dict[str, Mode]]:
+    """The modes that positions and velocities allow, those that hold before those that let go."""
+    offered = []
+    for contact in contacts:
+        modes = [OPEN] if contact.name in apart else _modes(contact, sliding.get(contact.name, 0), before)
+        offered.append([(contact.name, mode) for mode in modes])
+    for choice in product(*offered):
+        yield dict(choice)
+
+
+def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[Mode]:
+    if contact.friction is None:
+        return [Mode(), OPEN]
+    old = None if before is None else before.modes.get(contact.name)
+    first = 1 if old is None else old.push
+    pushes = (1,) if contact.unilateral else (first, -first)
+    if contact.mu is None:
+        modes = [Mode(push=push) for push in pushes]
+    elif sense:
+        modes = [Mode(sense=sense, push=push) for push in pushes]
+    else:
+        modes = [STICKS, *(Mode(sense=s, push=push) for s in (1, -1) for push in pushes)]
+    return [*modes, OPEN] if contact.unilateral else modes
+
+
+def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
+    """Whether forces and accelerations are such as the configuration says."""
+    x = stage.state(values)
+    found = stage.look(t, x)
+    forces, accelerations = stage.sizes(t, x)
+    asked = [contact for contact in stage.contacts if contact.name not in apart]
+    signs = [_signs(stage.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
+    return all(
+        force >= -FORCE * forces and acceleration >= -FORCE * accelerations
+        for pairs in signs for force, acceleration in pairs
+    )  # fmt: skip
+
+
+def _signs(
+    mode: Mode, contact: Contact, found: Mapping[tuple[str, str], float], sense: int
+) -> Iterator[tuple[float, float]]:
+    """(force, acceleration) that must not be negative (0 where there is nothing to ask)."""
+    name = contact.name
+    if not mode.closed:
+        yield 0.0, found[name, "gap''"]
+        return
+    if contact.unilateral or mode.sense != 0:
+        yield (mode.push if contact.friction else 1) * found[name, "N"], 0.0
+    if mode.sense == 0:
+        yield found[name, "grip"] - abs(found[name, "hold"]), 0.0
+    elif mode.sense is not None and sense == 0:
+        yield 0.0, mode.sense * found[name, "slide'"]

@@ -1,0 +1,260 @@
+"""Model -> Situation: the equations of one phase, and what a formula of the model is worth in it, exactly.
+
+A formula may hold coordinates, rates, accelerations, and functions of the motion and of the reactions. As a function of
+the state, accelerations and multipliers are replaced by the equations of motion. At one instant the instant's values
+are put into the equations first, and these are solved there: so nothing is divided by what vanishes only in between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from eomgen.codegen.factorization import solved
+from eomgen.errors import DerivationError, MissingValues
+from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.contacts import Modes
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.outputs import ASKING_REACTIONS, Quantities
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reactions import values_at_a_state
+from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.wellposed import refuse_massless
+from eomgen.model.parts import Model
+from eomgen.symbolic import cramer, linear
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.expressions import Call, Expression
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import readable_all, simplest
+
+WORK = 50_000  # products of terms for making one formula readable
+State = Mapping[Node, Scalar]
+
+
+@dataclass(frozen=True)
+class Situation:
+    """The equations of motion of one phase.
+
+    Args:
+        system: motion, loads and ties.
+    """
+
+    system: System
+
+    @property
+    def model(self) -> Model:
+        return self.system.scope.model
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The equations of motion, friction included.
+
+        Raises:
+            ModelError: a free coordinate moves no mass.
+        """
+        assembly = with_friction(self.system, recursive.assemble(self.system))
+        refuse_massless(assembly)
+        return assembly
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        """The parameters that stand for positive numbers: declared so, or given so."""
+        return positive_parameters(self.system.scope)
+
+    @cached_property
+    def unknowns(self) -> dict[Node, Scalar]:
+        """Accelerations and multipliers as functions of q, u, t and inputs."""
+        return accelerations_and_multipliers(self.system, self.assembly)
+
+    @property
+    def accelerations(self) -> Row:
+        return tuple(self.unknowns[a] for a in self.system.symbols.a)
+
+    @cached_property
+    def _quantities(self) -> Quantities:
+        return Quantities(self.system)
+
+    # -- as functions of the state ---------------------------------------------------------------
+
+    def raw(self, formula: Expression) -> Scalar:
+        """The formula as it stands: accelerations and multipliers are symbols."""
+        return formula.evaluate(self.system.scope.names, self._quantities.value)
+
+    def of_state(self, formula: Expression) -> Scalar:
+        """The formula as a function of q, u and t; each function of the motion in it is readable by itself."""
+
+        def value(call: Call) -> Scalar:
+            return self.simple(self.eliminated(self._quantities.value(call)))
+
+        return self.eliminated(formula.evaluate(self.system.scope.names, value))
+
+    def eliminated(self, scalar: Scalar) -> Scalar:
+        """A scalar with accelerations and multipliers replaced by the equations of motion."""
+        if not depends_on(scalar, (*self.system.symbols.a, *self.system.symbols.lam)):
+            return scalar
+        return substituted((scalar,), self.unknowns)[0]
+
+    def simple(self, scalar: Scalar) -> Scalar:
+        """A scalar in its most readable form."""
+        return simplest(scalar, WORK, self.positive)
+
+    # -- at an instant ---------------------------------------------------------------------------
+
+    def at(self, formula: Expression, state: State) -> Scalar:
+        """The formula at a state that is given exactly, in the parameters alone.
+
+        Args:
+            state: exact scalars of t, q and u; of those that are missing the formula may hold none.
+        Raises:
+            MissingValues: it holds one; the names tell which.
+        """
+        state = self.complete(state, formula)
+        quantities = Quantities(self.system, state)
+        scalar = formula.evaluate(self.system.scope.names, quantities.value)
+        (scalar,) = substituted((scalar,), state)
+        symbols = self.system.symbols
+        left = [x.name for x in (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
+                if depends_on(scalar, (x,))]  # fmt: skip
+        if left:
+            raise MissingValues(tuple(left))
+        return self.simple(scalar)
+
+    def complete(self, state: State, formula: Expression | None = None) -> State:
+        """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
+        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
+        state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
+        if formula is not None and not self.needs_equations(formula):
+            return state
+        return {**state, **self._unknowns_at(state)}
+
+    def needs_equations(self, formula: Expression) -> bool:
+        """Whether accelerations, multipliers or reactions stand in the formula."""
+        if any(call.name in ASKING_REACTIONS for call in formula.calls):
+            return True
+        return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
+
+    def _unknowns_at(self, state: State) -> dict[Node, Scalar]:
+        """Accelerations and multipliers at a state: the equations solved there."""
+        symbols, assembly = self.system.symbols, self.assembly
+        if assembly.friction:
+            values = substituted(tuple(self.unknowns.values()), state)
+            return dict(zip(self.unknowns, (self.simple(x) for x in values), strict=True))
+        kept = _regular_rows(self.system)
+        n = len(assembly.M)
+        rows: list[dict[int, Scalar]] = []
+        for i in range(n):
+            row = dict(enumerate(assembly.M[i]))
+            rows.append(row | {n + k: -assembly.J[m][i] for k, m in enumerate(kept)})
+        rows += [dict(enumerate(assembly.J[m])) for m in kept]
+        right = (*assembly.forcing, *(-assembly.gamma[m] for m in kept))
+        entries = readable_all(substituted([x for row in rows for x in row.values()], state), WORK, self.positive)
+        flat = iter(entries)
+        rows = [{j: next(flat) for j in row} for row in rows]
+        needed = readable_all(substituted(right, state), WORK, self.positive)
+        solution = linear.solved(rows, needed, n + len(kept), values_at_a_state(self.system, entries))
+        names = (*symbols.a, *(symbols.lam[m] for m in kept))
+        return {names[j]: self.simple(x) for j, x in solution.constants.items() if solution.determined(j)}
+
+
+def situation_of(model: Model, modes: Modes | None = None) -> Situation:
+    """The equations of a model in one configuration of its contacts."""
+    return Situation(system_of(model, modes))
+
+
+def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[Node, Scalar]:
+    """a and lam of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out, their lam 0.
+
+    a = X F + X J^T lam,  (J X J^T) lam = -(gamma + J X F),  X = M^-1, never formed: M is solved for each column.
+
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    symbols = system.symbols
+    if assembly.friction and assembly.accelerations is not None:
+        found = dict(zip(symbols.a, assembly.accelerations, strict=True))
+        return found | _multipliers(system, assembly, found)
+    if not assembly.J:
+        return dict(zip(symbols.a, solved(assembly.M, assembly.forcing), strict=True))
+    kept = _regular_rows(system)
+    if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
+        return _by_determinants(assembly, kept)
+    free = solved(assembly.M, assembly.forcing)
+    J = [assembly.J[i] for i in kept]
+    columns = [solved(assembly.M, row) for row in J]
+    S = [[_dot(row, column) for column in columns] for row in J]
+    lam = solved(S, [-(assembly.gamma[i] + _dot(row, free)) for i, row in zip(kept, J, strict=True)])
+    a = tuple(a + _dot(lam, [column[k] for column in columns]) for k, a in enumerate(free))
+    multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
+    return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def _by_determinants(assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scalar]:
+    """a and lam of the bordered equations at once: the shortest formulas, for small systems."""
+    symbols, n = assembly.symbols, len(assembly.M)
+    rows = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in assembly.M]
+    for i, row in enumerate(rows):
+        row |= {n + k: -assembly.J[m][i] for k, m in enumerate(kept) if not is_zero(assembly.J[m][i])}
+    rows += [{j: x for j, x in enumerate(assembly.J[m]) if not is_zero(x)} for m in kept]
+    found, _ = cramer.solved(rows, [(x,) for x in (*assembly.forcing, *(-assembly.gamma[m] for m in kept))])
+    values = [x for (x,) in found]
+    multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
+    return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+    """lam of J^T lam = M a - forcing with the accelerations known."""
+    if not assembly.J:
+        return {}
+    kept = _regular_rows(system)
+    n = len(assembly.M)
+    rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
+    right = [_dot(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
+    entries = [x for row in rows for x in row.values()]
+    solution = linear.solved(rows, right, len(kept), values_at_a_state(system, entries))
+    found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
+    return {x: found.get(x, 0) for x in system.symbols.lam}
+
+
+def _regular_rows(system: System) -> list[int]:
+    """The closing rows that do not follow from others."""
+    dropped = {(row.tie, row.number) for row in redundant_rows(system.ties)}
+    return [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
+
+
+def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    return sum((x * y for x, y in zip(a, b, strict=True)), start=0)
+
+
+def exact_numbers(values: Mapping[Node, float]) -> dict[Node, Scalar]:
+    """Doubles as the exact numbers that they are."""
+    return {node: Fraction(value) for node, value in values.items() if value == value}
+
+
+def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
+    """The start as exact scalars of the parameters: t, coordinates that are not sought by the ties, and speeds.
+
+    Args:
+        at_rest: all speeds are 0, whatever the model says.
+    """
+    scope, model = situation.system.scope, situation.model
+    from eomgen.mechanics.loads import start_value
+    from eomgen.mechanics.start import fixed_by_position
+
+    sought = set(fixed_by_position(situation.system))
+    start: dict[Node, Scalar] = {scope.symbols.t: 0}
+    for q in scope.symbols.q:
+        if q not in sought:
+            start[q] = start_value(scope, model.coordinates[q.name])
+    for u in scope.symbols.u:
+        speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
+        start[u] = 0 if at_rest else scope.value(speed)
+    return start
+
+
+def refuse_missing(missing: Sequence[str], what: str) -> DerivationError:
+    """The error for a quantity that an instant does not determine."""
+    return DerivationError(f"{what} does not determine {', '.join(missing)}")
