@@ -11,23 +11,21 @@ import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
+from eomgen.journey import Journey, Moment
 from eomgen.mechanics.integrals import rates_of
 from eomgen.mechanics.outputs import later
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
-from eomgen.situation import Situation, exact_numbers, situation_of, start_of
+from eomgen.situation import Situation, exact_numbers
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size, to_text
-
-if TYPE_CHECKING:
-    from eomgen.journey import Journey, Moment
 
 LONGEST = 20_000  # characters of an exact answer
 
@@ -107,9 +105,14 @@ class _Solver:
     model: Model
 
     @cached_property
+    def journeys(self) -> dict[bool, Journey]:
+        """The motion from the start, and from rest at the start."""
+        return {at_rest: Journey(self.model, at_rest) for at_rest in (False, True)}
+
+    @property
     def situation(self) -> Situation:
         """The first phase: contacts as they are at the start."""
-        return situation_of(self.model)
+        return self.journeys[False].situation
 
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
@@ -117,8 +120,6 @@ class _Solver:
         try:
             _refuse_later(output)
             return replace(self._answer(output), unit=unit)
-        except ModuleNotFoundError:  # TODO lead: until instants.py is there
-            return Answer(unit=unit, message='instants are being built')
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
             return Answer(unit=unit, message=f"{error.what}; {error.mend}" if error.mend else error.what)
 
@@ -138,19 +139,22 @@ class _Solver:
         """A function of coordinates and rates."""
         situation = self.situation
         scalar = situation.of_state(output.value)
-        method = "kinematics" if symbols_of((scalar,)) else "arithmetic"
-        if situation.needs_equations(output.value):
-            method = "equations of motion"
+        method = situation.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         return self._started(situation.simple(self._in_unit(scalar, output)), method)
 
     def _of_configuration(self, output: Output) -> Answer:
         """A function of the coordinates, rates eliminated by the energy theorem."""
-        situation = self.situation
+        journey = self.journeys[output.from_ == "rest"]
+        situation = journey.situation
         scalar = situation.of_state(output.value)
         if not depends_on(scalar, situation.system.symbols.u):
-            return self._started(situation.simple(self._in_unit(scalar, output)), "equations of motion")
-        start = start_of(situation, at_rest=output.from_ == "rest")
-        rates = rates_of(situation.system, situation.assembly, start)
+            method = situation.method_for(output.value) or "kinematics"
+            return self._started(situation.simple(self._in_unit(scalar, output)), method)
+        if not journey.start:
+            raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
+        rates = rates_of(
+            situation.system, situation.assembly, journey.start, journey.sense, accelerations=situation.accelerations
+        )
         if rates is None:
             raise DerivationError("no integrals of the motion give the rates as functions of the coordinates",
                                   mend="ask it at an instant: `at`")  # fmt: skip
@@ -173,19 +177,20 @@ class _Solver:
             MissingValues: a parameter that it needs has no value.
         """
         system = self.situation.system
-        symbols = system.symbols
-        (scalar,) = substituted((scalar,), {node: system.inputs[name] for name, node in symbols.inputs.items()})
-        used = set(symbols_of((scalar,)))
         known = exact_parameters(self.model)
-        missing = tuple(name for name, node in symbols.parameters.items() if node in used and name not in known)
+        names = {x.name for x in symbols_of((scalar,))}
+        names |= {x.name for name in names & self.model.inputs.keys() for x in symbols_of((system.inputs[name],))}
+        missing = tuple(name for name in self.model.parameters if name in names and name not in known)
         if missing:
             raise MissingValues(missing)
-        state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
-        state[symbols.t] = 0.0
-        if used & {*symbols.q, *symbols.u}:
-            values = start_state(system)
-            state |= {node: values[node.name] for node in (*symbols.q, *symbols.u)}
-        return evaluate((scalar,), state, FLOAT)[0]
+        values = {"t": 0.0} | {name: float(x) for name, x in known.items()}
+        moving = {x.name for x in (*system.symbols.q, *system.symbols.u)}
+        if names & moving:
+            values |= start_state(system)
+        for name in names & self.model.inputs.keys():
+            state = {x: values[x.name] for x in symbols_of((system.inputs[name],))}
+            values[name] = evaluate((system.inputs[name],), state, FLOAT)[0]
+        return evaluate((scalar,), {x: values[x.name] for x in symbols_of((scalar,))}, FLOAT)[0]
 
     # -- at an instant -------------------------------------------------------------------------
 
@@ -216,13 +221,6 @@ class _Solver:
         scalar = self._in_unit(situation.at(output.value, state), output)
         known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
         return evaluate((scalar,), known, FLOAT)[0]
-
-    @cached_property
-    def journeys(self) -> dict[bool, Journey]:
-        """The motion from the start, and from rest at the start."""
-        from eomgen.journey import Journey
-
-        return {at_rest: Journey(self.situation, at_rest) for at_rest in (False, True)}
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:

@@ -2,7 +2,8 @@
 
 Independent routes must agree: energies and their derivatives (Lagrange), twists and wrenches
 (projection), recursion over the tree. What they share is checked by itself: twists against
-differences of poses, accelerations against free bodies in numbers, the energy identity, the emitted code.
+differences of poses, accelerations against free bodies in numbers, the energy identity, reactions by the balance of
+every body and of the whole, the emitted code.
 """
 
 from __future__ import annotations
@@ -18,14 +19,18 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.contacts import CLOSED
 from eomgen.mechanics.dense import independent, scaled_condition, solution
+from eomgen.mechanics.equilibrium import imbalance
 from eomgen.mechanics.formulations import ALL
 from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.friction import frictions, rubs, with_friction
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
+from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import System
-from eomgen.mechanics.work import powered_forces
+from eomgen.mechanics.work import powered_forces, total
 from eomgen.symbolic.derivative import gradient, jacobian, substituted, tangent
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
@@ -102,7 +107,8 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
         checks.append(_closing_rows(system, assembly))
     if system.elimination is not None:
         checks.append(_eliminated_rows(system))
-    checks.append(_free_bodies(system, assembly))
+    checks.append(_friction(system) if rubs(system) else _free_bodies(system, assembly))
+    checks += _balance(system, assembly)
     if rhs is not None:
         checks.append(_code(system, assembly, rhs))
     return Certificate(tuple(checks))
@@ -135,7 +141,7 @@ def _routes(system: System, assembly: Assembly) -> Iterable[Check]:
     for formulation in ALL:
         if not formulation.applies(system):
             continue
-        other = formulation.assemble(system)
+        other = with_friction(system, formulation.assemble(system))
         pairs, labels = [], []
         for i, name in enumerate(speeds):
             pairs += [(assembly.M[i][j], other.M[i][j]) for j in range(len(speeds))]
@@ -167,7 +173,7 @@ def _energy(system: System, assembly: Assembly) -> Check:
     scope, symbols = system.scope, assembly.symbols
     momenta = gradient(assembly.T, symbols.u)
     H = sum((p * u for p, u in zip(momenta, symbols.u, strict=True)), start=assembly.V - assembly.T)
-    powered = powered_forces(system.loads)
+    powered = total([powered_forces(system.loads), assembly.friction or (0,) * len(symbols.u)], len(symbols.u))
     power: Scalar = tangent((assembly.V - assembly.T,), _own_motion(scope))[0]
     for k, u in enumerate(symbols.u):
         inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
@@ -319,6 +325,37 @@ def _free_bodies(system: System, assembly: Assembly) -> Check:
         return _difference("a", free, accelerations_at(assembly, state), FLOAT_TOLERANCE)
 
     return _at_a_state(system, "accelerations agree with those of the free bodies", "floating point", check)
+
+
+def _friction(system: System) -> Check:
+    """Whatever rubs is braked: factor * v < 0 for a contact that pushes, v its sliding velocity."""
+
+    def check(state: State) -> str:
+        for name, factor, sliding in frictions(system):
+            mode = system.modes.get(name, CLOSED)
+            v = sliding if mode.sense is None else mode.sense
+            (power,) = evaluate((mode.push * factor * v,), state, fifty_digits())
+            if not power < 0:
+                return f"friction drives '{name}' on"
+        return ""
+
+    return _at_a_state(system, "friction takes power from what slides", "50 digits", check)
+
+
+def _balance(system: System, assembly: Assembly) -> Iterable[Check]:
+    """D'Alembert's principle for every body, every pair and the whole, in the motion; none where reactions do not follow."""
+    try:
+        reactions = reactions_of(system)
+    except DerivationError:
+        return
+
+    def check(state: State) -> str:
+        digits = fifty_digits()
+        a = [digits.number(1) * float(value) for value in accelerations_at(assembly, state)]
+        return imbalance(reactions, state | dict(zip(assembly.symbols.a, a, strict=True)), Random(7))
+
+    if reactions.components:
+        yield _at_a_state(system, "every body is in balance with its reactions", "floating point", check)
 
 
 def _code(system: System, assembly: Assembly, rhs: RightHandSide) -> Check:

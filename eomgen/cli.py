@@ -200,7 +200,7 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
 
 @main.command()
 @_common
-@click.option("--method", type=click.Choice(["lagrange", "projection"]), default="lagrange", show_default=True)
+@click.option("--method", type=click.Choice(["lagrange", "projection", "kinetostatic"]), default="lagrange", show_default=True)
 @click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
               help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
@@ -250,7 +250,7 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
         outcome = simulated(declared, output=output, **options)
     if output and not wants_json:
         click.echo(outcome.text, err=True, nl=False)
-        return _deliver(type(outcome)("", failed=outcome.failed), False)
+        return _deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)
     return _deliver(outcome, wants_json)
 
 

@@ -11,11 +11,13 @@ import numpy as np
 
 from eomgen.certificate import Certificate, certify
 from eomgen.codegen.program import Program, right_hand_side
+from eomgen.codegen.reactions import ReactionFunction, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.start import start_state
+from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
@@ -84,6 +86,21 @@ class Equations:
         refuse_massless(self.graph)
         return right_hand_side(with_accelerations(self.system, self.graph), self.system.inputs)
 
+    @cached_property
+    def reactions(self) -> Reactions:
+        """Every reaction of joints and ties, in q, u and the accelerations.
+
+        Raises:
+            DerivationError: a body is held by nothing; a force acts at no place.
+        """
+        return reactions_of(self.system)
+
+    @cached_property
+    def reactions_program(self) -> tuple[tuple[str, ...], Program]:
+        """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
+        refuse_massless(self.graph)
+        return reactions_program(self.reactions, with_accelerations(self.system, self.graph), self.system.inputs)
+
     def certify(self, target: str | None = "numpy") -> Certificate:
         """Check the equations by independent routes, and the code that `target` emits against the symbols."""
         return certify(self.system, self.graph, compiled(self.program, target))
@@ -99,6 +116,17 @@ class Equations:
         """
         p0, x0 = self._known_values()
         return compiled(self.program, target, x0=x0, p0=p0)
+
+    def reaction_rhs(self, target: str | None = None) -> ReactionFunction:
+        """The reactions `reactions(t, x, p, inputs=())`, with `.names`; what has no single value is not among them.
+
+        Args:
+            target: as of `rhs`.
+        Raises:
+            DerivationError: a body is held by nothing; a force acts at no place.
+        """
+        names, program = self.reactions_program
+        return ReactionFunction(names, compiled(program, target))
 
     @cached_property
     def derivation(self) -> Derivation:

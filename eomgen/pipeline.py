@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.closure import gaps_of
@@ -18,11 +19,15 @@ from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
+from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.integrate import SAMPLES, integrate
+from eomgen.simulation.phases import run_phases
+from eomgen.simulation.reaction_columns import with_reactions
 from eomgen.simulation.singular import ended_where_singular
+from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 
-METHODS = ("lagrange", "projection")
+METHODS = ("lagrange", "projection", "kinetostatic")
 
 
 def derive(model: Model, method: str = "lagrange") -> Equations:
@@ -63,10 +68,13 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    return simulated(
+    run = simulated(
         derive(model), time=time, parameters=parameters, start=start, target=target, samples=samples,
         tolerances=(rtol, atol),
     )  # fmt: skip
+    if run.reactions and run.remark:
+        warnings.warn(f"{model.name}: {run.remark}", RuntimeWarning, stacklevel=2)
+    return run
 
 
 def simulated(
@@ -80,12 +88,19 @@ def simulated(
     tolerances: tuple[float, float] = (1e-9, 1e-9),
 ) -> Trajectory:
     """The motion by equations that are derived already; see `simulate`. The tolerances are (rtol, atol)."""
-    assembly = equations.graph
     p = np.array(list(numeric_parameters(equations.model, parameters).values()), dtype=float)
+    if has_phases(equations.model):
+        run = run_phases(
+            equations.model, time=time, p=p, parameters=parameters, start=start, target=target,
+            samples=SAMPLES if samples is None else samples, how=Stepping(rtol=tolerances[0], atol=tolerances[1]),
+        )  # fmt: skip
+        return with_reactions(run, lambda: equations.reactions, equations.rhs(target), p)
+    assembly = equations.graph
     energies = _along(equations, (assembly.T, assembly.V), p)
     gaps = gaps_of(equations.system.ties)
+    rhs = equations.rhs(target)
     run = integrate(
-        equations.rhs(target),
+        rhs,
         time=time,
         x0=equations.start(parameters, start),
         p=p,
@@ -96,9 +111,25 @@ def simulated(
         rtol=tolerances[0],
         atol=tolerances[1],
     )
-    blocks = () if equations.system.elimination is None else equations.system.elimination.blocks
+    run = _watched(equations, run, rhs, p, tolerances)
+    return with_reactions(run, lambda: equations.reactions, rhs, p)
+
+
+def _watched(
+    equations: Equations, run: Trajectory, rhs: RightHandSide, p: np.ndarray, tolerances: tuple[float, float]
+) -> Trajectory:
+    """The run, ended where dependent coordinates are not determined and it went astray."""
+    if equations.system.elimination is None:
+        return run
+    blocks = equations.system.elimination.blocks
+    rtol, atol = (max(tolerance / 1000, 1e-13) for tolerance in tolerances)
+
+    def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
+        finer = integrate(rhs, time=(start, end), x0=x, p=p, rtol=rtol, atol=atol, samples=2)
+        return finer.x[-1] if finer.ok else np.full_like(x, np.nan)
+
     determinants = _along(equations, tuple(block.determinant for block in blocks), p)
-    return ended_where_singular(run, determinants, [str(block) for block in blocks], rtol=tolerances[0])
+    return ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
 
 
 def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:

@@ -16,8 +16,8 @@ from eomgen.codegen.factorization import solved
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.contacts import Modes
+from eomgen.mechanics.explicit import by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.outputs import ASKING_REACTIONS, Quantities
 from eomgen.mechanics.positive import positive_parameters
@@ -28,7 +28,7 @@ from eomgen.model.parts import Model
 from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import readable_all, simplest
 
 WORK = 50_000  # products of terms for making one formula readable
@@ -131,6 +131,12 @@ class Situation:
             return state
         return {**state, **self._unknowns_at(state)}
 
+    def method_for(self, formula: Expression) -> str:
+        """What eliminates reactions and accelerations from the formula; "" where it holds none."""
+        if any(call.name in ASKING_REACTIONS for call in formula.calls):
+            return "balance of the bodies"
+        return "equations of motion" if self.needs_equations(formula) else ""
+
     def needs_equations(self, formula: Expression) -> bool:
         """Whether accelerations, multipliers or reactions stand in the formula."""
         if any(call.name in ASKING_REACTIONS for call in formula.calls):
@@ -143,7 +149,7 @@ class Situation:
         if assembly.friction:
             values = substituted(tuple(self.unknowns.values()), state)
             return dict(zip(self.unknowns, (self.simple(x) for x in values), strict=True))
-        kept = _regular_rows(self.system)
+        kept = regular_rows(self.system)
         n = len(assembly.M)
         rows: list[dict[int, Scalar]] = []
         for i in range(n):
@@ -179,9 +185,9 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
         return found | _multipliers(system, assembly, found)
     if not assembly.J:
         return dict(zip(symbols.a, solved(assembly.M, assembly.forcing), strict=True))
-    kept = _regular_rows(system)
+    kept = regular_rows(system)
     if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
-        return _by_determinants(assembly, kept)
+        return by_determinants(assembly, kept)
     free = solved(assembly.M, assembly.forcing)
     J = [assembly.J[i] for i in kept]
     columns = [solved(assembly.M, row) for row in J]
@@ -192,24 +198,11 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
 
 
-def _by_determinants(assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scalar]:
-    """a and lam of the bordered equations at once: the shortest formulas, for small systems."""
-    symbols, n = assembly.symbols, len(assembly.M)
-    rows = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in assembly.M]
-    for i, row in enumerate(rows):
-        row |= {n + k: -assembly.J[m][i] for k, m in enumerate(kept) if not is_zero(assembly.J[m][i])}
-    rows += [{j: x for j, x in enumerate(assembly.J[m]) if not is_zero(x)} for m in kept]
-    found, _ = cramer.solved(rows, [(x,) for x in (*assembly.forcing, *(-assembly.gamma[m] for m in kept))])
-    values = [x for (x,) in found]
-    multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
-    return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
-
-
 def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
     """lam of J^T lam = M a - forcing with the accelerations known."""
     if not assembly.J:
         return {}
-    kept = _regular_rows(system)
+    kept = regular_rows(system)
     n = len(assembly.M)
     rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
     right = [_dot(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
@@ -217,12 +210,6 @@ def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -
     solution = linear.solved(rows, right, len(kept), values_at_a_state(system, entries))
     found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
     return {x: found.get(x, 0) for x in system.symbols.lam}
-
-
-def _regular_rows(system: System) -> list[int]:
-    """The closing rows that do not follow from others."""
-    dropped = {(row.tie, row.number) for row in redundant_rows(system.ties)}
-    return [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
 
 
 def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import NotYet
+from eomgen.mechanics.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.pipeline import Equations, derive
@@ -149,12 +150,18 @@ def derivable() -> tuple[str, ...]:
 def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
     """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier."""
     symbols = equations.graph.symbols
-    own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *symbols.u, *symbols.a)
+    free = free_system(equations).symbols
+    own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *free.u, *free.a)
     names: dict[str, Any] = {symbol.name: symbol for symbol in own}
     multipliers = {symbol.name: symbol for symbol in symbols.lam}
     expression = parse(text, references=True, longest=2_000_000)
     lookup = {**names, "pi": symbols.graph.pi, **(also or {})}
     return expression.evaluate(lookup, call=lambda call: multipliers[str(call)])
+
+
+def free_system(equations: Equations) -> System:
+    """The system in whose rates the steps may be written: those of dependent coordinates too."""
+    return equations.system.free or equations.system
 
 
 def residuals(equations: Equations) -> list[Scalar]:
@@ -170,6 +177,6 @@ def residuals(equations: Equations) -> list[Scalar]:
 
 def symbols_named(equations: Equations) -> dict[str, Node]:
     """Every symbol of the equations by its name."""
-    s = equations.graph.symbols
-    own = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    s, free = equations.graph.symbols, free_system(equations).symbols
+    own = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *free.u, *free.a, *s.lam)
     return {symbol.name: symbol for symbol in own}

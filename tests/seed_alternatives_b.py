@@ -34,6 +34,7 @@ v_B = { value = "speed(B.center)", at = "x(B.center) = 2*l", from = "rest" }
 v_B_squared = { value = "speed(B.center)^2", at = "x(B.center) = 2*l", from = "rest" }
 theta = { value = "theta", at = "x(B.center) = 2*l", from = "rest" }
 theta_d_squared = { value = "theta'^2", at = "x(B.center) = 2*l", from = "rest" }
+theta_d_squared_general = { value = "theta'^2", from = "rest" }
 """
 
 SLIDER_CRANK_BY_A_SUPPORT = """
@@ -81,6 +82,9 @@ joint = { kind = "revolute", on = "OA.end", angle = "psi + theta" }
 kind = "pin"
 points = ["AB.end", "CB.end"]
 [outputs]
+theta_d_squared = { value = "theta'^2", from = "rest" }
+R1 = { value = "-reaction_x(OA, OA)", from = "rest" }
+R2 = { value = "-reaction_y(OA, OA)", from = "rest" }
 v_A = { value = "speed(OA.end)", at = "theta = pi/2", from = "rest" }
 R1_vertical = { value = "-reaction_x(OA, OA)", at = "theta = pi/2", from = "rest" }
 R3_vertical = { value = "-reaction_x(CB, CB)", at = "theta = pi/2", from = "rest" }
@@ -127,6 +131,7 @@ point = "B.center"
 normal = [0, 1]
 at = [0, 0]
 [outputs]
+theta_d_squared = { value = "theta'^2", from = "rest" }
 v_B = { value = "vx(B.center)", at = "theta = pi/2", from = "rest" }
 omega_disc_end = { value = "-omega(disc)", at = "theta = pi/2", from = "rest" }
 H_O = { value = "reaction_x(disc)", at = "theta = pi/2", from = "rest" }
@@ -412,3 +417,10 @@ ALTERNATIVES = {
     ),
 }
 """Name: (the seed that it is, its text without the head)."""
+
+CLOSURES = {
+    "ch18_p2": {"phi": "theta", "x": "4*l*cos(theta)"},
+    "ch20_p2": {"phi": "theta", "psi": "0*theta"},
+    "ch20_p4": {"phi": "theta - pi/2"},
+}
+"""What the ties make of the other coordinates, on the branch that is meant."""

@@ -177,7 +177,8 @@ def test_kinds_that_wait_for_a_later_version_are_named():
             "rod": pendulum().bodies["rod"],
             "plate": Body(mass=1, parts=[Piece(shape=Disc(radius=2)), piece], joint=Placed(at=["theta", 0])),
         },
-        constraints={"c": {"kind": "clamp", "point": "plate.origin"}, "s": {"kind": "pin", "points": ["rod.end"]}},
+        constraints={"s": {"kind": "pin", "points": ["rod.end"]}},
+        trusses={"T": {"nodes": {"n1": [0, 0], "n2": [1, 0]}, "members": ["n1-n2"]}},
     )
-    assert unbuilt(model) == (("bodies.plate.parts", "parts"), ("constraints.c", "clamp"))
-    assert unbuilt_ties(model) == (("constraints.c", "clamp"),)
+    assert unbuilt(model) == (("bodies.plate.parts", "parts"), ("trusses.T", "truss"))
+    assert unbuilt_ties(model) == (("trusses.T", "truss"),)

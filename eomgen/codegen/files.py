@@ -17,8 +17,14 @@ from eomgen.errors import RunFailed
 SCHEMA_VERSION = 1
 
 
-def write_files(name: str, program: Program, description: Description, *, target: str, directory: Path) -> list[Path]:
-    """Write NAME_rhs.c, NAME_rhs.h (or the target's own) and test_vectors.json.
+Emitted = tuple[Program, Description]
+
+
+def write_files(
+    name: str, program: Program, description: Description, *, target: str, directory: Path,
+    reactions: Emitted | None = None,
+) -> list[Path]:  # fmt: skip
+    """Write NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
 
     Args:
         name: of the functions: the model file's stem; what is no identifier is made one.
@@ -26,26 +32,25 @@ def write_files(name: str, program: Program, description: Description, *, target
         description: title, origin, remarks and test vectors.
         target: "c" or "numpy".
         directory: where to; made if it is not there.
+        reactions: their program and its description, or None where there are none.
     Returns:
         The paths written.
     Raises:
         RunFailed: the folder cannot be written; nothing is then left behind.
     """
     texts = target_named(target).files(program, identifier(name), description)
-    texts["test_vectors.json"] = vectors_text(program, description)
+    if reactions is not None:
+        texts |= target_named(target).files(reactions[0], identifier(name), reactions[1])
+    texts["test_vectors.json"] = vectors_text(program, description, reactions)
     try:
         return _written(texts, directory)
     except OSError as error:
         raise RunFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
 
 
-def vectors_text(program: Program, description: Description) -> str:
-    """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), dx."""
+def vectors_text(program: Program, description: Description, reactions: Emitted | None = None) -> str:
+    """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), result."""
     symbols = program.symbols
-    rows = [
-        {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, "dx": v.dx, "tolerance": v.tolerance}
-        for v in description.vectors
-    ]
     head = {
         "schema_version": SCHEMA_VERSION,
         "model": description.title,
@@ -54,11 +59,26 @@ def vectors_text(program: Program, description: Description) -> str:
         "speeds": [x.name for x in symbols.u],
         "parameters": list(symbols.parameters),
         "inputs": list(symbols.inputs),
-        "tolerance": "of |dx - given| / max(1, largest |dx|)",
+        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the reactions out",
     }
     lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
-    listed = ",\n".join(f"  {json.dumps(row)}" for row in rows)
-    return "\n".join(["{", *lines, ' "vectors": [', listed, " ]", "}", ""])
+    if reactions is None:
+        lines.append(' "reactions": null,')
+    else:
+        names = json.dumps(list(reactions[1].outputs), ensure_ascii=False)
+        lines += [' "reactions": {', f'  "names": {names},', *_listed(reactions[1], "  "), " },"]
+    return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
+
+
+def _listed(description: Description, indent: str) -> list[str]:
+    """The vectors, a line each."""
+    result = description.role.result
+    rows = [
+        {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, result: v.result, "tolerance": v.tolerance}
+        for v in description.vectors
+    ]
+    listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
+    return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]
 
 
 def _written(texts: Mapping[str, str], directory: Path) -> list[Path]:

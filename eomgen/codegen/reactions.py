@@ -2,13 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from eomgen.codegen.program import Program, program_in_motion
+from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.mechanics.reactions import Indeterminate, Reactions
 from eomgen.symbolic.graph import Scalar
+
+
+@dataclass(frozen=True)
+class ReactionFunction:
+    """`reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`.
+
+    Args:
+        names: as outputs ask for them.
+        function: the program in memory.
+    """
+
+    names: tuple[str, ...]
+    function: RightHandSide
+
+    def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
+        """At one state [N, N m]."""
+        return self.function(t, x, p, inputs)
+
+    def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
+        """At n states at once: n x names."""
+        return self.function.many(t, x, p, inputs)
 
 
 def determinate(reactions: Reactions) -> dict[str, Scalar]:

@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.codegen.build import compiler
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import Functions, Target
+from eomgen.codegen.targets.base import RHS, Functions, Target
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 
 _said: set[str] = set()
@@ -74,7 +74,7 @@ class RightHandSide:
     @property
     def source(self) -> str:
         """The program's text in the target's language."""
-        return target_named(self.target).text(self.program, "eomgen")
+        return target_named(self.target).text(self.program, "eomgen", RHS)
 
     def __repr__(self) -> str:
         arguments = f"x = ({', '.join(self.coordinates + self.speeds)}), p = ({', '.join(self.parameters)})"

@@ -17,9 +17,9 @@ from eomgen.mechanics.inertia import MassProperties, mass_properties
 from eomgen.mechanics.kinematics import GROUND, Link, Motion
 from eomgen.mechanics.loads import JointEffort, in_ground_axes, weights
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row
+from eomgen.mechanics.ties import Row, holds_identically, slide_power
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.derivative import depends_on, gradient
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import (
     IDENTITY,
@@ -155,19 +155,33 @@ def balance_of(system: System) -> Balance:
 
 
 def refuse_placeless(system: System) -> None:
-    """Refuse what acts at no place: it would be missing in the balance of some body.
+    """Refuse what acts at no place, or on a point that a coordinate moves in its body: some body's balance would lack it.
 
     Raises:
         DerivationError: it is named.
     """
     for force in system.loads.applied:
         if force.placeless or any(not hasattr(load, "place") and hasattr(load, "coordinate") for load in force.loads):
-            what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
-            raise DerivationError(what, f"forces.{force.name}", "give it as forces and couples on bodies")
+            raise DerivationError(f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow",
+                                  f"forces.{force.name}", "give it as forces and couples on bodies")  # fmt: skip
+        if any(_pushes_along(system, slide_power(system.motion, load)) for load in force.loads if isinstance(load, PointForce)):
+            raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
     for row in system.ties.rows:
         if not row.pushes and row.status != "identical":
-            what = f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow"
-            raise DerivationError(what, f"constraints.{row.tie}", "give it as a tie between bodies")
+            raise DerivationError(f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
+                                  f"constraints.{row.tie}", "give it as a tie between bodies")  # fmt: skip
+        if row.pushes and _pushes_along(system, row.direct):
+            raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
+
+
+def _pushes_along(system: System, power: Scalar) -> bool:
+    """Whether a force does work on a coordinate by the slide of its point alone."""
+    return any(not holds_identically(x) for x in gradient(power, system.symbols.u))
+
+
+def _moved_inside(what: str, where: str) -> DerivationError:
+    return DerivationError(f"{what} acts on a point that a coordinate moves in its body, and no body moves it there",
+                           where, "make the point one of a body of its own")  # fmt: skip
 
 
 @dataclass(frozen=True)

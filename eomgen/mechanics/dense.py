@@ -18,7 +18,7 @@ def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float
     Raises:
         NoValue: A was called regular and is not.
     """
-    scaled, rows, columns = _balanced(A)
+    scaled, rows, columns = balanced(A)
     if not regular:
         return columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0]
     try:
@@ -29,7 +29,7 @@ def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float
 
 def independent(J: np.ndarray, *, smallest: float) -> bool:
     """Whether no row of J follows from the others."""
-    return len(J) == 0 or int(np.linalg.matrix_rank(_balanced(J)[0], tol=smallest)) == len(J)
+    return len(J) == 0 or int(np.linalg.matrix_rank(balanced(J)[0], tol=smallest)) == len(J)
 
 
 def scaled_condition(M: np.ndarray) -> float:
@@ -38,7 +38,7 @@ def scaled_condition(M: np.ndarray) -> float:
     return float(np.linalg.cond(M / np.outer(scale, scale)))
 
 
-def _balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(D A E, D, E) with the largest entry of every row and column of D A E near 1.
 
     Source: D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms, RAL-TR-2001-034.

@@ -7,23 +7,15 @@ With the coordinate k freed, the equations of motion say what force along it kee
 
 from __future__ import annotations
 
-import operator
-
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.part import altered
 from eomgen.model.table import Table
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import Arithmetic, evaluate
-from eomgen.symbolic.functions import NAMES, function, over
+from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import Node, Scalar
-
-FUNCTIONS = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
-RING = {"neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
-        "pow": operator.pow}  # fmt: skip
-
+from eomgen.symbolic.transplant import transplanted
 
 def drive(system: System, coordinate: str) -> Scalar:
     """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
@@ -56,17 +48,7 @@ def _carried(value: Scalar, system: System) -> Scalar:
     """A scalar of the freed model's graph in the symbols of the system, at its motion."""
     scope = system.scope
     meanings = {**scope.names, **{lam.name: lam for lam in system.symbols.lam}}
-    values: dict[Node, Scalar] = {}
-    for symbol in symbols_of((value,)):
-        if symbol.name not in meanings:
-            raise DerivationError(f"what drives the coordinate cannot be told apart from {symbol.name}")
-        values[symbol] = meanings[symbol.name]
-    onto = Arithmetic("graph", lambda c: c, RING | FUNCTIONS | {"pi": lambda: scope.graph.pi}, _no_value)
-    return evaluate((value,), values, onto)[0]
-
-
-def _no_value(node: Node) -> Scalar:
-    raise DerivationError(f"'{node.op}' has no value there")
+    return transplanted((value,), scope.graph, meanings)[0]
 
 
 def multiplier(system: System, tie: str) -> Scalar:

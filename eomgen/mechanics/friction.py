@@ -31,11 +31,13 @@ class Rub:
         name: the tie, or the body on a path.
         component: index of its normal reaction among the components of the reactions.
         force: generalized force for a unit of N.
+        factor: the friction along the contact's tangent for a unit of N, for instance -mu sign(v).
     """
 
     name: str
     component: int
     force: Row
+    factor: Scalar
 
 
 def with_friction(system: System, assembly: Assembly) -> Assembly:
@@ -47,7 +49,7 @@ def with_friction(system: System, assembly: Assembly) -> Assembly:
     if not rubs(system):
         return assembly
     reactions = reactions_of(system)
-    found = _rubs(system, reactions)
+    found = rubbing_contacts(system, reactions)
     a, forces = _solved(system, assembly, reactions, found)
     friction = tuple(sum((rub.force[k] * N for rub, N in zip(found, forces, strict=True)), start=0)
                      for k in range(len(assembly.M)))  # fmt: skip
@@ -67,7 +69,8 @@ def rubs(system: System) -> bool:
     )
 
 
-def _rubs(system: System, reactions: Reactions) -> list[Rub]:
+def rubbing_contacts(system: System, reactions: Reactions) -> list[Rub]:
+    """Every contact that rubs, in the order of the components."""
     u = system.symbols.u
     found = []
     for j, component in enumerate(reactions.components):
@@ -79,7 +82,7 @@ def _rubs(system: System, reactions: Reactions) -> list[Rub]:
         else:
             row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
             factor, sliding = row.friction, row.sliding
-        found.append(Rub(component.owner, j, tuple(factor * d for d in gradient(sliding, u))))
+        found.append(Rub(component.owner, j, tuple(factor * d for d in gradient(sliding, u)), factor))
     return found
 
 

@@ -131,11 +131,14 @@ class Relations:
         return {u: self.constants[u] + self.shares[u] * s for u in self.shares}
 
 
-def relations_of(system: System, assembly: Assembly, start: Mapping[Node, Scalar]) -> Relations | None:
+def relations_of(
+    system: System, assembly: Assembly, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
+) -> Relations | None:
     """What momenta and closing rows, all linear in the speeds, say of them; None where more than one stays free.
 
     Args:
         start: q and u at the start, scalars of the parameters.
+        at: coordinates whose values are put in before anything is solved.
     """
     symbols = assembly.symbols
     if not 0 < len(symbols.u) <= MOST_SPEEDS or depends_on_any((*assembly.sigma, *assembly.nu), (symbols.t,)):
@@ -147,7 +150,10 @@ def relations_of(system: System, assembly: Assembly, start: Mapping[Node, Scalar
             continue
         (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
         rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
-        right.append(substituted((integral.expression,), start)[0] - rest)
+        right.append(_at_start(integral.expression, start, symbols.u) - rest)
+    if at:
+        rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
+        right = list(substituted(tuple(right), at))
     solution = _solved(system, rows, right, len(symbols.u))
     if solution is None or len(solution.free) > 1:
         return None
@@ -180,6 +186,7 @@ def rates_of(
     sense: int = 1,
     *,
     accelerations: Sequence[Scalar] | None = None,
+    at: Mapping[Node, Scalar] | None = None,
 ) -> dict[Node, Scalar] | None:
     """Every speed as a function of the coordinates, by the integrals; None where they do not give it.
 
@@ -191,13 +198,14 @@ def rates_of(
         start: q and u at the start, scalars of the parameters.
         sense: the sign of u_s, +1 or -1.
         accelerations: a as expressions, for the second way.
+        at: coordinates whose values are put in before anything is solved.
     """
-    relations = relations_of(system, assembly, start)
+    relations = relations_of(system, assembly, start, at)
     if relations is None:
         return None
     if relations.speed is None:
         return relations.speeds
-    speed = speed_of(system, assembly, relations, start, sense, accelerations)
+    speed = speed_of(system, assembly, relations, start, sense, accelerations, at or {})
     if speed is None:
         return None
     u = tuple(relations.shares)
@@ -211,16 +219,26 @@ def speed_of(
     start: Mapping[Node, Scalar],
     sense: int,
     accelerations: Sequence[Scalar] | None,
+    at: Mapping[Node, Scalar],
 ) -> Scalar | None:
-    """The one free speed as a function of the coordinates, with the sign `sense`."""
+    """The one free speed as a function of the coordinates that are not in `at`, with the sign `sense`."""
     positive = positive_parameters(system.scope)
     for energy in energy_integral(system, assembly):
-        difference = energy.expression - substituted((energy.expression,), start)[0]
-        return _root_of_energy(substituted((difference,), relations.speeds)[0], relations, sense, positive)
+        difference = energy.expression - _at_start(energy.expression, start, system.symbols.u)
+        (difference,) = substituted(substituted((difference,), relations.speeds), at)
+        return _root_of_energy(difference, relations, sense, positive)
     if accelerations is None:
         return None
     square = _square_by_path(assembly, relations, start, accelerations, sense)
-    return None if square is None else sense * function("sqrt", simplest(square, LONGEST, positive))
+    if square is None:
+        return None
+    return sense * function("sqrt", simplest(substituted((square,), at)[0], LONGEST, positive))
+
+
+def _at_start(integral: Scalar, start: Mapping[Node, Scalar], u: Sequence[Node]) -> Scalar:
+    """An integral's value at the start; where the speeds are 0 coefficients need not exist, as at a branch point."""
+    (integral,) = substituted((integral,), {x: start[x] for x in u if x in start})
+    return substituted((integral,), start)[0]
 
 
 def _root_of_energy(energy: Scalar, relations: Relations, sense: int, positive: frozenset[Node]) -> Scalar:
@@ -247,7 +265,7 @@ def _square_by_path(
     symbols, s = assembly.symbols, relations.speed
     assert s is not None
     q = next((q for q in symbols.q if q.name + "'" == s.name), None)
-    (F,) = substituted((accelerations[symbols.u.index(s)],), relations.speeds)
+    (F,) = substituted((accelerations[symbols.u.index(s)],), relations.speeds)  # of all q: nothing is put in yet
     F = _in_sense(F, s, sense)
     if q is None or depends_on(F, (symbols.t, *symbols.inputs.values())):
         return None

@@ -108,6 +108,8 @@ class Motion:
         body, name = self.scope.model.resolve_point(point)
         if body is None:
             return None, self.scope.vector(self.scope.model.points[name])
+        if body not in self.points:
+            raise NotYet(f"'{point}' is a node of a truss: trusses are not derived yet", f"trusses.{body}")
         return body, self.points[body][name]
 
     def position(self, place: tuple[str | None, Vector]) -> Vector:

@@ -23,6 +23,7 @@ from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.text import text_size
 
 WORK = 20_000  # products of terms for one law
 
@@ -61,7 +62,7 @@ class _Laws:
         rates = dict(zip(symbols.q, self._replaced(self.system.scope.rates, own, begin), strict=True))
         laws: dict[Node, Scalar] = {}
         while new := self._by_rate(rates, laws) or self._by_line(speeds, laws) or self._by_pair(speeds, laws):
-            laws |= {node: simplest(law, WORK, self.positive) for node, law in new.items()}
+            laws |= {node: min(law, simplest(law, WORK, self.positive), key=text_size) for node, law in new.items()}
             speeds = {u: a for u, a in speeds.items() if u not in laws}
             rates = {q: rate for q, rate in rates.items() if q not in laws}
         later = {symbols.t: symbols.t - self.start.get(symbols.t, 0)}
@@ -104,7 +105,7 @@ class _Laws:
                 continue
             a = tuple(simplest(x, WORK, self.positive) for x in substituted([speeds[u] for u in two], laws))
             A = [[derivative(x, y) for y in q] for x in a]
-            b = substituted(a, dict.fromkeys(q, 0))
+            b = [simplest(x - row[0] * q[0] - row[1] * q[1], WORK, self.positive) for x, row in zip(a, A, strict=True)]
             constant = (*A[0], *A[1], *b)
             if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constant):
                 continue
@@ -121,7 +122,7 @@ class _Laws:
         A, B = derivative(a, q), derivative(a, u)
         if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in (A, B)):
             return None
-        (f,) = substituted((a,), {q: 0, u: 0})
+        f = simplest(a - A * q - B * u, WORK, self.positive)
         return None if depends_on(f, self._moving) else Line(A, B, f)
 
     def _coordinate(self, u: Node) -> Node | None:

@@ -15,7 +15,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.functions import cos, function, over, sin, sqrt
+from eomgen.symbolic.functions import function, over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.normal_form import readable
 
@@ -68,11 +68,13 @@ def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: Constants) -> 
     waves = _waves(of.simple(d * d + A), of)
     if waves is None:
         return None
-    even, odd, _ = waves
-    return function("exp", d * t) * (q0 * even + (u0 - d * q0) * odd)
+    even, odd, w = waves
+    return function("exp", d * t) * (of.simple(q0) * even + of.simple(over(u0 - d * q0, w)) * odd)
 
 
-def pair(A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Sequence[Scalar]], of: Constants) -> tuple[Scalar, Scalar] | None:  # fmt: skip
+def pair(
+    A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Sequence[Scalar]], of: Constants
+) -> tuple[Scalar, Scalar] | None:
     """(q1, q2) of q'' = A q + b:  f(A) v = sum over k of f(lambda_k) (A - lambda_other) v / (lambda_k - lambda_other).
 
     Args:
@@ -84,12 +86,15 @@ def pair(A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Seq
         return None
     root = of.simple(sqrt(inside))
     total: list[Scalar] = [0, 0]
+    t = of.t
     for sign in (1, -1):
-        own, other = half + sign * root, half - sign * root
-        waves = _waves(of.simple(own), of)
+        own, other = of.simple(half + sign * root), half - sign * root
+        waves = _waves(own, of)
         if waves is None:
             return None
-        for wave, v in zip(waves, (*start, b), strict=True):
+        even, odd, w = waves
+        gained = over(t * t, 2) if is_zero(own) else over(even - 1, own)
+        for wave, v in zip((even, over(odd, w), gained), (*start, b), strict=True):
             for i in range(2):
                 share = A[i][0] * v[0] + A[i][1] * v[1] - other * v[i]
                 total[i] = total[i] + wave * of.simple(over(share, own - other))
@@ -97,15 +102,15 @@ def pair(A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Seq
 
 
 def _waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
-    """(cosh(w t), sinh(w t)/w, (cosh(w t) - 1)/w^2), w^2 = D: of a negative D cosines and sines, of 0 powers of t."""
+    """(cosh(w t), sinh(w t), w) with w^2 = D; of a negative D (cos(w t), sin(w t), w) with w^2 = -D; of 0 (1, t, 1)."""
     t, sign = of.t, of.sign(D)
     if sign is None:
         return None
     if sign == 0:
-        return 1, t, over(t * t, 2)
+        return 1, t, 1
     w = of.simple(sqrt(sign * D))
-    even, odd = (cos(w * t), sin(w * t)) if sign < 0 else (function("cosh", w * t), function("sinh", w * t))
-    return even, over(odd, w), over(even - 1, D)
+    names = ("cos", "sin") if sign < 0 else ("cosh", "sinh")
+    return function(names[0], w * t), function(names[1], w * t), w
 
 
 def particular(line: Line, of: Constants) -> Scalar | None:

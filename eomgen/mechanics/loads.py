@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.inertia import mass_properties
@@ -182,12 +183,14 @@ class SystemScene:
 
     def line(self, body: str) -> tuple[Place, Place]:
         """The two points of a body's line."""
-        first, second = self.motion.scope.model.bodies[body].line
-        return self.own_place(body, first), self.own_place(body, second)
+        line = self.motion.scope.model.bodies[body].line
+        assert line is not None, "checked when the model was read"
+        return self.own_place(body, line[0]), self.own_place(body, line[1])
 
     def radius(self, body: str) -> Scalar:
         """Of the body's round shape [m]."""
-        return self.value(self.motion.scope.model.bodies[body].shape.radius)
+        shape: Any = self.motion.scope.model.bodies[body].shape
+        return self.value(shape.radius)
 
     def moves(self, scalars: tuple[Scalar, ...]) -> bool:
         return self.motion.moves(scalars)

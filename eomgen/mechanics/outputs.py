@@ -111,8 +111,8 @@ class Quantities:
         if call.name == "reaction_n":
             return self.reactions.normal(owner)
         if call.name in COMPONENTS_OF_REACTIONS:
-            return self.reactions.force(owner, side, frame)[COMPONENTS_OF_REACTIONS[call.name]]
-        return self.reactions.couple(owner, side, frame)[COUPLES[call.name]]
+            return self.reactions.component("force", COMPONENTS_OF_REACTIONS[call.name], owner, side, frame)
+        return self.reactions.component("couple", COUPLES[call.name], owner, side, frame)
 
     def _tension(self, call: Call) -> Scalar:
         """tension(rope) or tension(rope, 2)."""

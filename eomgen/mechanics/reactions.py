@@ -18,13 +18,15 @@ from eomgen.mechanics.balance import DIRECTIONS, Balance, Component, Effect, bal
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.mechanics.ties import holds_identically
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution, solved
 from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.spatial import ZERO, Vector, apply, plus, transposed, vector_of
+from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
 
 TRIES = 20
 HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
@@ -90,11 +92,19 @@ class Reactions:
         Raises:
             DerivationError: there is no such reaction, or it is indeterminate.
         """
-        return self._vector(owner, side, frame, lambda effect: effect.force)
+        return vector_of(self.component("force", k, owner, side, frame) for k in range(3))
 
     def couple(self, owner: str, side: str = "", frame: str = "") -> Vector:
         """Couple, as `force`, about the point of the joint or tie."""
-        return self._vector(owner, side, frame, lambda effect: effect.couple)
+        return vector_of(self.component("couple", k, owner, side, frame) for k in range(3))
+
+    def component(self, what: str, k: int, owner: str, side: str = "", frame: str = "") -> Scalar:
+        """Component k of the "force" or "couple"; the others may be indeterminate."""
+        if self.is_open(owner):
+            return 0
+        combinations, given = self._sums(what, owner, side, frame)
+        name = f"reaction_{'xyz'[k]}({owner})" if what == "force" else f"reaction_couple({owner})"
+        return given[k] + self.combined(combinations[k], name)
 
     def is_open(self, owner: str) -> bool:
         """Whether a contact has ended: its reaction is 0."""
@@ -140,40 +150,38 @@ class Reactions:
             raise DerivationError(f"'{owner}' has no {words}", mend=f"its reactions: {others}")
         return self.value(found[0])
 
-    def _vector(self, owner: str, side: str, frame: str, part: Any) -> Vector:
-        """The sum of a part of the effects of the owner's components on one body."""
-        if self.is_open(owner):
-            return ZERO
+    def _sums(self, what: str, owner: str, side: str, frame: str) -> tuple[list[Combination], Vector]:
+        """Force or couple on one body as combinations of the owner's components, and what its drive and spring add."""
         motion = self.balance.system.motion
-        mine = [(j, c) for j, c in enumerate(self.components) if c.owner == owner and c.kind != "drive"]
-        efforts = self._efforts(owner)
+        mine = {j: c for j, c in enumerate(self.components) if c.owner == owner}
+        efforts = efforts_of(self.balance.system, owner)
         if not mine and not efforts:
             raise DerivationError(f"'{owner}' carries no reaction", mend="what is placed carries none: name the tie")
-        on = self._side(owner, side, [e for _, c in mine for e in c.effects] or efforts)
-        combos: list[Combination] = [{}, {}, {}]
-        for j, component in enumerate(self.components):
-            if component.owner != owner:
-                continue
-            total = self._on(component, on, part)
-            for k in range(3):
-                if not is_zero(total[k]):
-                    combos[k][j] = total[k]
-        given = vector_of(sum(x) for x in zip(ZERO, *(part(e) for e in efforts if e.link == on), strict=True))
-        sign = 1 if on >= 0 else -1
-        combos = [self._replaced(c) for c in combos]
-        known = self._replaced_vector(given)
-        vector = vector_of(
-            known[k] + sign * self.combined(combos[k], f"reaction_{'xyz'[k]}({owner})") for k in range(3)
-        )
-        return self._in_axes(vector, on if on >= 0 else None, frame, motion)
+        on = self._side(owner, side, [e for c in mine.values() for e in c.effects] or efforts)
+        vectors = {j: self._on(c, on, what) for j, c in mine.items()}
+        given = ZERO
+        for effect in efforts:
+            given = plus(given, getattr(effect, what)) if effect.link == on else given
+        R = self._turning(on, frame, motion)
+        turned = {j: self._replaced(vector if R is None else apply(R, vector)) for j, vector in vectors.items()}
+        combinations = [{j: v[k] for j, v in turned.items() if not is_zero(v[k])} for k in range(3)]
+        return combinations, self._replaced(given if R is None else apply(R, given))
 
-    def _on(self, component: Component, on: int, part: Any) -> Vector:
-        """What a unit of the component does to one body (-1: to the ground, then with the other sign)."""
+    def _turning(self, on: int, frame: str, motion: Motion) -> Matrix | None:
+        """From the axes of the equations of a body to the ground's, or to those of `frame`; None where they agree."""
+        R = None if motion.scope.model.space == "plane" or on < 0 else motion.links[on].pose.R
+        if not frame or frame == "ground":
+            return R
+        to_frame = transposed(motion.link(frame).pose.R)
+        return to_frame if R is None else product(to_frame, R)
+
+    def _on(self, component: Component, on: int, what: str) -> Vector:
+        """What a unit of the component does to one body; to the ground (-1) the opposite of what it does to all."""
         total = ZERO
         for effect in (*component.effects, *component.rubbing):
             if effect.link == on or on < 0:
-                total = plus(total, part(effect))
-        return total
+                total = plus(total, getattr(effect, what))
+        return total if on >= 0 else times(-1, total)
 
     def _side(self, owner: str, side: str, effects: Sequence[Effect]) -> int:
         """The body on which the reaction is asked: an index, -1 for the ground."""
@@ -187,27 +195,8 @@ class Reactions:
             raise DerivationError(f"'{owner}' does not act on body '{side}'")
         return index
 
-    def _efforts(self, owner: str) -> list[Effect]:
-        """Drive, spring and damper of a joint: an actuated joint's reaction holds its torque."""
-        return efforts_of(self.balance.system, owner)
-
-    def _in_axes(self, vector: Vector, body: int | None, frame: str, motion: Any) -> Vector:
-        if motion.scope.model.space != "plane" and body is not None:
-            vector = apply(self._replaced_matrix(motion.links[body].pose.R), vector)
-        if frame and frame != "ground":
-            vector = apply(transposed(self._replaced_matrix(motion.link(frame).pose.R)), vector)
-        return vector
-
-    def _replaced(self, combination: Combination) -> Combination:
-        if not self.at:
-            return combination
-        return dict(zip(combination, substituted(tuple(combination.values()), self.at), strict=True))
-
-    def _replaced_vector(self, vector: Vector) -> Vector:
+    def _replaced(self, vector: Vector) -> Vector:
         return vector_of(substituted(tuple(vector), self.at)) if self.at else vector
-
-    def _replaced_matrix(self, R: Any) -> Any:
-        return tuple(self._replaced_vector(row) for row in R)
 
     def combined(self, combination: Combination, name: str) -> Scalar:
         """sum of k_j x_j.
@@ -225,39 +214,38 @@ class Reactions:
             total = total + k * constants[j]
             for f, share in shares[j].items():
                 open_[f] = open_.get(f, 0) - k * share
-        left = [f for f, k in open_.items() if not _vanishes(k)]
+        left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
         if left:
+            partners = [c.name for j, c in enumerate(self.components)
+                        if c.name != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
             raise Indeterminate(
-                f"{name} is statically indeterminate: rigid bodies in balance leave it open, together with "
-                + ", ".join(c.name for c in self.indeterminate if c.name != name),
+                f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
+                + (", together with " + ", ".join(partners) if partners else ""),
                 mend="take a redundant tie away, or let something give",
             )
         return total
 
 
-def _vanishes(k: Scalar) -> bool:
-    from eomgen.mechanics.ties import holds_identically
-
-    return is_zero(k) or holds_identically(k)
-
-
-def reactions_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Reactions:
+def reactions_of(
+    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False
+) -> Reactions:
     """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
 
     Args:
         at: exact scalars in place of coordinates, speeds, accelerations and t.
+        short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
     balance = balance_of(system)
     if at:
         return Reactions(balance, _solved(balance, at), at)
-    solution = _solved(balance, {})
+    solution = _solved(balance, {}, sure=None if short else 1)
     _refuse_unheld(balance, solution)
     return Reactions(balance, solution, {})
 
 
-def _solved(balance: Balance, at: Mapping[Node, Scalar]) -> Solution:
+def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -> Solution:
     entries = [x for e in balance.equations for x in e.coefficients.values()]
     needed = tuple(e.needed for e in balance.equations)
     if at:
@@ -268,11 +256,16 @@ def _solved(balance: Balance, at: Mapping[Node, Scalar]) -> Solution:
     parameters = frozenset(balance.system.symbols.parameters.values())
 
     def simple(a: Scalar) -> int:
-        return 0 if type(a) is not Node else 1 if parameters.issuperset(symbols_of((a,))) else 2
+        """Numbers, products of parameters, and what may vanish at some state or for some angle."""
+        return 0 if type(a) is not Node else 1 if _is_product(a, parameters) else 2
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return solved(rows, needed, len(balance.components), values, simple=simple, last=last)
+    return solved(rows, needed, len(balance.components), values, simple=simple, last=last, sure=sure)
+
+
+def _is_product(a: Node, parameters: frozenset[Node]) -> bool:
+    return all(x in parameters or x.op in ("mul", "div", "neg") for x in order((a,)))
 
 
 def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:

@@ -6,6 +6,7 @@ which stands where it is `placed`, is freed along the tie's push: a new coordina
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -53,45 +54,78 @@ def _with_free_coordinates(model: Model, names: list[str]) -> Model:
     return altered(model, coordinates=Table(table)) if names else model
 
 
-def gap_name(model: Model, tie: str, component: str = "n") -> str:
-    """The name of the displacement from a contact that has ended."""
-    taken = {*model.parameters, *model.coordinates, *model.speeds, *model.inputs, *model.unknowns}
-    name = f"{tie}_{DISPLACEMENTS[component]}"
-    while name in taken:
-        name += "_"
-    return name
+def stays_straight(system: System, tie: str) -> bool:
+    """Whether each displacement that releases the tie is along its own push, whatever else is released."""
+    rows = [row for row in system.ties.rows if row.tie == tie and row.identical and row.component in DISPLACEMENTS]
+    return all(_placed(system, row).straight for row in rows)
+
+
+@dataclass(frozen=True)
+class Leave:
+    """How a body leaves a row.
+
+    Args:
+        link: the placed body.
+        direction: of its displacement for a unit of the new coordinate, parent's axes.
+        straight: that is the push of the row itself.
+        turns: it must turn as well.
+    """
+
+    link: Link
+    direction: Vector
+    straight: bool
+    turns: bool = False
 
 
 def _freed(system: System, model: Model, row: Row) -> Model:
     """The model in which the body that the row pushes is displaced where the row alone kept it from going."""
-    link, direction = _placed(system, row)
-    name = gap_name(model, row.tie, row.component)
-    at = model.bodies[link.name].joint.at or (Expression.number(0),) * (2 if model.space == "plane" else 3)
-    moved = tuple(
+    leave = _placed(system, row)
+    model, name = _with_coordinate(model, row.tie, DISPLACEMENTS[row.component])
+    joint: Any = model.bodies[leave.link.name].joint
+    at = joint.at or (Expression.number(0),) * (2 if model.space == "plane" else 3)
+    changes: dict[str, Any] = {"at": tuple(
         place if is_zero(n) else as_expression(f"({place.text}) + {name}*({to_text(n)})")
-        for place, n in zip(at, direction, strict=False)
-    )
-    body = model.bodies[link.name]
-    bodies = Table({**model.bodies, link.name: altered(body, joint=altered(body.joint, at=moved))})
+        for place, n in zip(at, leave.direction, strict=False)
+    )}  # fmt: skip
+    if leave.turns:
+        model, turn = _with_coordinate(model, row.tie, "turn")
+        changes["angle"] = as_expression(turn if joint.angle is None else f"({joint.angle.text}) + {turn}")
+    body = model.bodies[leave.link.name]
+    return altered(model, bodies=Table({**model.bodies, leave.link.name: altered(body, joint=altered(joint, **changes))}))
+
+
+def _with_coordinate(model: Model, tie: str, what: str) -> tuple[Model, str]:
+    """The model with a displacement from a contact that has ended, and its name."""
+    taken = {*model.parameters, *model.coordinates, *model.speeds, *model.inputs, *model.unknowns}
+    name = f"{tie}_{what}"
+    while name in taken:
+        name += "_"
     zero = Expression.number(0)
-    displaced = Coordinate(start=zero, speed=zero, about=f"displacement from {row.tie}, which has ended")
-    return altered(model, bodies=bodies, coordinates=Table({**model.coordinates, name: displaced}))
+    displaced = Coordinate(start=zero, speed=zero, about=f"displacement from {tie}, which has ended")
+    return altered(model, coordinates=Table({**model.coordinates, name: displaced})), name
 
 
-def _placed(system: System, row: Row) -> tuple[Link, Vector]:
-    """The placed body by which the row can be opened, and its displacement for a unit of the gap, parent's axes.
+def _placed(system: System, row: Row) -> Leave:
+    """The placed body by which the row can be opened, and its displacement.
 
-    d is the push n of the row less its part along what else holds the body identically, with n . d = 1.
+    d is the push n of the row less its part along what else holds the body identically, with n . d = 1. Where nothing
+    of it is left (two parallel wires) the body goes along n and turns, and the other ties hold it by multipliers.
     """
-    for link, n in _pushed(system, row):
+    pushed = _pushed(system, row)
+    for link, n in pushed:
         others = [m for other in system.ties.rows if other.identical and other.tie != row.tie
                   for on, m in _pushed(system, other) if on is link]  # fmt: skip
         d = _across(n, others)
         along = readable_all((dot(n, d),))[0]
         if not holds_identically(along):
-            return link, vector_of(readable_all(tuple(over(x, along) for x in d)))
+            straight = all(holds_identically(a - b) for a, b in zip(n, d, strict=True))
+            return Leave(link, vector_of(readable_all(tuple(over(x, along) for x in d))), straight)
+    for link, n in pushed:
+        if system.scope.model.space == "plane":
+            return Leave(link, vector_of(readable_all(n)), straight=False, turns=True)
     raise DerivationError(f"'{row.tie}' ends, and no body can leave it: the coordinates describe contact only",
-                          f"constraints.{row.tie}", "place the body by coordinates that can leave the contact")  # fmt: skip
+                          f"constraints.{row.tie}",
+                          "place the body by coordinates that can leave the contact")  # fmt: skip
 
 
 def _pushed(system: System, row: Row) -> list[tuple[Link, Vector]]:

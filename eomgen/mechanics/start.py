@@ -93,20 +93,19 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
 def _refuse_open_gaps(system: System, state: State) -> None:
     """Raises DerivationError for the tie that is open by most."""
     q = system.symbols.q
-    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
-    found = _worst(((row, row.gap) for row in rows), q, state)
+    gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
+    found = _worst(gaps, q, state)
     if found is None:
         return
-    row, size = found
+    row, gap, size = found
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise DerivationError(what, f"constraints.{row.tie}", _mend(system, row))
+    raise DerivationError(what, f"constraints.{row.tie}", _mend(system, gap))
 
 
-def _mend(system: System, row: Row) -> str:
+def _mend(system: System, gap: Scalar) -> str:
     """What closes a gap: another guess, a coordinate marked dependent, other start values."""
-    gap = (row.gap,)
     dependent = dependent_coordinates(system.scope)
-    standing = [q.name for q in system.symbols.q if depends_on(gap[0], (q,))]
+    standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
     sought = [name for name in standing if name in dependent]
     if sought:
         return f"give start values at which it can close, or another guess: `near` of {_listed(sought)}"
@@ -126,23 +125,18 @@ def _refuse_open_rates(system: System, state: State) -> None:
     found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
     if found is None:
         return
-    row, size = found
+    row, _, size = found
     speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
     what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
     raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {_listed(speeds)}")
 
 
-def _worst(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[Row, float] | None:
-    """(row, size) of the largest scalar that ought to be zero and is not; None where all are."""
-    found = []
-    for row, x in pairs:
-        size = _excess(x, symbols, state)
-        if size:
-            found.append((size, row))
-    if not found:
-        return None
-    size, row = max(found, key=lambda each: each[0])
-    return row, size
+def _worst(
+    pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State
+) -> tuple[Row, Scalar, float] | None:
+    """(row, scalar, size) of the largest scalar that ought to be zero and is not; None where all are."""
+    found = [(row, x, _excess(x, symbols, state)) for row, x in pairs]
+    return max((each for each in found if each[2]), key=lambda each: each[2], default=None)
 
 
 def _excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:

@@ -192,7 +192,7 @@ def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Sca
 
 def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
     """What points that move in their bodies add to the power of the pushes."""
-    return sum((_sliding(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
+    return sum((slide_power(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
 
 
 def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
@@ -204,7 +204,7 @@ def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
     return rate
 
 
-def _sliding(motion: Motion, push: PointForce) -> Scalar:
+def slide_power(motion: Motion, push: PointForce) -> Scalar:
     """Power of a push on a point that moves in its body: F . R r'."""
     return dot(in_ground_axes(motion, push.force, push.axes), slide_of(motion, push.place))
 

@@ -2,6 +2,7 @@
 
 from eomgen.model.parts import Model
 
+
 def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
     """(where, kind) of every joint, tie, force and table that waits for a later version, in the model's order."""
     return (*unbuilt_bodies(model), *unbuilt_ties(model), *_unbuilt_forces(model))

@@ -5,13 +5,19 @@ from __future__ import annotations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
+from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.report import energy_steps, motion_steps, projection_steps
+from eomgen.report.balance_steps import reactions_table_step
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, equations_of, multiplier_forces, sides_of
+from eomgen.report.kinetostatic_steps import kinetostatic_steps
+from eomgen.report.maggi_steps import MAGGI, maggi_equations
 from eomgen.report.naming import Written, with_parts_named, with_roots_named
 from eomgen.report.notation import notation_step
+from eomgen.report.reaction_names import Lettered, lettered
+from eomgen.report.reaction_steps import along_the_motion, letters_of, reactions_step
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Derivation, Law, Step
@@ -29,15 +35,6 @@ LAGRANGE_WITH_TIES = Law(
 )
 MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
 
-MAGGI = Law(
-    "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i - Q_i) = 0",
-    r"\sum_{i} N_{ik} \left(\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{i}} - \frac{\partial T}{\partial q_{i}}"
-    r" - Q_{i}\right) = 0",
-)
-MAGGI_WITH_TIES = Law(
-    MAGGI.text.replace("= 0", "= (J^T*lam)_k"),
-    MAGGI.latex.replace("= 0", r"= \left(J^{\mathsf{T}} \lambda\right)_{k}"),
-)
 SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
 
 
@@ -53,9 +50,15 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
         full: everything is printed, however long, the long and the repeated parts with names of their own.
     """
     reader, model = Reader(full=full), system.scope.model
-    steps, result = _BY_METHOD[method](system, reader, assembly)
-    written = Written((*setting_steps(system), *steps, *result.steps), result.equations, result.definitions)
+    letters = letters_of(system)
+    steps, result = _by_method(system, reader, assembly, method, letters)
+    known = method == "kinetostatic" or bool(assembly.friction)  # the table of the reactions stands further up
+    last = reactions_step(system, reader, assembly, letters, table=not known)
+    if method == "kinetostatic" and not isinstance(letters, str):
+        last = (*last, *along_the_motion(system, reader, assembly, letters))
+    written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
     graph, taken = assembly.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
+    taken |= set() if isinstance(letters, str) else letters.names
     written = with_roots_named(written, graph, taken, reader.roots)
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
@@ -63,6 +66,24 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
         model.name, model.about or "", model.source or "", model.space, method,
         (*written.steps, notation_step(written.steps, system.scope.names)), written.equations, written.definitions,
     )  # fmt: skip
+
+
+def _by_method(
+    system: System, reader: Reader, assembly: Assembly, method: str, letters: Lettered | str
+) -> tuple[tuple[Step, ...], Result]:
+    """The method's own steps, and its equations of motion.
+
+    Raises:
+        DerivationError: by "kinetostatic", where the reactions cannot carry the motion.
+    """
+    if method == "kinetostatic":
+        if isinstance(letters, str):
+            letters = lettered(reactions_of(system.free or system), system.scope.names)  # raises what it says
+        return kinetostatic_steps(system, reader, assembly, letters)
+    steps, result = _BY_METHOD[method](system, reader, assembly)
+    if assembly.friction and not isinstance(letters, str):
+        steps = (*steps, reactions_table_step(letters))
+    return steps, result
 
 
 def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
@@ -118,10 +139,12 @@ def _by_maggi(
         energy_steps.work_step(free, reader, forces),
         energy_steps.derivatives_step(free, reader, momenta),
     )
-    own = lagrange.assemble(system)
-    law = MAGGI_WITH_TIES if assembly.J else MAGGI
-    words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
-    return steps, equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), (words, law, ":"))
+    result = None if assembly.friction else maggi_equations(system, free, reader, assembly, momenta, forces)
+    if result is None:
+        own = lagrange.assemble(system)
+        rule = ("Put together along the motions that the constraints allow, ", MAGGI, ":")
+        result = equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), rule)
+    return steps, result
 
 
 def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:

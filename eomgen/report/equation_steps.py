@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import elsewhere
+from eomgen.report.friction_steps import friction_of
 from eomgen.report.reading import (
     LARGEST_DIVISOR,
     LONGEST,
@@ -82,9 +83,21 @@ def equations_of(
     """
     if not sides:
         return Result((), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),))
-    equations = _readable(reader, assembly, sides)
+    if assembly.friction:
+        friction = friction_of(system, reader, assembly)
+        sides = [Sides(row.left, row.right + force) for row, force in zip(sides, friction.forces, strict=True)]
+        result = _equations(system, reader, assembly, sides, rule)
+        steps = (friction.step, *result.steps, *friction.solved)
+        return Result(result.equations, (*friction.definitions, *result.definitions), steps)
+    return _equations(system, reader, assembly, sides, rule)
+
+
+def _equations(
+    system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
+) -> Result:
+    equations = readable_equations(reader, assembly, sides)
     if equations is not None:
-        statements = (Prose(rule), *_printed(system, equations), *_closing(reader, assembly))
+        statements = (Prose(rule), *printed(system, equations), *closing(reader, assembly))
         steps = (Step("equations", "Equations of motion", statements), *_solved(reader, assembly, equations))
         return Result(tuple(equations), (), steps)
     found = _whole(reader, assembly) if reader.full else _named(reader, assembly)
@@ -94,12 +107,12 @@ def equations_of(
     equations, definitions = found
     statements = (
         Prose(rule), Prose(("In their shortest form, what does not accelerate on the right, with names for parts:",)),
-        *map(Formula, definitions), *_printed(system, equations), *_closing(reader, assembly),
+        *map(Formula, definitions), *printed(system, equations), *closing(reader, assembly),
     )  # fmt: skip
     return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
-def _readable(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
+def readable_equations(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
     equations = []
     for u, row in zip(assembly.symbols.u, sides, strict=True):
@@ -140,7 +153,8 @@ def _symbols(assembly: Assembly) -> tuple[Node, ...]:
     return (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
 
 
-def _printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
+def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
+    """Each equation on a line of its own, and by what it was divided."""
     statements: list[Statement] = []
     coordinates = dict(zip(system.symbols.u, moved_coordinates(system), strict=True))
     for equation in equations:
@@ -162,7 +176,7 @@ def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
     return (*words, " and " if words else "", "divided by ", rest, " (where that is not zero)" if moving else "")
 
 
-def _closing(reader: Reader, assembly: Assembly) -> list[Statement]:
+def closing(reader: Reader, assembly: Assembly) -> list[Statement]:
     """J a + gamma = 0, for each closing row."""
     rows = []
     for row, gamma in zip(assembly.J, assembly.gamma, strict=True):
@@ -177,7 +191,7 @@ def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -
     """The accelerations, where there are few and their formulas short: by Cramer's rule."""
     a = assembly.symbols.a
     length = sum(text_size(x) for e in equations for x in (e.left, e.right))
-    if assembly.J or len(equations) > SOLVED or length > SOLVED_LENGTH:
+    if assembly.friction or assembly.J or len(equations) > SOLVED or length > SOLVED_LENGTH:
         return []
     if any(depends_on(root, a) for root in reader.roots.values()):
         return []

@@ -47,6 +47,9 @@ LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
     "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
     "omega_z": r"\omega_{z", "gap": r"\phi_{", "couple": r"\tau_{",
+    "Fin_x": r"F^{\mathrm{in}}_{x", "Fin_y": r"F^{\mathrm{in}}_{y", "Fin_z": r"F^{\mathrm{in}}_{z",
+    "Min": r"M^{\mathrm{in}}_{", "Min_x": r"M^{\mathrm{in}}_{x", "Min_y": r"M^{\mathrm{in}}_{y",
+    "Min_z": r"M^{\mathrm{in}}_{z", "Delta": r"\Delta_{",
 }  # fmt: skip
 """letter -> how it begins, its subscript opened"""
 

@@ -29,6 +29,14 @@ MEANINGS = {
     "Fz": ("force along z, ground axes", "N"),
     "couple": ("couple on a body, counter-clockwise", "N m"),
     "gap": ("what a constraint keeps at zero", ""),
+    "Fin_x": ("inertia force of a body along x, minus mass times acceleration of the mass centre", "N"),
+    "Fin_y": ("inertia force of a body along y, minus mass times acceleration of the mass centre", "N"),
+    "Fin_z": ("inertia force of a body along z, minus mass times acceleration of the mass centre", "N"),
+    "Min": ("inertia couple of a body, minus moment of inertia times angular acceleration", "N*m"),
+    "Min_x": ("inertia couple of a body about its x axis, minus the rate of its angular momentum", "N*m"),
+    "Min_y": ("inertia couple of a body about its y axis, minus the rate of its angular momentum", "N*m"),
+    "Min_z": ("inertia couple of a body about its z axis, minus the rate of its angular momentum", "N*m"),
+    "Delta": ("what may be added to a reaction that is indeterminate", ""),
 }
 """letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""
 

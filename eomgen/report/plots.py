@@ -1,4 +1,4 @@
-"""Trajectory -> a picture of it: the coordinates over time, one panel a unit, and how well the energy was kept."""
+"""Trajectory -> a picture of it: coordinates over time, one panel a unit, how well the energy was kept, reactions."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ GREEK = frozenset(
     "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
 )
 MOST_IN_LEGEND = 12
+MOST_REACTIONS = 10  # lines in one panel
+UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
+DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "tension": "-", "couple": "--", "drive": ":"}
 STYLE: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -58,7 +61,8 @@ def plot_trajectory(
     from matplotlib.figure import Figure
 
     groups = _by_unit(trajectory, units or {})
-    count = len(groups) + (trajectory.energy is not None)
+    reactions = _reactions_by_unit(trajectory)
+    count = len(groups) + (trajectory.energy is not None) + len(reactions)
     with rc_context(STYLE):
         figure = Figure(figsize=(8, 1.0 + 2.1 * max(count, 1)), layout="constrained")
         FigureCanvasAgg(figure)
@@ -66,7 +70,9 @@ def plot_trajectory(
         for panel, (unit, names) in zip(panels, groups.items(), strict=False):
             _coordinates(panel, trajectory, names, unit)
         if trajectory.energy is not None:
-            _energy(panels[-1], trajectory)
+            _energy(panels[len(groups)], trajectory)
+        for panel, (unit, names) in zip(panels[count - len(reactions) :], reactions.items(), strict=False):
+            _reactions(panel, trajectory, names, unit)
         panels[-1].set_xlabel("$t$ [s]")
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
@@ -128,6 +134,57 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
         f"relative drift {trajectory.drift:.1e}", (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom",
         fontsize=9, color="#505050",
     )  # fmt: skip
+
+
+def _reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
+    """Those that have a value at some instant."""
+    groups: dict[str, list[str]] = {}
+    for name, column in trajectory.reactions.items():
+        if not np.isnan(column).all():
+            groups.setdefault(trajectory.units.get(name, ""), []).append(name)
+    return groups
+
+
+def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
+    """One colour a joint or tie, one kind of line a component; of many the largest."""
+    from matplotlib import colormaps
+
+    owners: dict[str, list[str]] = {}
+    for name in names:
+        owners.setdefault(_owner(name), []).append(name)
+    shown = _largest(trajectory, owners)
+    for color, owner in zip(colormaps["tab10"](np.arange(len(shown))), shown, strict=True):
+        for name in owners[owner]:
+            component = _component(name)
+            panel.plot(trajectory.t, trajectory.reactions[name], label=f"{owner}: {component}".replace("$", r"\$"),
+                       color=color, linewidth=1.4, linestyle=DASHES.get(component.split(" ")[-1], "-"))  # fmt: skip
+    panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
+    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+    if len(shown) < len(owners):
+        panel.annotate(f"the largest, at {len(shown)} of {len(owners)} joints and ties", (1.0, 1.02), xycoords="axes fraction", ha="right",
+                       va="bottom", fontsize=9, color="#505050")  # fmt: skip
+
+
+def _largest(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
+    """The joints and ties with the largest reactions, as many as have their lines in one panel; in their order."""
+    size = {owner: max(float(np.nanmax(np.abs(trajectory.reactions[name]))) for name in names)
+            for owner, names in owners.items()}  # fmt: skip
+    falling = sorted(owners, key=lambda owner: -size[owner])
+    lines = np.cumsum([len(owners[owner]) for owner in falling])
+    kept = falling[: max(1, int(np.searchsorted(lines, MOST_REACTIONS, side="right")))]
+    return [owner for owner in owners if owner in kept]
+
+
+def _owner(name: str) -> str:
+    """reaction_x(B.II) -> B.II; tension(rope, 2) -> rope."""
+    return name.partition("(")[2].rstrip(")").partition(",")[0]
+
+
+def _component(name: str) -> str:
+    """reaction_couple_x(B) -> couple x; tension(rope, 2) -> tension 2."""
+    head, _, arguments = name.partition("(")
+    number = arguments.rstrip(")").partition(",")[2].strip()
+    return " ".join(word for word in (head.removeprefix("reaction_").replace("_", " "), number) if word)
 
 
 def _save(figure: Any, path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Collection, Container, Sequence
 from dataclasses import dataclass
 
 from eomgen.report.statements import Omitted
@@ -10,7 +10,7 @@ from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.layout import SUMS, factors
-from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form
+from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, simplest
 from eomgen.symbolic.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.text import named_parts, text_size, to_text
 
@@ -21,6 +21,7 @@ TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
+MOST_CASES = 4  # conditions of one formula, of which each case is put into readable form
 PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED_PART = 160  # characters of a formula in which long parts have names
 NAMED = 80  # sub-expressions with a name of their own, at most
@@ -44,10 +45,24 @@ class Reader:
     def _read(self, x: Scalar) -> Scalar | None:
         """x in its readable form, a symbol for each root of a sum; None where it is too long to print."""
         if x not in self._known:
-            short = self._known[x] = self._shortened(*self.with_symbols((x,)))
+            conditions = conditions_in(x)
+            many = len(conditions) > MOST_CASES
+            short = self._whole(x) if many or not conditions else self._by_cases(x, conditions[0])
+            self._known[x] = short
             if short is not None:
                 self._known[short] = short
         return self._known[x]
+
+    def _whole(self, x: Scalar) -> Scalar | None:
+        return self._shortened(*self.with_symbols((x,)))
+
+    def _by_cases(self, x: Scalar, condition: Node) -> Scalar | None:
+        """x where the condition holds, and where it does not, each in readable form."""
+        if_true, if_false = (self._read(decided(x, condition, holds)) for holds in (True, False))
+        if if_true is None or if_false is None:
+            return None
+        found = condition.graph.select(condition, if_true, if_false) if if_true is not if_false else if_true
+        return found if text_size(found) <= LONGEST or self.full else None
 
     def _shortened(self, x: Scalar) -> Scalar | None:
         size = text_size(x)
@@ -130,6 +145,27 @@ class Reader:
             return x
         self._known[found] = found
         return found
+
+
+def conditions_in(x: Scalar) -> list[Node]:
+    """The conditions of the cases in x, each once."""
+    return list(dict.fromkeys(node.args[0] for node in order((x,)) if node.op == "select"))
+
+
+def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
+    """x with every choice by the condition made."""
+    while chosen := {n: n.args[1 if holds else 2] for n in order((x,)) if n.op == "select" and n.args[0] is condition}:
+        (x,) = substituted((x,), chosen)
+    return x
+
+
+def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = ()) -> Scalar:
+    """The value as shown, or as one quotient where that is shorter; as it is where both are too long."""
+    shown = reader.shown(value)
+    if type(value) is not Node or text_size(value) > TRIED or conditions_in(value):
+        return value if isinstance(shown, Omitted) else shown
+    one = simplest(value, WORK, positive)
+    return one if isinstance(shown, Omitted) or length_in_print(one) < length_in_print(shown) else shown
 
 
 def holds_roots(*expressions: Scalar) -> bool:

@@ -92,13 +92,20 @@ def paths_of(model: Model) -> tuple[str, ...]:
     return tuple(name for name, body in model.bodies.items() if _pieces(body) > 1)
 
 
+def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:
+    """The arc lengths at the beginning and the end of every piece of a body's path."""
+    joint: Any = model.bodies[body].joint
+    return joint.bounds()
+
+
 def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
     """The model with every path reduced to one of its pieces."""
     if not pieces:
         return model
     bodies = dict(model.bodies)
     for name, k in pieces.items():
-        bodies[name] = altered(bodies[name], joint=bodies[name].joint.piece(k))
+        joint: Any = bodies[name].joint
+        bodies[name] = altered(bodies[name], joint=joint.piece(k))
     return altered(model, bodies=Table(bodies))
 
 
@@ -114,7 +121,8 @@ def changed(model: Model, before: Configuration, after: Configuration) -> tuple[
 
 
 def _moved_on(model: Model, body: str, k: int) -> str:
-    named = model.bodies[body].joint.pieces[k].name
+    joint: Any = model.bodies[body].joint
+    named = joint.pieces[k].name
     return f"the body '{body}' comes to " + (f"the piece '{named}'" if named else f"piece {k + 1}") + " of its path"
 
 

@@ -14,7 +14,7 @@ RELATIVE = 4 * np.finfo(float).eps  # of the instant of an event, and one part i
 
 @dataclass(frozen=True)
 class Events:
-    """Functions that end a run where they fall to zero.
+    """Functions that end a run where they fall to zero, or (`either`) where they reach zero from either side.
 
     A function must first have been above its floor: one that starts at zero (a gap that has just opened) ends nothing
     until it was positive, unless it falls below minus its floor first.
@@ -22,10 +22,12 @@ class Events:
     Args:
         values: (t n, x n x states) -> n x k.
         floors: what is rounding, of each function, k.
+        either: the indices of those that count from either side.
     """
 
     values: Callable[[np.ndarray, np.ndarray], np.ndarray]
     floors: np.ndarray
+    either: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -39,23 +41,40 @@ class Crossing:
 
 @dataclass
 class Watch:
-    """Follows the functions of `events` from step to step; `armed` are those that have been above their floor."""
+    """Follows the functions of `events` from step to step.
+
+    Args:
+        signs: by which each function is multiplied so that it falls; 0 where that is not known yet.
+        armed: those that have been above their floor.
+    """
 
     events: Events
     t: float
     x: np.ndarray
+    signs: np.ndarray = field(init=False)
     armed: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
-        self.armed = self.events.values(np.array([self.t]), self.x[None, :])[0] > self.events.floors
+        g = self.events.values(np.array([self.t]), self.x[None, :])[0]
+        self.signs = np.ones(len(g))
+        self.signs[list(self.events.either)] = 0.0
+        self._direct(g)
+        self.armed = self.signs * g > self.events.floors
+
+    def _direct(self, g: np.ndarray) -> None:
+        """Functions that count from either side fall from the side on which they first are."""
+        new = (self.signs == 0) & (np.abs(g) > self.events.floors)
+        self.signs[new] = np.sign(g[new])
 
     def step(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> Crossing | None:
         """The first crossing in the step from t_old to t_new; `dense` gives the state at instants in it."""
         times = np.linspace(t_old, t_new, PARTS + 1)
         g = self.events.values(times, dense(times).T)
+        for row in g:
+            self._direct(row)
         found = [
             root for k in range(g.shape[1])
-            if (root := self._first(k, times, g[:, k], dense)) is not None
+            if (root := self._first(k, times, self.signs[k] * g[:, k], dense)) is not None
         ]  # fmt: skip
         if not found:
             return None
@@ -64,10 +83,10 @@ class Watch:
 
     def _first(self, k: int, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]) -> tuple[float, int] | None:
         """The first time at which function k crosses, and k."""
-        floor = self.events.floors[k]
+        floor, sign = self.events.floors[k], self.signs[k]
 
         def value(t: float, level: float = 0.0) -> float:
-            return float(self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
+            return sign * float(self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
 
         for i in range(1, len(times)):
             if self.armed[k]:

@@ -18,14 +18,11 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import rows_of
-from eomgen.model.parts import Model
-from eomgen.simulation.contacts import contacts_of
-from eomgen.simulation.stage import RATE, Values, opened
-from eomgen.symbolic.derivative import jacobian
+from eomgen.mechanics.ties import Row, rows_of
+from eomgen.simulation.stage import RATE, Values, slack_name
+from eomgen.symbolic.derivative import jacobian, substituted
 from eomgen.symbolic.graph import Scalar
 
 
@@ -45,8 +42,12 @@ class Loose:
 
     def gaps(self, t: float, values: Values) -> dict[str, tuple[float, float]]:
         """(gap, its rate) of every contact that can end; positive where it is open, and opening."""
-        found = self._gaps.many(t, self._x(values)[None, :], self.p)[0]
-        return dict(zip(self.contacts, found.reshape(-1, 2).tolist(), strict=True))
+        found = iter(self._gaps.many(t, self._x(values)[None, :], self.p)[0].tolist())
+        gaps = {}
+        for name, rows in self._rows.items():
+            gap = values.get(slack_name(name), 0.0) if rows[0].gap is None else next(found)
+            gaps[name] = (gap, next(found))
+        return gaps
 
     def after_impact(self, t: float, values: Values, touching: Sequence[str]) -> dict[str, float]:
         """The values after an impact of all contacts that touch: rates changed, places as they were.
@@ -54,13 +55,14 @@ class Loose:
         Raises:
             DerivationError: no impulses satisfy the law, which rounding alone can cause.
         """
-        x = self._x(values)
-        nu, k = len(self.system.symbols.u), len(self.system.ties.closing)
+        x, nu = self._x(values), len(self.system.symbols.u)
         found = self._matrices.many(t, x[None, :], self.p)[0]
-        M = found[: nu * nu].reshape(nu, nu)
-        held = found[nu * nu : nu * nu + k * (nu + 1)].reshape(k, nu + 1)
-        rows = found[nu * nu + k * (nu + 1) :].reshape(-1, nu + 1)[[self.contacts.index(name) for name in touching]]
-        u = _plastic(M, held, rows, x[len(x) - nu :])
+        M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
+        k = len(self.system.ties.closing)
+        of_contact, first = {}, k
+        for name, own in self._rows.items():
+            of_contact[name], first = rows[first : first + len(own)], first + len(own)
+        u = _plastic(M, rows[:k], [of_contact[name] for name in touching], x[len(x) - nu :])
         rates = self._rates.many(t, np.concatenate([x[: len(x) - nu], u])[None, :], self.p)[0]
         return {**values, **{f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}}
 
@@ -69,20 +71,16 @@ class Loose:
         return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
 
     @cached_property
-    def _rows(self) -> tuple[tuple[Scalar, Scalar], ...]:
-        """(gap, velocity) of every contact that can end."""
-        found = []
-        for name in self.contacts:
-            row = rows_of(self.system.motion, name)[0]
-            if row.gap is None:
-                raise DerivationError(f"'{name}' can end, and when it holds again cannot be told from where it is",
-                                      f"constraints.{name}", "leave out `unilateral`")  # fmt: skip
-            found.append((row.gap, row.velocity))
-        return tuple(found)
+    def _rows(self) -> dict[str, tuple[Row, ...]]:
+        """The rows of every contact that can end, the one that can end first."""
+        return {name: rows_of(self.system.motion, name) for name in self.contacts}
 
     @cached_property
     def _gaps(self) -> RightHandSide:
-        return self._compiled(tuple(x for pair in self._rows for x in pair))
+        asked: list[Scalar] = []
+        for first, *_ in self._rows.values():
+            asked += [first.velocity] if first.gap is None else [first.gap, first.velocity]
+        return self._compiled(tuple(asked))
 
     @cached_property
     def _rates(self) -> RightHandSide:
@@ -91,39 +89,36 @@ class Loose:
     @cached_property
     def _matrices(self) -> RightHandSide:
         """M, the rows (J, sigma) of the ties that stay, and those of the contacts."""
-        ties, u = self.system.ties, self.system.symbols.u
-        velocities = tuple(velocity for _, velocity in self._rows)
-        contacts = self._with_bias(jacobian(velocities, u) if velocities else (), velocities)
         M = tuple(x for row in recursive.assemble(self.system).M for x in row)
-        return self._compiled((*M, *self._with_bias(ties.J, [row.velocity for row in ties.closing]), *contacts))
+        rows = (*self.system.ties.closing, *(row for own in self._rows.values() for row in own))
+        return self._compiled((*M, *self._with_bias([row.velocity for row in rows])))
 
-    def _with_bias(self, J: Sequence[Sequence[Scalar]], velocities: Sequence[Scalar]) -> list[Scalar]:
-        from eomgen.symbolic.derivative import substituted
-
-        sigma = substituted(tuple(velocities), {u: 0 for u in self.system.symbols.u})
+    def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:
+        """(J, sigma) of each row, J u + sigma its velocity."""
+        u = self.system.symbols.u
+        J = jacobian(tuple(velocities), u) if velocities else ()
+        sigma = substituted(tuple(velocities), {node: 0 for node in u})
         return [x for row, bias in zip(J, sigma, strict=True) for x in (*row, bias)]
 
     def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         return compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
 
-def loose(model: Model, p: np.ndarray) -> Loose:
-    """The model without the contacts that can end; what rubs slides without it."""
-    contacts = contacts_of(model)
-    ends = tuple(contact.name for contact in contacts if contact.unilateral)
-    return Loose(opened(model, {name: Mode(closed=False) for name in ends}), ends, p)
+def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u: np.ndarray) -> np.ndarray:
+    """u+ for the first set of contacts, the largest before smaller ones, that satisfies the law of impact.
 
-
-def _plastic(M: np.ndarray, held: np.ndarray, rows: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """u+ for the first set of contacts, the largest before smaller ones, that satisfies the law of impact."""
-    k, size = len(held), max(1.0, float(np.max(np.abs(u), initial=0.0)))
-    for count in range(len(rows), -1, -1):
-        for active in combinations(range(len(rows)), count):
-            J = np.vstack([held, rows[list(active)]])
-            after, impulses = _bordered(M, J, u)
-            free = [i for i in range(len(rows)) if i not in active]
-            opening = rows[free, :-1] @ after + rows[free, -1]
-            if np.all(impulses[k:] >= -RATE * size * np.max(np.abs(M))) and np.all(opening >= -RATE * size):
+    Args:
+        held: rows (J, sigma) of the ties.
+        contacts: those of each contact; the first of them can only push.
+    """
+    size = RATE * max(1.0, float(np.max(np.abs(u), initial=0.0)))
+    for count in range(len(contacts), -1, -1):
+        for active in combinations(range(len(contacts)), count):
+            after, impulses = _bordered(M, np.vstack([held, *(contacts[i] for i in active)]), u)
+            starts = np.cumsum([len(held), *(len(contacts[i]) for i in active)])[:-1]
+            apart = [contacts[i][0] for i in range(len(contacts)) if i not in active]
+            opening = [row[:-1] @ after + row[-1] for row in apart]
+            if np.all(impulses[starts] >= -size * np.max(np.abs(M))) and all(v >= -size for v in opening):
                 return after
     raise DerivationError("no impulses of the contacts satisfy the law of impact")
 

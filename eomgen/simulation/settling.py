@@ -16,11 +16,11 @@ import numpy as np
 from eomgen.mechanics.contacts import Mode
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
-from eomgen.simulation.stage import FORCE, RATE, Stage, Stages, Values
+from eomgen.simulation.stage import FORCE, RATE, Stage, Values
+from eomgen.simulation.stages import OPEN, Stages
 
 MOST_TRIED = 2000  # configurations at one instant
 STICKS = Mode(sense=0)
-OPEN = Mode(closed=False)
 
 
 def settled(
@@ -86,14 +86,14 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
 
 
 def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
-    """Whether forces and accelerations are such as the configuration says."""
+    """Whether forces and accelerations are such as the configuration says; one without a single value does not deny it."""
     x = stage.state(values)
     found = stage.look(t, x)
     forces, accelerations = stage.sizes(t, x)
     asked = [contact for contact in stage.contacts if contact.name not in apart]
     signs = [_signs(stage.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
-    return all(
-        force >= -FORCE * forces and acceleration >= -FORCE * accelerations
+    return not any(
+        force < -FORCE * forces or acceleration < -FORCE * accelerations
         for pairs in signs for force, acceleration in pairs
     )  # fmt: skip
 
@@ -107,8 +107,8 @@ def _signs(
         yield 0.0, found[name, "gap''"]
         return
     if contact.unilateral or mode.sense != 0:
-        yield (mode.push if contact.friction else 1) * found[name, "N"], 0.0
+        yield from ((mode.push * N, 0.0) for (owner, what), N in found.items() if owner == name and what[0] == "N")
     if mode.sense == 0:
-        yield found[name, "grip"] - abs(found[name, "hold"]), 0.0
+        yield found[name, "mu"] * abs(found[name, "N"]) - abs(found[name, "hold"]), 0.0
     elif mode.sense is not None and sense == 0:
         yield 0.0, mode.sense * found[name, "slide'"]

@@ -1,8 +1,8 @@
 """Trajectory -> the same, ended where ties no longer said how the motion goes on, and the tie named.
 
-Dependent coordinates follow the independent ones as long as det J_d is not zero. A run that passes such an instant
-(a change point, a dead centre) is held to be right where the energy that ought to stay does; where it does not, or the
-integrator stopped there, the run ends there.
+Dependent coordinates follow the independent ones as long as det J_d is not zero. Across an instant where it vanishes
+(a change point, a dead centre) the integrator's own estimate of its error is worth nothing. So a run that came by one
+is integrated again from before it until after it, much finer: where both agree it has passed, else it ends there.
 """
 
 from __future__ import annotations
@@ -14,63 +14,68 @@ import numpy as np
 
 from eomgen.simulation.trajectory import Trajectory
 
-PASSED = 1e-6  # drift of the energy up to which a singular instant counts as passed
-DRIFT = 1e3  # tolerances of one step that a run may drift by itself
-NEAR = 1e-2  # of a determinant, against its rows: where it is larger, the end of a run has another reason
+AGREE = 1e-7  # of the motion's size: a difference between both integrations that is none
+STEPS = 100  # tolerances of one step by which they may differ
+NEAR = 0.02  # of a determinant's largest value: how small a minimum may be the sign of a zero
+LAST = 1e-2  # of a determinant, against its rows: where it is larger, the end of a run has another reason
 
 Determinants = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Again = Callable[[float, np.ndarray, float], np.ndarray]
 
 
 def ended_where_singular(
-    run: Trajectory, determinants: Determinants, what: Sequence[str], *, rtol: float = 1e-9
+    run: Trajectory, determinants: Determinants, what: Sequence[str], again: Again, *, rtol: float = 1e-9
 ) -> Trajectory:
-    """The run, cut where it went wrong by a vanishing determinant.
+    """The run, cut where a vanishing determinant led it astray.
 
     Args:
         determinants: (t n, x n x states) -> n x k, against the lengths of their rows.
         what: of each determinant, what is not determined where it vanishes: "'pin' does not determine 'phi'".
-        rtol: of the integration, whose own drift is no sign of anything.
+        again: (t0, x0, t1) -> x there, by a much finer integration; nan where it does not get there.
+        rtol: of the run.
     """
     if len(run.t) == 0 or not what:
         return run
     with np.errstate(all="ignore"):
         values = np.nan_to_num(np.reshape(determinants(run.t, run.x), (len(run.t), len(what))))
-    broken = _broken(run, values, max(PASSED, DRIFT * rtol))
-    if broken is not None:
-        i, k = broken
-        return _cut(run, i, _instant(run.t, values[:, k], i), what[k])
+    allowed = max(AGREE, STEPS * rtol)
+    for i, number in sorted((i, k) for k in range(len(what)) for i in _zeros(values[:, k])):
+        if not _passed(run, i, again, allowed):
+            return _cut(run, i, _instant(run.t, values[:, number], i), what[number])
     if run.ok or run.status == "interrupted":
         return run
     k = int(np.argmin(abs(values[-1])))
-    flipped = _flips(values[-3:, k]).size > 0
-    return _cut(run, len(run.t) - 1, run.phases[-1].end, what[k]) if flipped or abs(values[-1, k]) < NEAR else run
+    flipped = np.any(np.diff(np.sign(values[-3:, k])))
+    return _cut(run, len(run.t) - 1, run.phases[-1].end, what[k]) if flipped or abs(values[-1, k]) < LAST else run
 
 
-def _broken(run: Trajectory, values: np.ndarray, passed: float) -> tuple[int, int] | None:
-    """(last sound instant, determinant) of the first singular instant after which the energy is another."""
-    if run.energy is None or run.drift is None or not run.drift > passed:
-        return None
-    moved = np.abs(run.energy - run.energy[0])
-    scale = np.max(moved) / run.drift
-    first_off = int(np.argmax(moved > passed * scale))
-    before = [(int(i), k) for k in range(values.shape[1]) for i in _flips(values[:, k]) if i < first_off]
-    found = max(before, default=None)
-    if found is None or first_off - found[0] > max(2, len(run.t) // 100):
-        return None  # the energy went astray elsewhere
-    return found
+def _zeros(values: np.ndarray) -> list[int]:
+    """The instants after which a determinant has another sign, or before which it comes near to zero and turns back."""
+    signs, size = np.sign(values), np.abs(values)
+    flips = np.flatnonzero(signs[:-1] * signs[1:] <= 0)
+    inner = size[1:-1]
+    minima = np.flatnonzero((inner <= size[:-2]) & (inner < size[2:]) & (inner < NEAR * np.max(size, initial=0)))
+    return sorted({*flips.tolist(), *minima.tolist()})
 
 
-def _flips(values: np.ndarray) -> np.ndarray:
-    """The instants after which a determinant has another sign, or is zero."""
-    signs = np.sign(values)
-    return np.flatnonzero(signs[:-1] * signs[1:] <= 0)
+def _passed(run: Trajectory, i: int, again: Again, allowed: float) -> bool:
+    """Whether the motion from the i-th instant to two later comes out the same by a finer integration."""
+    j = min(i + 2, len(run.t) - 1)
+    if j == i:
+        return True
+    finer = again(float(run.t[i]), run.x[i], float(run.t[j]))
+    scale = 1 + np.max(np.abs(run.x[i : j + 1]), axis=0)
+    return bool(np.all(np.abs(finer - run.x[j]) <= allowed * scale))
 
 
 def _instant(t: np.ndarray, values: np.ndarray, i: int) -> float:
-    """Where a straight line between two instants is zero."""
-    if i + 1 >= len(t) or values[i] == values[i + 1]:
+    """Where a straight line between two instants is zero; the later one where it is not."""
+    if i + 1 >= len(t):
         return float(t[i])
-    return float(t[i] + (t[i + 1] - t[i]) * values[i] / (values[i] - values[i + 1]))
+    if values[i] * values[i + 1] > 0:
+        return float(t[i + 1])
+    share = values[i] / (values[i] - values[i + 1]) if values[i] != values[i + 1] else 0.0
+    return float(t[i] + (t[i + 1] - t[i]) * share)
 
 
 def _cut(run: Trajectory, i: int, instant: float, what: str) -> Trajectory:

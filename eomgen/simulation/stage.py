@@ -3,16 +3,16 @@
 Each function is positive while the configuration holds:
 
     closed, and can end:   N                 sticks:   mu |N| - |F|, F what holds it
-    rubs:                  push N            open:     the gap
+    rubs:                  push N            open:     the gap, of a string the integral of its rate
     slides:                sense v           on a piece of a path:   the way to each of its ends
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,16 +22,13 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import redundant_rows
-from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.reactions import Reactions, reactions_of
-from eomgen.mechanics.release import released
-from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
-from eomgen.model.parts import Model
-from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
+from eomgen.simulation.contacts import Configuration, Contact
+from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Scalar
 
@@ -40,7 +37,6 @@ Values = Mapping[str, float]
 
 FORCE, RATE, GAP = 1e-9, 1e-9, 1e-9  # what is rounding, against the size of forces, speeds, places
 TINY = 1e-13
-Unit = Literal["force", "rate", "gap"]
 
 
 @dataclass(frozen=True)
@@ -48,29 +44,43 @@ class Signal:
     """One function of the state.
 
     Args:
-        owner: the contact, or the body on a path.
-        what: "N"; "grip" mu |N| and "hold" of what sticks; "slide", "slide'"; "gap", "gap'", "gap''"; "along", "along'" a path.
-        value: over the stage's symbols, accelerations and multipliers.
+        owner: the contact.
+        what: "N", of a string also "N2", ...; "hold", the force that lets it stick; "mu"; "slide", "slide'"; "gap",
+            "gap'", "gap''".
+        value: over the stage's symbols, accelerations and multipliers; of a gap without a formula None.
+        column: of what follows from the balance of the bodies, its name among their reactions.
     """
 
     owner: str
     what: str
-    value: Scalar
+    value: Scalar | None
+    column: str = ""
 
 
 @dataclass(frozen=True)
 class Bound:
-    """A function that must stay positive, and what it measures; `step`: to which piece of a path its end leads."""
+    """A function that must stay positive.
+
+    Args:
+        owner: the contact, or the body on a path.
+        kind: what its end means: "ends", "turns" (N changes its sign), "closes", "stops", "slips", "piece".
+        value: over the stage's symbols, accelerations and multipliers; of a gap without a formula None.
+        unit: what it measures.
+        step: to which piece of a path its end leads.
+        row: of a string with several tensions, the row that goes slack alone; else 0.
+    """
 
     owner: str
-    value: Scalar
-    unit: Unit
+    kind: str
+    value: Scalar | None
+    unit: Literal["force", "rate", "gap"]
     step: int = 0
+    row: int = 0
 
 
 @dataclass(frozen=True)
 class Stage:
-    """The model of one phase.
+    """The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose.
 
     Args:
         configuration: of the contacts.
@@ -103,41 +113,66 @@ class Stage:
         program = right_hand_side(with_accelerations(self.system, self.assembly), self.system.inputs)
         return compiled(program, self.target)
 
+    def rate(self, t: float, x: np.ndarray) -> np.ndarray:
+        """x', the slack of loose strings included."""
+        if not self.loose:
+            return self.rhs(t, x, self.p)
+        inner = self.inner(x)
+        slackening = self._slackening(t, inner, self.p)
+        return np.concatenate([self.rhs(t, inner, self.p), slackening])
+
     @cached_property
     def conservative(self) -> bool:
         return is_conservative(self.system, self.assembly)
 
     def state(self, values: Values) -> np.ndarray:
         """x of the stage; a displacement that did not exist before is 0."""
-        return np.array([values.get(name, 0.0) for name in (*self.coordinates, *self.speeds)])
+        names = (*self.coordinates, *self.speeds, *map(slack_name, self.loose))
+        return np.array([values.get(name, 0.0) for name in names])
 
     def columns(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
-        """Coordinates and rates of n states, by name."""
-        rates = self._rates.many(t, x, self.p)
-        named = dict(zip(self.coordinates, x.T[: len(self.coordinates)], strict=True))
-        return named | {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
+        """Coordinates, rates and slacks of n states, by name."""
+        rates = self._rates.many(t, self.inner(x), self.p)
+        named = dict(zip(self.coordinates, x.T, strict=False))
+        named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
+        return named | dict(zip(map(slack_name, self.loose), self._slacks(x).T, strict=True))
 
     def values(self, t: float, x: np.ndarray) -> dict[str, float]:
-        """Coordinates and rates of one state, by name."""
+        """Coordinates, rates and slacks of one state, by name."""
         return {name: float(column[0]) for name, column in self.columns(np.array([t]), x[None, :]).items()}
 
     def energies(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """(T, V), each n [J]."""
-        return self._energies.many(t, x, self.p).T
+        return self._energies.many(t, self.inner(x), self.p).T
 
     def gaps(self, t: np.ndarray, x: np.ndarray) -> float:
-        """The largest |phi| of the closing ties."""
-        return float(np.max(np.abs(self._gaps.many(t, x, self.p)), initial=0.0))
+        """The largest |phi| of the ties that hold."""
+        return float(np.max(np.abs(self._gaps.many(t, self.inner(x), self.p)), initial=0.0))
 
     def look(self, t: float, x: np.ndarray) -> dict[tuple[str, str], float]:
-        """The signals at one state, by owner and kind."""
-        found = self._looked.many(np.array([t]), x[None, :], self.p)[0]
-        return {(s.owner, s.what): float(v) for s, v in zip(self.signals, found, strict=True)}
+        """The signals at one state, by owner and kind; nan where a reaction has no single value there."""
+        return {key: float(found[0]) for key, found in self._along(np.array([t]), x[None, :]).items()}
+
+    def _along(self, t: np.ndarray, x: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
+        """The signals at n states."""
+        inner = self.inner(x)
+        compiled = iter(self._looked.many(t, inner, self.p).T)
+        reactions = self._columns.along(t, inner, self.p) if self._columns is not None else np.zeros((len(t), 0))
+        found = {}
+        for signal in self.signals:
+            if signal.column and self._columns is not None:
+                values = reactions[:, self._columns.names.index(signal.column)]
+            elif signal.value is None:
+                values = self._slacks(x)[:, self.loose.index(signal.owner)]
+            else:
+                values = next(compiled)
+            found[signal.owner, signal.what] = values
+        return found
 
     def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
         """How large forces and accelerations are at one state, the latter at least 1 m/s^2."""
-        forces = [abs(v) for (_, what), v in self.look(t, x).items() if what in ("N", "hold")]
-        found = np.abs(self._sized.many(np.array([t]), x[None, :], self.p)[0])
+        forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
+        found = np.abs(self._sized.many(np.array([t]), self.inner(x)[None, :], self.p)[0])
         n = len(self.system.symbols.u)
         return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
 
@@ -148,10 +183,24 @@ class Stage:
         size = {"force": FORCE * self.sizes(t, x)[0], "rate": RATE * rates, "gap": GAP * places}
         return np.array([size[bound.unit] for bound in self.bounds]) + TINY
 
-    @property
-    def watched(self) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-        """(t n, x n x states) -> the bounds, n x k."""
-        return lambda t, x: self._watched.many(t, x, self.p)
+    def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The bounds along the states, n x k; nan where a reaction has no single value."""
+        signals = self._along(t, x)
+        ways = iter(self._ways.many(t, self.inner(x), self.p).T)
+        found = [next(ways) if bound.kind == "piece" else self._left(bound, signals) for bound in self.bounds]
+        return np.column_stack(found) if found else np.zeros((len(t), 0))
+
+    def _left(self, bound: Bound, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
+        """What is left of a bound of a contact."""
+        name = bound.owner
+        mode = self.configuration.modes[name]
+        if bound.kind == "closes":
+            return signals[name, "gap"]
+        if bound.kind == "stops":
+            return (mode.sense or 0) * signals[name, "slide"]
+        if bound.kind == "slips":
+            return signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"])
+        return mode.push * signals[name, f"N{bound.row}" if bound.row > 1 else "N"]
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -160,7 +209,7 @@ class Stage:
 
     def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:
         """Functions of q, u, t, accelerations and multipliers along the states, n x scalars."""
-        return self._function(scalars).many(t, x, self.p)
+        return self.function(scalars).many(t, self.inner(x), self.p)
 
     # -- what the contacts say -------------------------------------------------------------------
 
@@ -168,31 +217,42 @@ class Stage:
     def signals(self) -> tuple[Signal, ...]:
         found: list[Signal] = []
         for contact in self.contacts:
-            found += self._of_open(contact) if not self.mode(contact).closed else self._of_closed(contact)
-        for body in self.configuration.pieces:
-            link = self.system.motion.link(body)
-            found += [Signal(body, "along", link.s[0]), Signal(body, "along'", link.s_rate[0])]
+            found += self._of_closed(contact) if self.mode(contact).closed else self._of_open(contact)
         return tuple(found)
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
-        value = {(s.owner, s.what): s.value for s in self.signals}
         found: list[Bound] = []
         for contact in self.contacts:
-            name, mode = contact.name, self.mode(contact)
-            if not mode.closed:
-                found.append(Bound(name, value[name, "gap"], "gap"))
-                continue
-            if contact.unilateral or mode.sense != 0:
-                found.append(Bound(name, mode.push * value[name, "N"], "force"))
-            if mode.sense == 0:
-                found.append(Bound(name, value[name, "grip"] - _size(value[name, "hold"]), "force"))
-            elif mode.sense is not None:
-                found.append(Bound(name, mode.sense * value[name, "slide"], "rate"))
+            signals = {s.what: s.value for s in self.signals if s.owner == contact.name}
+            found += self._bounds(contact, signals)
         return (*found, *self._ends_of_pieces)
+
+    @cached_property
+    def loose(self) -> tuple[str, ...]:
+        """The open strings whose slack no formula gives: it is integrated."""
+        return tuple(s.owner for s in self.signals if s.what == "gap" and s.value is None)
 
     def mode(self, contact: Contact) -> Mode:
         return self.configuration.modes[contact.name]
+
+    def _bounds(self, contact: Contact, signals: Mapping[str, Any]) -> list[Bound]:
+        name, mode = contact.name, self.mode(contact)
+        if not mode.closed:
+            return [Bound(name, "closes", signals["gap"], "gap")]
+        found = []
+        if contact.unilateral:
+            tensions = [value for what, value in signals.items() if what[0] == "N"]
+            several = len(tensions) > 1
+            found += [Bound(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
+        elif mode.sense != 0:
+            found.append(Bound(name, "turns", mode.push * signals["N"], "force"))
+        if mode.sense == 0:
+            grip = signals["mu"] * _size(signals["N"])
+            found.append(Bound(name, "slips", grip - _size(signals["hold"]), "force"))
+        elif mode.sense is not None:
+            found.append(Bound(name, "stops", mode.sense * signals["slide"], "rate"))
+        return found
 
     @property
     def _ends_of_pieces(self) -> list[Bound]:
@@ -200,59 +260,51 @@ class Stage:
         found = []
         for body, (more_before, length) in self.lengths.items():
             s = self.system.motion.link(body).s[0]
-            found += [Bound(body, s, "gap", -1)] if more_before else []
-            found += [Bound(body, length - s, "gap", 1)] if length is not None else []
+            found += [Bound(body, "piece", s, "gap", -1)] if more_before else []
+            found += [Bound(body, "piece", length - s, "gap", 1)] if length is not None else []
         return found
 
     def _of_open(self, contact: Contact) -> list[Signal]:
-        scope = self.system.scope
-        row = rows_of(self.system.motion, contact.name)[0]
-        if row.gap is None:
-            raise DerivationError(f"{contact.words} ends, and when it holds again cannot be told from where it is",
-                                  f"constraints.{contact.name}")  # fmt: skip
-        rate = scope.time_derivative((row.gap,))[0]
-        values = (row.gap, rate, *scope.with_accelerations((rate,)))
-        return [Signal(contact.name, what, x) for what, x in zip(("gap", "gap'", "gap''"), values, strict=True)]
+        row, scope = rows_of(self.system.motion, contact.name)[0], self.system.scope
+        gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
+        return [Signal(contact.name, "gap", gap), Signal(contact.name, "gap'", rate),
+                Signal(contact.name, "gap''", *scope.with_accelerations((rate,)))]  # fmt: skip
 
     def _of_closed(self, contact: Contact) -> list[Signal]:
         name = contact.name
-        found = [Signal(name, "N", self._normal(contact))]
+        found = [Signal(name, f"N{k}" if k > 1 else "N", *N) for k, N in enumerate(self._normals(contact), start=1)]
         if contact.mu is None:
             return found
         v, scope = self._sliding(contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", *scope.with_accelerations((v,)))]
         if self.mode(contact).sense == 0:
-            found.append(Signal(name, "grip", scope.value(contact.mu) * _size(found[0].value)))
-            found.append(Signal(name, "hold", self._multiplier(self._row(contact, "t"))))
+            held = next(r for r in self.system.ties.rows if r.tie == name and r.component == "t")
+            found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._reaction(held))]
         return found
-
-    def _row(self, contact: Contact, component: str) -> Row:
-        return next(r for r in self.system.ties.rows if r.tie == contact.name and r.component == component)
 
     def _sliding(self, contact: Contact) -> Scalar:
         if contact.kind == "path":
             return self.system.motion.link(contact.name).s_rate[0]
         return next(r.sliding for r in self.system.ties.rows if r.tie == contact.name and r.tangent)
 
-    def _normal(self, contact: Contact) -> Scalar:
-        """N, its multiplier where that is it, else from the balance of the bodies."""
+    def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
+        """N of a support, the tensions of a string: (value, name of its column)."""
         if contact.kind == "path":
-            return self.reactions.normal(contact.name)
-        row = next(r for r in self.system.ties.rows if r.tie == contact.name)
-        if row.status == "closing" and not self._redundant:
-            return self._multiplier(row)
-        label = "tension" if contact.pulls else "n"
-        (j,) = (
-            j for j, c in enumerate(self.reactions.components)
-            if (c.owner, c.label, c.number) == (contact.name, label, row.number)
-        )  # fmt: skip
-        return self.reactions.value(j)
+            return [self._component(contact.name, "joint", "n", 1)]
+        rows = [r for r in self.system.ties.rows if r.tie == contact.name and r.component in ("n", "tension")]
+        return [self._reaction(row) for row in rows]
 
-    def _multiplier(self, row: Row) -> Scalar:
-        if self._redundant or row.status != "closing":
-            (j,) = (j for j, c in enumerate(self.reactions.components) if (c.owner, c.number) == (row.tie, row.number))
-            return self.reactions.value(j)
-        return self.system.symbols.lam[self.system.ties.closing.index(row)]
+    def _reaction(self, row: Row) -> tuple[Scalar, str]:
+        """lam of a row: its multiplier where it closes, else from the balance of the bodies."""
+        if row.status == "closing" and not self._redundant:
+            return self.system.symbols.lam[self.system.ties.closing.index(row)], ""
+        return self._component(row.tie, "tie", row.component, row.number)
+
+    def _component(self, owner: str, kind: str, label: str, number: int) -> tuple[Scalar, str]:
+        for j, c in enumerate(self.reactions.components):
+            if (c.owner, c.kind, c.label) == (owner, kind, label) and (kind == "joint" or c.number == number):
+                return self.reactions.value(j), c.name
+        raise DerivationError(f"'{owner}' has no reaction '{label}'")
 
     @cached_property
     def _redundant(self) -> bool:
@@ -260,102 +312,60 @@ class Stage:
 
     # -- compiled --------------------------------------------------------------------------------
 
-    def _function(self, scalars: tuple[Scalar, ...], target: str | None = "numpy") -> RightHandSide:
+    def inner(self, x: np.ndarray) -> np.ndarray:
+        """(q, u) of states."""
+        return np.ascontiguousarray(x[..., : len(self.coordinates) + len(self.speeds)])
+
+    def _slacks(self, x: np.ndarray) -> np.ndarray:
+        return x[..., len(self.coordinates) + len(self.speeds) :]
+
+    def function(self, scalars: tuple[Scalar, ...], target: str | None = "numpy") -> RightHandSide:
+        """Functions of q, u, t, accelerations and multipliers, compiled."""
         solve = bordered(self.assembly) if self.system.symbols.u else None
         return compiled(program_of(scalars, self.assembly.symbols, inputs=self.system.inputs, solve=solve), target)
 
+    def _kinematic(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        return compiled(program_of(scalars, self.assembly.symbols, inputs=self.system.inputs), "numpy")
+
     @cached_property
     def _looked(self) -> RightHandSide:
-        return self._function(tuple(s.value for s in self.signals))
+        return self.function(tuple(s.value for s in self.signals if s.value is not None and not s.column))
+
+    @cached_property
+    def _columns(self) -> ReactionColumns | None:
+        """The reactions behind the signals that follow from the balance of the bodies; None without such."""
+        return ReactionColumns(self.reactions, self.rhs) if any(s.column for s in self.signals) else None
+
+    @cached_property
+    def _ways(self) -> RightHandSide:
+        return self._kinematic(tuple(b.value for b in self.bounds if b.kind == "piece" and b.value is not None))
 
     @cached_property
     def _sized(self) -> RightHandSide:
-        return self._function((*self.assembly.forcing, *self.system.symbols.a))
+        return self.function((*self.assembly.forcing, *self.system.symbols.a))
 
     @cached_property
-    def _watched(self) -> RightHandSide:
-        return self._function(tuple(b.value for b in self.bounds), self.target)
+    def _slackening(self) -> RightHandSide:
+        rates = {s.owner: s.value for s in self.signals if s.what == "gap'" and s.value is not None}
+        return self._kinematic(tuple(rates[name] for name in self.loose))
 
     @cached_property
     def _rates(self) -> RightHandSide:
-        return compiled(program_of(self.system.scope.rates, self.assembly.symbols, inputs=self.system.inputs), "numpy")
+        return self._kinematic(self.system.scope.rates)
 
     @cached_property
     def _energies(self) -> RightHandSide:
-        energies = (self.assembly.T, self.assembly.V)
-        return compiled(program_of(energies, self.assembly.symbols, inputs=self.system.inputs), "numpy")
+        return self._kinematic((self.assembly.T, self.assembly.V))
 
     @cached_property
     def _gaps(self) -> RightHandSide:
-        gaps = tuple(row.gap for row in self.system.ties.rows if row.gap is not None and not row.identical)
-        return compiled(program_of(gaps, self.assembly.symbols, inputs=self.system.inputs), "numpy")
+        return self._kinematic(tuple(r.gap for r in self.system.ties.rows if r.gap is not None and not r.identical))
 
 
-def _size(x: Scalar) -> Scalar:
+def slack_name(tie: str) -> str:
+    """What the integrated slack of a string is called among the values of a state."""
+    return f"{tie} slack"
+
+
+def _size(x: Any) -> Scalar:
     return function("abs", x)
-
-
-class Stages:
-    """The stages of a model, each derived and compiled once.
-
-    Args:
-        model: whose contacts change.
-        p: the values of its parameters.
-        target: of the emitted code.
-    """
-
-    def __init__(self, model: Model, p: np.ndarray, target: str | None) -> None:
-        self.model, self.p, self.target = model, p, target
-        self._made: dict[Configuration, Stage] = {}
-
-    def of(self, configuration: Configuration) -> Stage:
-        """The stage of a configuration.
-
-        Raises:
-            DerivationError: a contact ends and nothing can leave it.
-        """
-        if configuration not in self._made:
-            self._made[configuration] = self._stage(configuration)
-        return self._made[configuration]
-
-    def _stage(self, configuration: Configuration) -> Stage:
-        model = on_pieces(self.model, configuration.pieces)
-        system = opened(model, configuration.modes)
-        assembly = with_friction(system, recursive.assemble(system))
-        lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
-        return Stage(configuration, contacts_of(model), lengths, system, assembly, self.p, self.target)
-
-    def _length(self, system: System, body: str, k: int) -> tuple[bool, Scalar | None]:
-        bounds = self.model.bodies[body].joint.bounds()
-        start, end = bounds[k]
-        return k > 0, system.scope.value(end - start) if k + 1 < len(bounds) else None
-
-
-def opened(model: Model, modes: Mapping[str, Mode]) -> System:
-    """The system with its contacts in these modes: those that are open released, one after the other.
-
-    Raises:
-        DerivationError: nothing can leave a contact that has ended.
-    """
-    closed = {name: mode for name, mode in modes.items() if mode.closed}
-    system = system_of(model, closed)
-    for name, mode in modes.items():
-        if not mode.closed:
-            system = _released(system, name)
-    return system
-
-
-def _released(system: System, tie: str) -> System:
-    model, modes = released(system, tie)
-    after = system_of(model, modes)
-    held = [row for row in system.ties.rows if row.tie == tie and row not in redundant_rows(system.ties)]
-    if _freedom(after) < _freedom(system) + len(held):
-        raise DerivationError(f"'{tie}' ends, and what it held does not become free", f"constraints.{tie}",
-                              "place the body by coordinates that can leave the contact")  # fmt: skip
-    return after
-
-
-def _freedom(system: System) -> int:
-    """Independent speeds less the independent closing rows."""
-    ties = system.ties
-    return len(system.symbols.u) - len(ties.closing) + len(redundant_rows(ties))

@@ -7,7 +7,7 @@ import html
 import io
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -53,6 +53,9 @@ class Trajectory:
         status: "finished" or what stopped it.
         message: the same as a sentence.
         steps, evaluations: taken by the integrator.
+        reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
+        units: of the reactions, by name.
+        remark: what is missing among them, and why; or "".
     """
 
     t: np.ndarray
@@ -67,6 +70,9 @@ class Trajectory:
     message: str
     steps: int
     evaluations: int
+    reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    remark: str = ""
 
     @property
     def ok(self) -> bool:
@@ -77,16 +83,16 @@ class Trajectory:
         return len(self.t)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The column of a coordinate or speed, of "t" or "energy"."""
+        """The column of a coordinate or speed, of "t", "energy", or a reaction: "reaction_x(B)"."""
         columns = self.columns()
         if name not in columns:
             raise KeyError(f"no column '{name}'; there are {', '.join(columns)}")
         return columns[name]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Every column by name: t, coordinates, speeds, energy."""
+        """Every column by name: t, coordinates, speeds, energy, reactions."""
         named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
-        return named if self.energy is None else named | {"energy": self.energy}
+        return named | ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
 
     def to_csv(self, path: str | Path | IO[str]) -> None:
         """A header line and one line an instant; every digit of a double.
@@ -105,7 +111,7 @@ class Trajectory:
             path.write(text.getvalue())
 
     def to_npz(self, path: str | Path) -> None:
-        """numpy's archive: t, x, coordinates, speeds, energy, status, message.
+        """numpy's archive: t, x, coordinates, speeds, energy, reactions (n x names) and their names, status, message.
 
         Raises:
             RunFailed: the file cannot be written; what was there before is then still there.
@@ -114,6 +120,9 @@ class Trajectory:
         arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
         if self.energy is not None:
             arrays["energy"] = self.energy
+        if self.reactions:
+            arrays |= {"reactions": np.column_stack(list(self.reactions.values())),
+                       "reaction_names": np.array(list(self.reactions), dtype=str)}  # fmt: skip
         _write(Path(path), lambda file: np.savez_compressed(file, **arrays))
 
     def to_pandas(self) -> Any:
@@ -131,10 +140,10 @@ class Trajectory:
             parts.append(f"Energy drift {self.drift:.1e} of the energy that moves.")
         if self.gap is not None:
             parts.append(f"Ties open by at most {self.gap:.1e}.")
-        return " ".join(parts)
+        return " ".join(parts if self.reactions or not self.remark else [*parts, self.remark])
 
     def __repr__(self) -> str:
-        names = ", ".join(self.coordinates + self.speeds)
+        names = ", ".join((*self.coordinates, *self.speeds, *self.reactions))
         return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
 
     def _repr_html_(self) -> str:

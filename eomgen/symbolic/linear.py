@@ -1,7 +1,12 @@
 """Sparse linear equations over the graph: solved by elimination, dependent unknowns and left-over rows kept.
 
 A pivot must not vanish where the equations hold. Whether an entry does is read off its value at one generic state,
-the shadow, which is carried through the elimination beside the expressions.
+the shadow, which is carried through the elimination beside the expressions. What has pivots that vanish at special
+states alone (the sine of an angle) is left to the normal equations
+
+    A^T A x = A^T b,
+
+which for equations without contradiction have the same solution, and no other singular states than A itself.
 """
 
 from __future__ import annotations
@@ -10,7 +15,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from eomgen.symbolic import cramer
 from eomgen.symbolic.graph import Node, Scalar, is_zero
+
+TOGETHER = 4  # unknowns of one set of normal equations
+RANK = 1e-9  # of a column's distance from those before it, against its length
 
 Row = dict[int, Scalar]
 Values = Callable[[Sequence[Scalar]], list[Any]]
@@ -49,6 +60,7 @@ class _Line:
 def solved(
     rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int, values: Values,
     *, simple: Callable[[Scalar], int] | None = None, tolerance: float = 1e-20, last: Sequence[int] = (),
+    sure: int | None = None,
 ) -> Solution:  # fmt: skip
     """The solution of sparse linear equations, sum over j of rows[i][j] x_j = right[i].
 
@@ -60,17 +72,16 @@ def solved(
         simple: a rank of scalars as pivots, 0 the best (None: numbers 0, all else 1).
         tolerance: of shadows against the largest of their row, below which an entry is zero.
         last: unknowns that are taken as pivots only where there is no other.
+        sure: the largest rank of a pivot that vanishes nowhere; the others wait for the normal equations (None: all
+            are taken as they come).
     """
     lines = _lines(rows, right, values, tolerance)
     simple, late = simple or _number_first, frozenset(last)
     order: list[tuple[int, _Line]] = []
-    while (found := _pivot(lines, simple, late)) is not None:
-        line, j = found
-        lines.remove(line)
-        order.append((j, line))
-        for other in lines:
-            if j in other.entries:
-                _subtract(other, line, j, tolerance)
+    if sure is not None:
+        _eliminate(lines, order, lambda line, j, x: (simple(x), j in late), tolerance, worst=(sure, True))
+        _normal(lines, order)
+    _eliminate(lines, order, lambda line, j, x: (j in late, simple(x)), tolerance)
     free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, tolerance)
     return Solution(constants, shares, free, tuple(line.right for line in lines))
@@ -92,8 +103,24 @@ def _number_first(a: Scalar) -> int:
     return 1 if type(a) is Node else 0
 
 
-def _pivot(lines: list[_Line], simple: Callable[[Scalar], int], late: frozenset[int]) -> tuple[_Line, int] | None:
-    """The entry by which the next unknown is eliminated."""
+def _eliminate(
+    lines: list[_Line], order: list[tuple[int, _Line]], rank: Callable[[_Line, int, Scalar], tuple[int, int]],
+    tolerance: float, worst: tuple[int, int] | None = None,
+) -> None:  # fmt: skip
+    """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
+    while (found := _pivot(lines, rank)) is not None:
+        line, j = found
+        if worst is not None and rank(line, j, line.entries[j]) > worst:
+            return
+        lines.remove(line)
+        order.append((j, line))
+        for other in lines:
+            if j in other.entries:
+                _subtract(other, line, j, tolerance)
+
+
+def _pivot(lines: list[_Line], rank: Callable[[_Line, int, Scalar], tuple[int, int]]) -> tuple[_Line, int] | None:
+    """The entry of the least rank by which the next unknown is eliminated; of those the one that fills in least."""
     many: dict[int, int] = {}
     for line in lines:
         for j in line.entries:
@@ -101,12 +128,65 @@ def _pivot(lines: list[_Line], simple: Callable[[Scalar], int], late: frozenset[
     best, found = None, None
     for line in lines:
         for j, entry in line.entries.items():
-            rank = (j in late, simple(entry), (len(line.entries) - 1) * (many[j] - 1))
-            if best is None or rank < best:
-                best, found = rank, (line, j)
-                if rank == (False, 0, 0):
+            this = (*rank(line, j, entry), (len(line.entries) - 1) * (many[j] - 1))
+            if best is None or this < best:
+                best, found = this, (line, j)
+                if this == (0, 0, 0):
                     return found
     return found
+
+
+def _normal(lines: list[_Line], order: list[tuple[int, _Line]]) -> None:
+    """Solve the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
+    for group, unknowns in _groups(lines):
+        A = np.array([[float(line.shadow.get(j, 0)) for j in unknowns] for line in group])
+        if len(unknowns) > min(len(group), TOGETHER) or not _independent(A):
+            continue
+        square = len(group) == len(unknowns)
+        taken = [line.entries for line in group] if square else [_gram(group, j, unknowns) for j in unknowns]
+        right = [line.right for line in group] if square else [_sum(group, j) for j in unknowns]
+        values = cramer.solved([dict(zip(range(len(unknowns)), (row.get(j, 0) for j in unknowns), strict=True))
+                                for row in taken], [(b,) for b in right])[0]  # fmt: skip
+        for line in group:
+            lines.remove(line)
+        known = {j: value for j, (value,) in zip(unknowns, values, strict=True)}
+        order += [(j, _Line({j: 1}, {j: 1}, value)) for j, value in known.items()]
+        lines += [_Line({}, {}, _rest(line, known)) for line in group[len(unknowns) :]]
+
+
+def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
+    """Lines that share unknowns, directly or through others, and these unknowns."""
+    groups: list[tuple[list[_Line], set[int]]] = []
+    for line in lines:
+        mine, columns = [line], set(line.entries)
+        if not columns:
+            continue
+        for group in [g for g in groups if g[1] & columns]:
+            groups.remove(group)
+            mine, columns = group[0] + mine, group[1] | columns
+        groups.append((mine, columns))
+    return [(group, sorted(columns)) for group, columns in groups]
+
+
+def _independent(A: np.ndarray) -> bool:
+    """Whether the columns are independent."""
+    sizes = np.linalg.svd(A / np.linalg.norm(A, axis=0), compute_uv=False)
+    return bool(sizes[-1] > RANK)
+
+
+def _gram(group: list[_Line], j: int, unknowns: list[int]) -> Row:
+    """Row j of A^T A."""
+    return {k: sum((line.entries.get(j, 0) * line.entries.get(k, 0) for line in group), start=0) for k in unknowns}
+
+
+def _sum(group: list[_Line], j: int) -> Scalar:
+    """Entry j of A^T b."""
+    return sum((line.entries[j] * line.right for line in group if j in line.entries), start=0)
+
+
+def _rest(line: _Line, known: Mapping[int, Scalar]) -> Scalar:
+    """b - A x of a line: zero where the equations hold."""
+    return line.right - sum((x * known[j] for j, x in line.entries.items()), start=0)
 
 
 def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:

@@ -9,6 +9,7 @@ from eomgen.symbolic.graph import Number
 from eomgen.symbolic.powers import axes_of, power_form
 from eomgen.symbolic.terms import Terms, Vector, Wave, common_monomial, constant, plus, tidy
 
+MOST_AXES = 4  # angles, for a common divisor to be sought in their sines too
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought
 
 Axes = tuple[Vector, ...]
@@ -17,7 +18,7 @@ Polynomial = dict[Exponents, Number]  # in the atoms, then the cosine and sine o
 
 
 def reduced(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
-    """(numerator, denominator) without common factor as polynomials (s^2 = 1 - c^2 used).
+    """(numerator, denominator) without common factor as polynomials, s^2 = 1 - c^2 used, then c^2 = 1 - s^2.
 
     Raises:
         TooLarge: the expansion's limit is reached.
@@ -59,8 +60,24 @@ def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator:
     ring = PolyRing(names, QQ)
     elements = [ring.from_dict({e: QQ(c.numerator, c.denominator) for e, c in p.items()}) for p in (above, below)]
     _, above, below = elements[0].cofactors(elements[1])
+    if len(axes) <= MOST_AXES and any(any(e[len(atoms) + 1 :: 2]) for e in below.monoms()):
+        first = len(atoms)
+        above, below = (_in_sines(ring, part, range(first, len(names), 2)) for part in (above, below))
+        _, above, below = above.cofactors(below)
     numerator, denominator = (_terms(expansion, part, atoms, axes) for part in (above, below))
     return numerator, denominator
+
+
+def _in_sines(ring, polynomial, cosines):
+    """The same function with c^2 = 1 - s^2 used: a common factor s shows."""
+    total = ring.zero
+    for exponents, c in polynomial.terms():
+        part, rest = ring.one * c, list(exponents)
+        for i in cosines:
+            part *= (1 - ring.gens[i + 1] ** 2) ** (exponents[i] // 2)
+            rest[i] %= 2
+        total += part.mul_monom(tuple(rest))
+    return total
 
 
 def _polynomial(terms: Terms, atoms: list[int], axes: Axes) -> Polynomial | None:

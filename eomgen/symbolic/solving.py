@@ -18,6 +18,7 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.circular_equations import vanishing_angles, wave_free
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
+from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.factoring import factored, square_root
 from eomgen.symbolic.functions import over
@@ -47,6 +48,12 @@ def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = ()) -> t
         if x not in found and _may_be_root(equation, unknown, x):
             found.append(x)
     return tuple(found)
+
+
+def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
+    """Whether equation(x + period) is the same function as equation(x)."""
+    (shifted,) = substituted((equation,), {unknown: unknown + period})
+    return shifted is equation or equal_at_random_states([(shifted, equation)]).equal
 
 
 @dataclass(frozen=True)

@@ -1,31 +1,59 @@
-"""eomgen codegen: a right-hand side that compiles as it is, with test vectors."""
+"""eomgen codegen: a right-hand side, and the reactions, that compile as they are, with test vectors."""
+
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from eomgen import pipeline
-from eomgen.codegen.files import write_files
-from eomgen.codegen.targets.base import Description
+from eomgen.codegen.files import Emitted, write_files
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.targets.base import REACTIONS, Description
 from eomgen.codegen.vectors import vectors
+from eomgen.errors import DerivationError
+from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.model.parts import Model
-from eomgen.verbs.outcome import Outcome
+from eomgen.verbs.outcome import Outcome, listed
 from eomgen.version import __version__
 
 
 def codegen(model: Model, *, stem: str, origin: str, target: str, directory: str) -> Outcome:
-    """The right-hand side as files that compile as they are, with test vectors."""
+    """The right-hand side and the reactions as files that compile as they are, with test vectors."""
     equations = pipeline.derive(model)
     program, rhs = equations.program, equations.rhs("numpy")
     source = f"{origin} ({model.source})" if model.source else origin
     description = Description(model.name, f"Made by eomgen {__version__} from {source}.", _remarks(model),
                               vectors(program, x0=rhs.x0, p0=rhs.p0))  # fmt: skip
-    paths = [str(path) for path in write_files(stem, program, description, target=target, directory=Path(directory))]
+    reactions, note = _reactions(equations, description, rhs)
+    paths = [str(path) for path in write_files(stem, program, description, target=target, directory=Path(directory),
+                                               reactions=reactions)]  # fmt: skip
     payload = {
         "name": model.name, "target": target, "files": paths, "operations": program.count.total,
         "hoisted_operations": program.count.hoisted, "coordinates": list(rhs.coordinates), "speeds": list(rhs.speeds),
         "parameters": list(rhs.parameters), "inputs": list(rhs.inputs),
+        "reactions": list(reactions[1].outputs) if reactions else None,
+        "reaction_operations": reactions[0].count.total if reactions else None,
     }  # fmt: skip
-    return Outcome("".join(f"{path}\n" for path in paths), payload)
+    return Outcome("".join(f"{path}\n" for path in paths), payload, notes=(note,) if note else ())
+
+
+def _reactions(
+    equations: pipeline.Equations, description: Description, rhs: RightHandSide
+) -> tuple[Emitted | None, str]:
+    """(the program of the reactions, described; a line on those that are not in it)."""
+    try:
+        names, program = equations.reactions_program
+        answers = vectors(program, x0=rhs.x0, p0=rhs.p0) if names else ()
+    except DerivationError as error:
+        return None, f"no code for the reactions: {error.what}"
+    if not names:
+        return None, "no code for the reactions: none has a single value" if equations.reactions.components else ""
+    left = [named.name for named in named_reactions(equations.reactions.balance) if named.name not in names]
+    note = f"not in the code, statically indeterminate: {listed(left)}" if left else ""
+    units = {named.name: f"[{named.unit}]" for named in named_reactions(equations.reactions.balance)}
+    remarks = {**description.remarks, **units}
+    told = replace(description, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)
+    return (program, told), note
 
 
 def _remarks(model: Model) -> dict[str, str]:

@@ -37,7 +37,8 @@ def simulate(
 
         units = {q: part.unit.si for q, part in model.coordinates.items() if part.unit is not None}
         plot_trajectory(run, prepared(plot), title=model.name, units=units)
-    return Outcome(_run_text(model, run), _run_payload(model, run, files), "" if run.ok else run.message)
+    notes = (run.remark,) if run.reactions and run.remark else ()
+    return Outcome(_run_text(model, run), _run_payload(model, run, files), "" if run.ok else run.message, notes)
 
 
 def _check_ending(output: str | None) -> None:
@@ -83,7 +84,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "start": {name: column[0] for name, column in columns.items() if column},
         "end": {name: column[-1] for name, column in columns.items() if column},
         "energy_drift": _finite(run.drift), "gap": _finite(run.gap),
-        "steps": run.steps, "evaluations": run.evaluations, "files": files,
+        "steps": run.steps, "evaluations": run.evaluations, "remark": run.remark, "files": files,
     }  # fmt: skip
     return payload if files else payload | {"trajectory": columns}
 

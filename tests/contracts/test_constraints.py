@@ -412,7 +412,9 @@ joint = { kind = "placed", at = [0, "l*cos(theta)"], angle = "theta - pi/2" }
 
 def test_rows_that_the_coordinates_satisfy_carry_a_reaction_and_close_nothing():
     """A ladder placed on wall and floor: both supports are identical, J has no row."""
-    system = written(IDENTICAL + """
+    system = written(
+        IDENTICAL
+        + """
 [constraints.wall]
 kind = "support"
 point = "ladder.start"
@@ -422,7 +424,8 @@ kind = "support"
 point = "ladder.end"
 normal = [0, 1]
 at = [0, 0]
-""")
+"""
+    )
     assert [row.identical for row in system.ties.rows] == [True, True]
     assert all(row.wrenches for row in system.ties.rows)
     assert system.ties.closing == () and system.ties.J == () and system.symbols.lam == ()

@@ -56,8 +56,11 @@ EXAMPLES = {
         (PLANE, 'along = "a", at = [0, 0], pieces = [{ line = 1.0 }, { arc = 0.5, turn = "cw", angle = 1 }]'),
         (PLANE, 'along = "a - w*t", at = [1, 2], heading = "pi/3", pieces = [{ line = "l" }]'),
         (PLANE, 'along = "a", turned = { angle = 1 }, pieces = [{ arc = "l", turn = "ccw", angle = "pi/2" }]'),
-        (PLANE, 'along = "a + b", heading = "-pi/6", pieces = [{ arc = 0.2, turn = "ccw", angle = 2 }, { line = 0.1 }, '
-                '{ arc = "l/3", turn = "cw", angle = 3 }, { arc = 0.4, turn = "ccw", angle = 1.5 }]'),
+        (
+            PLANE,
+            'along = "a + b", heading = "-pi/6", pieces = [{ arc = 0.2, turn = "ccw", angle = 2 }, { line = 0.1 }, '
+            '{ arc = "l/3", turn = "cw", angle = 3 }, { arc = 0.4, turn = "ccw", angle = 1.5 }]',
+        ),
         (SPACE, 'along = "a", pieces = [{ line = 1.0 }]'),
     ],
 }

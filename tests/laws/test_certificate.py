@@ -20,7 +20,8 @@ from eomgen.symbolic.spatial import times
 MODELS = Path(__file__).parents[2] / "models"
 NOT_YET = {"gerber_beam"}  # their ties are not built in this version
 DERIVABLE = sorted(path for path in MODELS.rglob("*.toml") if path.stem not in NOT_YET)
-SMALL = ("double_pendulum", "elastic_pendulum", "cart_pole", "parallelogram_reactions", "bead_on_turning_hoop")
+SMALL = ("double_pendulum", "elastic_pendulum", "cart_pole", "parallelogram_reactions", "bead_on_turning_hoop",
+         "four_bar", "slider_crank")  # fmt: skip
 
 
 def derived(name: str) -> Equations:

@@ -79,7 +79,7 @@ class Description:
     Args:
         title: the model's name.
         origin: who made the file from what, one line.
-        remarks: of an argument's name: its unit and what it is.
+        remarks: of the name of an argument or output: its unit and what it is.
         vectors: right answers, for the self-test.
         role: what the program is for.
         outputs: names of the outputs, () where they are in the order of x.
@@ -178,7 +178,8 @@ def header(program: Program, description: Description) -> list[str]:
         for place, x in enumerate(members):
             remark = description.remarks.get(x.name, "")
             lines.append(f"    {array}[{place}]  {x.name}{'  ' + remark if remark else ''}")
-    lines += [f"    {result}[{place}]  {name}" for place, name in enumerate(description.outputs)]
+    for place, name in enumerate(description.outputs):
+        lines.append(f"    {result}[{place}]  {name}  {description.remarks.get(name, '')}".rstrip())
     if not description.outputs:
         lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")
     return [" ".join(line.split("\n")) for line in lines]

@@ -37,7 +37,7 @@ def ties(catalog: Catalog) -> Iterator[Finding]:
                 what = f"'{name}' slides on the line of body '{part.on}', which has none"
                 yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
             if table == "constraints":
-                yield from _on_itself(path, part)
+                yield from _on_itself(catalog, path, part)
             friction = getattr(part, "friction", None)
             if friction is not None:
                 yield from one_of(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
@@ -53,18 +53,20 @@ def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> It
         yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
 
 
-def _on_itself(path: Path, part: Any) -> Iterator[Finding]:
+def _on_itself(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
     """A tie that joins a body to itself, or the ground to the ground."""
     name = path[1]
     bodies = getattr(part, "bodies", None)
     if bodies and bodies[0] == bodies[1]:
         yield Finding((*path, "bodies", 1), f"'{name}' gears body '{bodies[0]}' with itself", "name two bodies")
+    points = getattr(part, "points", None) or ()
     point = getattr(part, "point", None)
-    if point is not None and "." not in point and part.kind not in ("slider", "force"):
+    if any(name not in catalog.point_names() for name in (point, *points) if name is not None):
+        return
+    if point is not None and "." not in point and part.kind != "slider":
         yield Finding((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
     elif point is not None and part.kind == "slider" and _owner(point) == part.on:
         yield Finding((*path, "point"), f"the point '{point}' of '{name}' is on the body along which it should slide")
-    points = getattr(part, "points", None) or ()
     owners = {_owner(point) for point in points}
     if len(owners) == 1 and (len(points) > 1 or "" in owners):
         whose = f"body '{owner}'" if (owner := owners.pop()) else "the ground"

@@ -22,7 +22,7 @@ class Clamp(Constraint):
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
-        first, *_ = named = [scene.place(p) for p in self.points or (self.point,)]
+        first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
         rows: list[TieRow] = []
         for other in others_of(scene, named):
             rows += held_together(scene, first, other)

@@ -5,9 +5,8 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left, same_turn
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, PointName
 from eomgen.symbolic.spatial import dot
 
@@ -23,7 +22,7 @@ class Guide(Constraint):
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_start) = 0, n the left normal of `along`; theta - theta_start = 0."""
-        n = left(unit(scene.vector(self.along)))
+        n = left(direction_of(scene, scene.vector(self.along)))
         place = scene.place(self.point)
         height = dot(n, scene.position(place))
         normal = TieRow((PointForce(place, n),), height - scene.start(height), component="n")

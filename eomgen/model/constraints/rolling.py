@@ -7,10 +7,9 @@ from typing import Annotated, ClassVar
 from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite, right
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import Place, Scalar, Scene, Vector
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import (
     BodyName,
     Direction,
@@ -130,7 +129,7 @@ def _anchor(scene: Scene, on: str | None, at: tuple | str) -> Place:
 
 def _on_line(scene: Scene, on: str | None, track: Track, center: Vector, R: Scalar) -> Contact:
     """gap = n . (c - at) - R; the contact is at c - R n."""
-    n = unit(scene.vector(track.normal))
+    n = direction_of(scene, scene.vector(track.normal))
     n = n if on is None else apply(scene.orientation(on), n)
     anchor = _anchor(scene, on, track.at)
     out = minus(center, scene.position(anchor))

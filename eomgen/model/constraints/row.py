@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.model.forces.load import Couple, PointForce, Scalar, Scene, Vector
+from eomgen.model.joints.base import unit
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,16 @@ class TieRow:
     component: str = ""
     material: bool = False
     tangent: tuple[PointForce | Couple, ...] = ()
+
+
+def direction_of(scene: Scene, v: Vector) -> Vector:
+    """v over its length; along an axis it is that axis, in the sense that v has with the model's values."""
+    along = [k for k, x in enumerate(v) if not (type(x) is int and x == 0)]
+    sense = scene.worth(v[along[0]]) if len(along) == 1 else None
+    if not sense:
+        return unit(v)
+    x, y, z = ((1 if sense > 0 else -1) if k in along else 0 for k in range(3))
+    return (x, y, z)
 
 
 def axes_of(scene: Scene) -> tuple[Vector, ...]:

@@ -5,9 +5,8 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, PointName
 
 
@@ -23,5 +22,5 @@ class Skate(Constraint):
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . v = 0, n the left normal of `along`; a row of velocities alone, which no gap has for a rate."""
         place = scene.place(self.point)
-        n = left(unit(scene.vector(self.along)))
+        n = left(direction_of(scene, scene.vector(self.along)))
         return (TieRow((PointForce(place, n, axes=place[0]),), None, component="n"),)

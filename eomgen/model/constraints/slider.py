@@ -6,10 +6,9 @@ from typing import ClassVar
 from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, left, opposite
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import BodyName, Flag, PointName
 from eomgen.symbolic.spatial import apply, dot, minus
 
@@ -40,7 +39,7 @@ class Slider(Constraint):
         (_, A), (_, B) = line = scene.line(self.on)
         if scene.moves((*A, *B)):
             raise ModelError(f"the line of body '{self.on}' moves in the body", scene.where, "choose points that stay")
-        along = apply(scene.orientation(self.on), unit(minus(B, A)))
+        along = apply(scene.orientation(self.on), direction_of(scene, minus(B, A)))
         place = scene.place(self.point)
         arm = minus(scene.position(place), scene.position(line[0]))
         n, touch = left(along), (Touch(place), Touch(line[0], arm))

@@ -5,12 +5,11 @@ from itertools import pairwise
 from typing import Annotated, ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, common_tangent, rope_row, side_row, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.forces.load import Scene, Vector
-from eomgen.model.joints.base import unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression
@@ -96,4 +95,4 @@ def _stop(scene: Scene, item: str | Wrap) -> Stop:
 
 
 def _direction(scene: Scene, way: str | tuple[Expression, ...]) -> Vector:
-    return DIRECTIONS[way] if isinstance(way, str) else unit(scene.vector(way))
+    return DIRECTIONS[way] if isinstance(way, str) else direction_of(scene, scene.vector(way))

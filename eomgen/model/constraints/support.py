@@ -4,11 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
-from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.spatial import dot, minus
 
 
@@ -33,12 +32,10 @@ class Support(Constraint):
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y."""
-        n = scene.vector(self.normal)
-        size = sqrt(dot(n, n))
-        n = tuple(over(x, size) for x in n)
+        n = direction_of(scene, scene.vector(self.normal))
         place = scene.place(self.point)
         position = scene.position(place)
         origin = tuple(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
         tangent = (PointForce(place, (n[1], -n[0], 0)),) if scene.plane else ()
-        gap = dot(n, minus(position, origin))  # type: ignore[arg-type]
-        return (TieRow((PointForce(place, n),), gap, component="n", tangent=tangent),)  # type: ignore[arg-type]
+        gap = dot(n, minus(position, origin))
+        return (TieRow((PointForce(place, n),), gap, component="n", tangent=tangent),)

@@ -1,0 +1,166 @@
+"""Equations between coordinates -> the coordinates in closed form, branches chosen by numbers found before.
+
+Three ways, again and again: an equation in one coordinate is solved; one that is linear in a coordinate, or that can be
+solved for it, gives it as a function of others; and of two equations of a loop,
+
+    a1 cos q + b1 sin q + r1 = 0,   a2 cos q + b2 sin q + r2 = 0,
+
+q is eliminated by cos^2 + sin^2 = 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.ties import holds_identically
+from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.solving import has_period, roots
+
+AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
+LIMIT = 20_000  # products of terms for making one equation readable
+
+
+@dataclass(frozen=True)
+class Located:
+    """A state in numbers, by which exact values are recognised, never made.
+
+    Args:
+        numbers: of t, q, u and the parameters.
+        positive: symbols that are positive there.
+    """
+
+    numbers: Mapping[Node, float]
+    positive: frozenset[Node]
+
+    def value(self, x: Scalar) -> float:
+        """The scalar's value there; nan where it has none."""
+        if any(symbol not in self.numbers for symbol in symbols_of((x,))):
+            return math.nan
+        return float(evaluate((x,), self.numbers, FLOAT)[0])
+
+    def agrees(self, x: Scalar, node: Node) -> bool:
+        """Whether x is worth what the node is worth there."""
+        number = self.numbers.get(node, math.nan)
+        return abs(self.value(x) - number) <= AGREES * (1 + abs(number))
+
+    def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
+        """The candidate that the node is worth there, whole turns added where the equation does not see them."""
+        turn = 2 * node.graph.pi
+        for candidate in candidates:
+            away = (self.numbers.get(node, math.nan) - self.value(candidate)) / math.tau
+            turns = round(away) if math.isfinite(away) and has_period(equation, node, turn) else 0
+            shifted = candidate + turns * turn if turns else candidate
+            if self.agrees(shifted, node):
+                return shifted
+        return None
+
+    def root(self, equation: Scalar, node: Node) -> Scalar | None:
+        """The root of the equation that the node is worth there."""
+        return self.chosen(roots(equation, node, self.positive), node, equation)
+
+
+def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
+    """The unknowns that the equations determine in closed form, functions of the parameters alone.
+
+    Args:
+        equations: what vanishes.
+        located: a state near which the unknowns lie, in numbers.
+    """
+    left = [simplest(x, LIMIT, located.positive) for x in equations]
+    relations: dict[Node, Scalar] = {}
+    found: dict[Node, Scalar] = {}
+    while left:
+        left = [x for x in substituted(left, {**relations, **found}) if not is_zero(x) and not holds_identically(x)]
+        step = _single(left, unknowns, located) or _relation(left, unknowns, located)
+        if step is not None:
+            node, value, used = step
+            target = relations if depends_on(value, unknowns) else found
+            relations = dict(zip(relations, substituted(tuple(relations.values()), {node: value}), strict=True))
+            target[node] = value
+            del left[used]
+        elif not _joined(left, unknowns, located):
+            break
+    found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
+    return {
+        node: simplest(value, LIMIT, located.positive) for node, value in found.items() if not depends_on(value, unknowns)
+    }
+
+
+Step = tuple[Node, Scalar, int]
+
+
+def _held(x: Scalar, unknowns: Collection[Node]) -> list[Node]:
+    return [q for q in unknowns if depends_on(x, (q,))]
+
+
+def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
+    """An equation in one unknown, solved."""
+    for i, equation in enumerate(left):
+        held = _held(equation, unknowns)
+        if len(held) == 1 and (root := located.root(equation, held[0])) is not None:
+            return held[0], root, i
+    return None
+
+
+def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
+    """An equation solved for one of its unknowns; the one in which it has a single root first."""
+    several: Step | None = None
+    for i, equation in enumerate(left):
+        for q in _held(equation, unknowns):
+            candidates = roots(equation, q, located.positive)
+            root = located.chosen(candidates, q, equation)
+            if root is not None and len(candidates) == 1:
+                return q, root, i
+            if root is not None and several is None:
+                several = q, root, i
+    pairs = _pair_of_loop(left, unknowns)
+    return None if pairs is not None else several
+
+
+def _joined(left: list[Scalar], unknowns: Collection[Node], located: Located) -> bool:
+    """In place of one equation of a loop, the one without the angle that both hold; False where there is no loop."""
+    found = _pair_of_loop(left, unknowns)
+    if found is None:
+        return False
+    _, j, (a1, b1, r1), (a2, b2, r2) = found
+    below = a1 * b2 - a2 * b1
+    cosine, sine = r2 * b1 - r1 * b2, r1 * a2 - r2 * a1
+    left[j] = simplest(cosine * cosine + sine * sine - below * below, LIMIT, located.positive)
+    return True
+
+
+Waves = tuple[Scalar, Scalar, Scalar]
+
+
+def _pair_of_loop(left: Sequence[Scalar], unknowns: Collection[Node]) -> tuple[int, int, Waves, Waves] | None:
+    """Two equations a cos q + b sin q + r = 0 of one unknown q that determine both waves, and other unknowns in them."""
+    for i, j in combinations(range(len(left)), 2):
+        for q in _held(left[i], unknowns):
+            if len(_held(left[i], unknowns)) < 2 or q not in _held(left[j], unknowns):
+                continue
+            first, second = _waves(left[i], q), _waves(left[j], q)
+            if first and second and not holds_identically(first[0] * second[1] - second[0] * first[1]):
+                return i, j, first, second
+    return None
+
+
+def _waves(equation: Scalar, q: Node) -> Waves | None:
+    """(a, b, r) of an equation a cos q + b sin q + r = 0, from its values at 0, pi/2 and pi; None for any other."""
+    pi = q.graph.pi
+    try:
+        at = [substituted((equation,), {q: Fraction(k, 2) * pi if k else 0})[0] for k in range(3)]
+    except DerivationError:
+        return None
+    half = Fraction(1, 2)
+    a, r = half * (at[0] - at[2]), half * (at[0] + at[2])
+    b = at[1] - r
+    return (a, b, r) if holds_identically(equation - a * cos(q) - b * sin(q) - r) else None

@@ -1,0 +1,129 @@
+"""Balance -> the kineto-static steps: each body cut free, with its reactions, applied forces and inertia.
+
+    F_in = -m a_C,  M_in = -d(I omega)/dt;   sum F + F_in = 0,  sum M_C + M_in = 0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.mechanics.balance import BodyEquation
+from eomgen.report.bounded import FULL
+from eomgen.report.motion_steps import Pair
+from eomgen.report.reaction_names import Lettered
+from eomgen.report.reading import Reader
+from eomgen.report.setting_steps import count
+from eomgen.report.statements import Formula, Law, Name, Omitted, Prose, Statement, Step
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.layout import terms
+from eomgen.symbolic.normal_form import cancelled
+from eomgen.symbolic.text import text_size
+
+BOOK = 12_000  # characters of the equations of all bodies together
+WORK = 2000  # products of terms for dividing a coefficient by the factor of friction
+
+INERTIA = Law("F_in = -m*a, M_in = -d/dt(I*omega)",
+              r"F^{\mathrm{in}} = -m a, \quad M^{\mathrm{in}} = -\frac{d}{dt} \left(I \omega\right)")  # fmt: skip
+DALEMBERT = Law("sum F + F_in = 0, sum M + M_in = 0",
+                r"\sum F + F^{\mathrm{in}} = 0, \quad \sum M + M^{\mathrm{in}} = 0")  # fmt: skip
+LETTERS = ("Fin_x", "Fin_y", "Fin_z", "Min_x", "Min_y", "Min_z")
+
+
+def reactions_table_step(letters: Lettered) -> Step:
+    """The unknown reactions by name, against the number of equations."""
+    balance = letters.balance
+    bodies, n = len(balance.system.motion.links), len(balance.components)
+    words = (
+        f"{count(bodies, 'body', 'bodies')} cut free give{'s' if bodies == 1 else ''} "
+        f"{count(len(balance.equations), 'equation')} for {count(n, 'reaction')} and the motion."
+    )
+    if not n:
+        return Step("unknowns", "Unknown reactions", (Prose(("Nothing reacts: no body is held by joints or ties.",)),))
+    return Step("unknowns", "Unknown reactions", (Prose((words,)), letters.table()))
+
+
+def body_steps(reader: Reader, letters: Lettered) -> tuple[Step, ...]:
+    """Of each body its inertia force and couple, and its equations; as many bodies as a reader can take."""
+    by_body: dict[str, list[BodyEquation]] = {}
+    for equation in letters.balance.equations:
+        by_body.setdefault(equation.body, []).append(equation)
+    plane = letters.balance.system.scope.model.space == "plane"
+    steps: list[Step] = []
+    room = BOOK
+    for number, (body, equations) in enumerate(by_body.items()):
+        if room <= 0 and not reader.full:
+            steps.append(_others(len(by_body) - number))
+            break
+        step, length = _body(reader, letters, body, equations, plane=plane)
+        room -= length
+        steps.append(step)
+    return tuple(steps)
+
+
+def _others(number: int) -> Step:
+    words = f"{count(number, 'body', 'bodies')} more, each likewise: too long to print here; "
+    return Step("bodies", "The other bodies", (Prose((words, FULL, " prints them.")),))
+
+
+def _body(
+    reader: Reader, letters: Lettered, body: str, equations: Sequence[BodyEquation], *, plane: bool
+) -> tuple[Step, int]:
+    """One body cut free, and how long that is in print."""
+    inertia: list[Pair] = [(_inertia_name(e, plane), -e.inertia) for e in equations if not is_zero(e.inertia)]
+    statements: list[Statement] = []
+    length = 0
+    if inertia:
+        where = "" if plane else ", in the axes of the body"
+        statements.append(Prose(("Inertia force and couple at the mass centre, ", INERTIA, f"{where}:")))
+        for name, value in inertia:
+            shown = reader.shown(value)
+            statements.append(Formula((name, shown)))
+            length += 0 if isinstance(shown, Omitted) else text_size(shown)
+    words = "" if inertia else "No inertia force and no inertia couple. "
+    words += "Everything on it is in balance, moments about the mass centre, "
+    statements.append(Prose((words, DALEMBERT, ":")))
+    for equation in equations:
+        total = _balanced(reader, letters, equation)
+        statements.append(Formula((total, 0)))
+        length += 0 if isinstance(total, Omitted) else text_size(total)
+    return Step(f"body_{body}", f"Body {body}", tuple(statements)), length
+
+
+def _inertia_name(equation: BodyEquation, plane: bool) -> Name:
+    letter = LETTERS[equation.direction]
+    return Name("Min" if plane and letter == "Min_z" else letter, equation.body)
+
+
+def _balanced(reader: Reader, letters: Lettered, equation: BodyEquation) -> Scalar | Omitted:
+    """sum of coefficients * reactions + applied - inertia, each readable; or how large it is."""
+    parts: list[tuple[Scalar | Omitted, Scalar]] = [(reader.shown(c), s) for s, c in _terms(letters, equation)]
+    parts += [(reader.shown(given), 1) for given in (equation.applied, -equation.inertia)]
+    long = sum(shown.operations for shown, _ in parts if isinstance(shown, Omitted))
+    if long:
+        return Omitted(long)
+    total: Scalar = 0
+    for shown, symbol in parts:
+        assert not isinstance(shown, Omitted)
+        for c, term in [(shown, symbol)] if type(symbol) is Node else terms(shown):
+            total = total + c * (1 if term is None else term)  # one by one: so they stand in this order
+    return total
+
+
+def _terms(letters: Lettered, equation: BodyEquation) -> list[tuple[Node, Scalar]]:
+    """(symbol, coefficient) of every reaction in one equation, friction by a symbol of its own."""
+    balance = letters.balance
+    link, d = balance.system.motion.index[equation.body], equation.direction
+    frictions = {rub.component: (rub, symbol) for rub, symbol in zip(letters.rubs, letters.frictions, strict=True)}
+    found: list[tuple[Node, Scalar]] = []
+    for j in equation.coefficients:
+        component = balance.components[j]
+        own = sum((e.six[d] for e in component.effects if e.link == link), start=0)
+        if not is_zero(own):
+            found.append((letters.symbols[j], own))
+        if j in frictions:
+            rub, symbol = frictions[j]
+            rubbing = sum((e.six[d] for e in component.rubbing if e.link == link), start=0)
+            if not is_zero(rubbing):
+                found.append((symbol, cancelled(over(rubbing, rub.factor), WORK)))
+    return found

@@ -1,0 +1,110 @@
+"""Contacts that rub -> their step, and their friction in the equations of motion.
+
+    F = -mu |N| sign(v),   M a + c = Q + sum F_r dv_r/du,   N from the balance of the bodies
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.system import System
+from eomgen.report.reaction_names import Lettered, lettered
+from eomgen.report.reading import TRIED, WORK, Reader, length_in_print, readable_value
+from eomgen.report.statements import Formula, Prose, Step
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.functions import function
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.text import text_size
+
+LONGEST = 240  # characters of an acceleration in print
+HALF = Fraction(1, 2)
+WORDS = (
+    "Friction acts against the sliding and grows with the normal reaction of its own contact, which the balance of the "
+    "bodies gives together with the accelerations:"
+)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What rubbing contacts add to a derivation.
+
+    Args:
+        forces: generalized force of all friction, written with the normal reactions' symbols, nu.
+        definitions: (symbol of a normal reaction, what it is, accelerations in it).
+        step: that prints them.
+        solved: the step of the accelerations, () where they are long.
+    """
+
+    forces: Row
+    definitions: tuple[tuple[Node, Scalar], ...]
+    step: Step
+    solved: tuple[Step, ...]
+
+
+def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
+    """The friction of every contact by its normal reaction, and that by the bodies' balance."""
+    letters = lettered(reactions_of(system, short=True), system.scope.names)
+    senses = _senses(letters, system)
+    accelerations = dict(zip(assembly.symbols.a, assembly.accelerations or (), strict=False))
+    forces: list[Scalar] = [0] * len(system.symbols.u)
+    definitions = [(symbol, function("sign", readable_value(reader, x.args[0]))) for x, symbol in senses.items()]
+    statements = [*map(Formula, definitions)]
+    for rub, friction in zip(letters.rubs, letters.frictions, strict=True):
+        normal = letters.symbols[rub.component]
+        value = _shorter(reader, letters.reactions.value(rub.component), accelerations, senses)
+        factor, *row = substituted((rub.factor, *rub.force), senses)
+        definitions.append((normal, value))
+        statements += [Formula((normal, value)), Formula((friction, reader.shown(factor) * normal))]
+        forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
+    step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
+    return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
+
+
+def _shorter(reader: Reader, value: Scalar, a: Mapping[Node, Scalar], senses: Mapping[Node, Node]) -> Scalar:
+    """A normal reaction with its accelerations, or with those of the equations of motion where that is shorter."""
+    with_a = readable_value(reader, substituted((value,), senses)[0])
+    whole = _sliding(substituted((value,), a)[0])
+    if whole is None:
+        return with_a
+    whole = readable_value(reader, substituted((whole,), senses)[0])
+    return whole if length_in_print(whole) <= length_in_print(with_a) else with_a
+
+
+def _sliding(x: Scalar) -> Scalar | None:
+    """x while the one contact in it slides, sign^2 = 1; None where there are several, or x is long."""
+    signs = [node for node in order((x,)) if node.op == "sign"]
+    if text_size(x) > TRIED or len(signs) > 1:
+        return None
+    for sign in signs:
+        up, down = (simplest(substituted((x,), {sign: one})[0], WORK) for one in (1, -1))
+        x = simplest(HALF * (up + down) + HALF * sign * (up - down), WORK)
+    return x
+
+
+def _solved(reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+    """The accelerations while one contact slides, where they are short."""
+    found = [_sliding(x) for x in assembly.accelerations or ()]
+    shown = [None if x is None else readable_value(reader, x) for x in found]
+    if not shown or any(x is None or length_in_print(x) > LONGEST for x in shown):
+        return ()
+    formulas = tuple(Formula((a, x)) for a, x in zip(assembly.symbols.a, shown, strict=True) if x is not None)
+    return (Step("solved", "Accelerations", (Prose(("While the contact slides:",)), *formulas)),)
+
+
+def _senses(letters: Lettered, system: System) -> dict[Node, Node]:
+    """A symbol for each sign of a sliding velocity, where it is more than the sign of one rate."""
+    found: dict[Node, Node] = {}
+    for rub in letters.rubs:
+        for node in order((rub.factor,)):
+            if node.op == "sign" and node not in found and node.args[0] not in system.symbols.u:
+                name = f"s_{rub.name}"
+                while name in system.scope.names or name in letters.names:
+                    name += "_r"
+                found[node] = system.scope.graph.symbol(name)
+    return found

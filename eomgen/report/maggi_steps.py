@@ -1,0 +1,75 @@
+"""System with dependent coordinates -> Maggi's equations: Lagrange's of all coordinates, put together along the ties.
+
+    sum_i N_ik (d/dt dT/dq_i' - dT/dq_i - Q_i) = (J^T lam)_k
+
+They need no T in which the dependent rates were replaced, and hold where ties restrict velocities only.
+Source: Neimark & Fufaev, Dynamics of Nonholonomic Systems (1972), chapter III.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.system import System
+from eomgen.report.energy_steps import Momenta
+from eomgen.report.equation_steps import Result, Sides, closing, multiplier_forces, printed, readable_equations
+from eomgen.report.reading import Reader
+from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+
+MAGGI = Law(
+    "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i) = sum_i N_ik*Q_i",
+    r"\sum_{i} N_{ik} \left(\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{i}}"
+    r" - \frac{\partial T}{\partial q_{i}}\right) = \sum_{i} N_{ik} Q_{i}",
+)
+WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}")
+
+
+def maggi_equations(
+    system: System, free: System, reader: Reader, assembly: Assembly, momenta: Momenta, forces: Row
+) -> Result | None:
+    """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
+
+    Args:
+        momenta, forces: of the free system, one entry a coordinate.
+    """
+    N = jacobian(free_rates(system, free), system.scope.symbols.u)
+    inertia = [rate - held for rate, held in zip(momenta.rates, momenta.held, strict=True)]
+    columns = list(zip(*N, strict=True))
+    ties = multiplier_forces(assembly)
+    sides = [
+        Sides(_dot(column, inertia), _dot(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
+    ]
+    equations = readable_equations(reader, assembly, sides)
+    followers = _followers(system, free, N)
+    shown = [(symbol, reader.shown(x)) for symbol, x in followers]
+    if equations is None or any(isinstance(x, Omitted) for _, x in shown):
+        return None
+    law = WITH_TIES if assembly.J else MAGGI
+    words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
+    statements = (
+        Prose((words, law, ":")), *printed(system, equations), *closing(reader, assembly),
+        Prose(("The dependent coordinates follow, their rates as above:",)), *map(Formula, shown[len(shown) // 2 :]),
+    )  # fmt: skip
+    definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
+    return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
+
+
+def _followers(system: System, free: System, N: Sequence[Row]) -> list[tuple[Node, Scalar]]:
+    """u_d = A u + b, then a_d = A a + A' u + b', in the rates of all coordinates, of each dependent one."""
+    rates = dict(zip(free.symbols.u, free_rates(system, free), strict=True))
+    dependent = [k for k, u in enumerate(free.symbols.u) if u not in system.symbols.u]
+    found = [(free.symbols.u[k], rates[free.symbols.u[k]]) for k in dependent]
+    for k in dependent:
+        bias = dict(zip(system.symbols.q, system.scope.nu, strict=True))
+        own = next(x for q, x in bias.items() if f"{q.name}'" == free.symbols.u[k].name)
+        *slopes, drift = free.scope.time_derivative((*N[k], own))
+        found.append((free.symbols.a[k], _dot(N[k], system.symbols.a) + _dot(slopes, system.symbols.u) + drift))
+    return found
+
+
+def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)

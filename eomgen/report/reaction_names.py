@@ -1,0 +1,175 @@
+"""Balance -> a symbol and its meaning for every reaction: B_x, N_wall, F_floor, T_rope, M_E."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.mechanics.balance import Balance, Component
+from eomgen.mechanics.friction import Rub, rubbing_contacts
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.ties import Row
+from eomgen.model.forces.load import PointForce
+from eomgen.report.statements import Meaning, Table
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.spatial import Vector
+
+LETTERS = {"n": "N", "t": "F", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
+"""label -> the letter of a symbol whose owner stands behind it; forces along axes have their owner in front."""
+
+AXES = ("x", "y", "z")
+HEAD = ("reaction", "meaning", "unit", "")
+
+
+@dataclass(frozen=True)
+class Lettered:
+    """The reactions of a system with a symbol for each.
+
+    Args:
+        reactions: solved.
+        symbols: one for each component, in order.
+        rubs: the contacts that rub.
+        frictions: a symbol for the friction of each.
+    """
+
+    reactions: Reactions
+    symbols: tuple[Node, ...]
+    rubs: tuple[Rub, ...]
+    frictions: tuple[Node, ...]
+
+    @property
+    def balance(self) -> Balance:
+        return self.reactions.balance
+
+    @property
+    def names(self) -> frozenset[str]:
+        return frozenset(symbol.name for symbol in (*self.symbols, *self.frictions))
+
+    def table(self, shown: Container[object] | None = None) -> Table:
+        """What the symbols stand for, all or those that are shown, in the order of the components."""
+        rows = []
+        for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
+            if shown is None or symbol in shown:
+                rows.append(Meaning(symbol, meaning(self.balance, component), _unit(component)))
+            for rub, friction in zip(self.rubs, self.frictions, strict=True):
+                if rub.component == j and (shown is None or friction in shown):
+                    rows.append(Meaning(friction, f"friction {_on(self.balance, component)}, along the contact", "N"))
+        return Table(HEAD, tuple(rows))
+
+    def of_row(self, row: Row) -> Scalar | None:
+        """The multiplier of a row as a reaction, sign included; None where no reaction belongs to it."""
+        for component, symbol in zip(self.balance.components, self.symbols, strict=True):
+            if component.kind == "tie" and (component.owner, component.number) == (row.tie, row.number):
+                return -symbol if _is_turned(row, component) else symbol
+        return None
+
+
+def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
+    """A symbol for every reaction, none of them a name of the model."""
+    graph = reactions.balance.system.scope.graph
+    rubs = tuple(rubbing_contacts(reactions.balance.system, reactions))
+    used: set[str] = set()
+
+    def symbol(name: str) -> Node:
+        while name in taken or name in used:
+            name += "_r"
+        used.add(name)
+        return graph.symbol(name)
+
+    symbols = tuple(symbol(_letters(reactions.balance, component)) for component in reactions.components)
+    return Lettered(reactions, symbols, rubs, tuple(symbol(f"F_{rub.name}") for rub in rubs))
+
+
+def _letters(balance: Balance, component: Component) -> str:
+    """B_x, N_wall, T_rope_2, M_E: what the symbol is called."""
+    if component.label in AXES:
+        return "_".join(filter(None, (component.owner, component.side, component.label)))
+    kind, _, number = component.label.partition(" ")
+    return "_".join(filter(None, (LETTERS[kind], component.owner, number or _strand(balance, component))))
+
+
+def _strand(balance: Balance, component: Component) -> str:
+    """The number of the first strand that has this tension, of a string that has several; else ""."""
+    tie: Any = balance.system.scope.model.constraints.get(component.owner)
+    if component.label != "tension" or not hasattr(tie, "strand_rows"):
+        return ""
+    rows = tie.strand_rows()
+    return str(rows.index(component.number) + 1) if max(rows) > 1 else ""
+
+
+def meaning(balance: Balance, component: Component) -> str:
+    """What a component is, on which body, and in which sense, in words."""
+    kind = component.label.partition(" ")[0]
+    on = _on(balance, component)
+    if kind == "tension":
+        strand = _strand(balance, component)
+        return f"tension of {component.owner}" + (f", strand {strand}" if strand else "")
+    if kind == "drive":
+        return f"what drives {component.side or component.owner}, {on}"
+    if kind in AXES:
+        return f"force {on}, along {_axis(balance, component, kind)}"
+    if kind == "couple":
+        return f"couple {on}, {_sense(balance, component)}"
+    if kind == "t":
+        return f"friction {on}, along the contact, without sliding"
+    if kind == "n":
+        return f"normal force {on}{_direction(balance, component)}"
+    return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
+
+
+def _on(balance: Balance, component: Component) -> str:
+    """on bar in its joint, from the ground; on AB by B, from CB."""
+    links = balance.system.motion.links
+    first, *others = dict.fromkeys(effect.link for effect in component.effects)
+    body, other = (links[first].name, links[others[0]].name if others else "the ground")
+    if component.kind != "tie":
+        return f"on {body} in its joint, from {other}"
+    if component.side:
+        return f"on {component.side} in the hinge {component.owner}, from the others"
+    return f"on {body} at {component.owner}, from {other}"
+
+
+def _axis(balance: Balance, component: Component, label: str) -> str:
+    """Ground axes in the plane and of ties, else those of the body whose joint it is."""
+    own = balance.system.scope.model.space != "plane" and component.kind == "joint"
+    return f"{label} of its own axes" if own else label
+
+
+def _sense(balance: Balance, component: Component) -> str:
+    if balance.system.scope.model.space == "plane":
+        return "counter-clockwise"
+    return f"about {_named(component.effects[0].couple)} of its own axes"
+
+
+def _direction(balance: Balance, component: Component) -> str:
+    """Along the tie's own normal; of a joint across the way on which it slides."""
+    if component.kind == "tie":
+        return ", along the normal"
+    if balance.system.scope.model.space == "plane":
+        return ", to the left of its way"
+    return f", along {_named(component.effects[0].force)} of its own axes"
+
+
+def _named(direction: Vector) -> str:
+    """An axis by its letter, another direction by its components where these are numbers."""
+    for axis, x in zip(AXES, direction, strict=True):
+        others = sum(not is_zero(y) for y in direction) - (not is_zero(x))
+        if type(x) is int and x in (1, -1) and not others:
+            return axis if x > 0 else f"-{axis}"
+    if all(type(x) is not Node for x in direction):
+        return f"({', '.join(str(x) for x in direction)})"
+    return "a direction across its freedom"
+
+
+def _unit(component: Component) -> str:
+    forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
+    return "N" if forces else "N*m"
+
+
+def _is_turned(row: Row, component: Component) -> bool:
+    """Whether the component is minus the multiplier: the force on another body than the row's first one."""
+    first = row.pushes[0]
+    if row.component not in AXES or not isinstance(first, PointForce):
+        return False
+    return bool(component.side) or first.place[0] is None

@@ -1,0 +1,142 @@
+"""Along the configurations of one freedom, without time: where a motion goes that rest or a dead centre hides from time.
+
+    dq/ds = d(q),   u_s^2 = y(q) >= 0 where the motion may be
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.simulation.arrival import Arrival, NeverReached, first_arrival
+
+STEP = 1e-3  # from a singular start, of the leading coordinate
+AROUND = 12.0  # steps: how far other coordinates may move in this one
+GUESSES = 60
+CLOSED = 1e-12  # of the gaps
+SINGULAR = 1e-7  # of the slopes of the gaps, against those a little aside
+ASIDE = 0.1
+
+Vector = Callable[[np.ndarray], np.ndarray]
+Number = Callable[[np.ndarray], float]
+
+
+@dataclass(frozen=True)
+class Configurations:
+    """The configurations that one freedom leaves, as numbers.
+
+    Args:
+        direction: d(q) = dq/ds.
+        gaps: what vanishes.
+        leading: index of the coordinate whose rate is u_s.
+        sought: indices of those that the gaps fix.
+    """
+
+    direction: Vector
+    gaps: Vector
+    leading: int
+    sought: tuple[int, ...]
+
+    def first(
+        self, g: Callable[[np.ndarray, int], float], y: Number, q: np.ndarray, senses: Sequence[int], near: np.ndarray
+    ) -> tuple[Arrival, int]:
+        """(the nearest configuration with g(q, sense) = 0, the sense of motion).
+
+        Args:
+            g: the condition, which may hold speeds, and so the sense.
+            y: u_s^2; the motion does not go where it is negative.
+            q: the start.
+            senses: in which the motion may leave it.
+            near: guesses of the coordinates, which choose the branch where several leave the start.
+        Raises:
+            NeverReached: in no sense.
+        """
+        found: list[tuple[float, Arrival, int]] = []
+        reasons: list[NeverReached] = []
+        for sense in senses:
+            try:
+                within = min((distance for distance, *_ in found), default=np.inf)
+                arrival = self._one_way(lambda q, sense=sense: g(q, sense), y, q, sense, near, within)
+                found.append((abs(arrival.s), arrival, sense))
+            except NeverReached as reason:
+                reasons.append(reason)
+        if not found:
+            raise reasons[0]
+        _, arrival, sense = min(found, key=lambda each: each[0])
+        return arrival, sense
+
+    def _one_way(
+        self, g: Number, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float
+    ) -> Arrival:
+        regular = self._regular(q)
+        s = 0.0
+        if not regular:
+            s = sense * STEP
+            q = self._beside(q, s, near)
+        if y(q + (0 if not regular else 1e-4 * sense * self.direction(q))) < 0:
+            raise NeverReached("the motion does not go this way from the start")
+        return first_arrival(
+            lambda s, q: self.direction(q), lambda s, q: g(q), s, q,
+            sense=sense, valid=lambda s, q: y(q), within=within,
+        )  # fmt: skip
+
+    def _regular(self, q: np.ndarray) -> bool:
+        """Whether the gaps fix the sought coordinates' rates: no branch point, as its rounded place may seem finite."""
+        with np.errstate(all="ignore"):
+            if not np.all(np.isfinite(self.direction(q))):
+                return False
+        if not self.sought:
+            return True
+        aside = q.copy()
+        aside[list(self.sought)] += ASIDE
+        usual = np.linalg.norm(self._slopes(aside))
+        return bool(np.min(np.linalg.svd(self._slopes(q), compute_uv=False), initial=usual) > SINGULAR * usual)
+
+    def _slopes(self, q: np.ndarray) -> np.ndarray:
+        """d gaps / d sought coordinates, by central differences."""
+        columns = []
+        for k in self.sought:
+            h = np.zeros(len(q))
+            h[k] = 1e-5 * (1 + abs(q[k]))
+            columns.append((self.gaps(q + h) - self.gaps(q - h)) / (2 * h[k]))
+        return np.array(columns).T
+
+    def _beside(self, start: np.ndarray, step: float, near: np.ndarray) -> np.ndarray:
+        """The configuration a small step from a singular start: on the branch that is nearest to the guesses.
+
+        Raises:
+            NeverReached: there is none.
+        """
+        rng = np.random.default_rng(1)
+        sought = list(self.sought)
+        found = []
+        for _ in range(GUESSES):
+            q = start.copy()
+            q[self.leading] += step
+            q[sought] += abs(step) * rng.uniform(-AROUND / 2, AROUND / 2, len(sought))
+            closed = self._closed(q)
+            if closed is not None and np.max(np.abs(closed - start)) < AROUND * abs(step):
+                found.append(closed)
+        if not found:
+            raise NeverReached("no configuration leads away from the start")
+        return min(found, key=lambda q: (round(float(np.linalg.norm((q - near)[sought])), 9), *q))
+
+    def _closed(self, q: np.ndarray) -> np.ndarray | None:
+        """The nearest configuration with all gaps 0, moved by the sought coordinates."""
+        from scipy.optimize import least_squares
+
+        sought = list(self.sought)
+
+        def gaps(x: np.ndarray) -> np.ndarray:
+            moved = q.copy()
+            moved[sought] = x
+            return self.gaps(moved)
+
+        run = least_squares(gaps, q[sought], xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        if np.max(np.abs(run.fun), initial=0.0) > CLOSED:
+            return None
+        closed = q.copy()
+        closed[sought] = run.x
+        return closed

@@ -1,0 +1,180 @@
+"""Model, start -> Situation: where a motion begins, and how it goes on after each event.
+
+An event that closes a contact is an impact without rebound. Then the configuration is sought that agrees with the
+forces (`settling`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.contacts import Mode
+from eomgen.mechanics.start import start_state
+from eomgen.model.parts import Model
+from eomgen.model.table import Table
+from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces, paths_of
+from eomgen.simulation.events import Crossing
+from eomgen.simulation.impact import Loose
+from eomgen.simulation.settling import settled
+from eomgen.simulation.stage import GAP, RATE, Stage, Values
+from eomgen.simulation.stages import Stages
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Where the motion is, and how it goes on.
+
+    Args:
+        values: coordinates and rates by name.
+        configuration: of the contacts from here on.
+        impact: whether velocities jump here.
+        failure: why it cannot go on, or "".
+    """
+
+    t: float
+    values: Values
+    configuration: Configuration
+    impact: bool = False
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class Course:
+    """What stays the same through all phases."""
+
+    model: Model
+    stages: Stages
+
+    @property
+    def loose(self) -> Loose:
+        """The model without the contacts that can end."""
+        return self.stages.loose
+
+    def after(self, stage: Stage, crossing: Crossing, ended: frozenset[Configuration]) -> Situation:
+        """What follows the event that ended a phase."""
+        bound = stage.bounds[crossing.index]
+        pieces = dict(stage.configuration.pieces)
+        if bound.step:
+            pieces[bound.owner] += bound.step
+        values = stage.values(crossing.t, crossing.x)
+        if bound.row:
+            what = f"strand {bound.row} of the string '{bound.owner}' goes slack alone, and what follows is not derived"
+            return Situation(crossing.t, values, stage.configuration, failure=what)
+        return _decided(self, crossing.t, values, pieces, before=stage.configuration, ended=ended)
+
+
+def course_of(model: Model, p: np.ndarray, target: str | None = None) -> Course:
+    """The stages of a model, none of them made yet."""
+    return Course(model, Stages(model, p, target))
+
+
+def at_start(
+    course: Course, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
+) -> Situation:
+    """The state at the start; a contact that can end may be open there.
+
+    Raises:
+        DerivationError: the ties do not hold at the start.
+    """
+    pieces = {body: 0 for body in paths_of(course.model)}
+    values, away = _closed_or_open(course, t, pieces, parameters, start)
+    pieces = {body: _piece_at(course, body, t, values) for body in pieces}
+    return _decided(course, t, values, pieces, before=plain(course.model, pieces, away), ended=frozenset())
+
+
+def _closed_or_open(
+    course: Course, t: float, pieces: Mapping[str, int], parameters: Mapping[str, float] | None,
+    start: Mapping[str, float] | None,
+) -> tuple[dict[str, float], tuple[str, ...]]:  # fmt: skip
+    """(coordinates and rates at the start, the contacts open there): none, where the values allow it."""
+
+    def values(away: Sequence[str]) -> dict[str, float]:
+        stage = course.stages.of(plain(course.model, pieces, away))
+        return stage.values(t, stage.state(start_state(stage.system, parameters, start)))
+
+    try:
+        return values(()), ()
+    except DerivationError:
+        if not course.stages.ends:
+            raise
+    free = values(course.stages.ends)
+    away = tuple(name for name, (gap, rate) in course.loose.gaps(t, free).items() if _apart(gap, rate, free))
+    found = values(away)
+    _refuse_overlap(course, t, found)
+    return found, away
+
+
+def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
+    """Some contacts open, all others closed, sliding without a sense yet."""
+    contacts = contacts_of(on_pieces(model, pieces))
+    return Configuration(Table({c.name: Mode(closed=c.name not in away) for c in contacts}), Table(pieces))
+
+
+def _apart(gap: float, rate: float, values: Values) -> bool:
+    return gap > _length(values) or abs(rate) > _speed(values)
+
+
+def _length(values: Values) -> float:
+    return 1e2 * GAP * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+
+
+def _speed(values: Values) -> float:
+    return RATE * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
+
+
+def _refuse_overlap(course: Course, t: float, values: Values) -> None:
+    contacts = {contact.name: contact for contact in contacts_of(course.model)}
+    for name, (gap, _) in course.loose.gaps(t, values).items():
+        if gap < -_length(values):
+            what = "is too short" if contacts[name].pulls else "is passed through"
+            raise DerivationError(f"{contacts[name].words} {what} at the start, by {-gap:.3g} m", f"constraints.{name}",
+                                  "change the start values")  # fmt: skip
+
+
+def _piece_at(course: Course, body: str, t: float, values: Values) -> int:
+    """The piece on which a body is; between two of them the one into which it moves."""
+    stage = course.stages.of(plain(course.model, {b: 0 for b in paths_of(course.model)}, ()))
+    link, value = stage.system.motion.link(body), stage.system.scope.value
+    asked = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(course.model, body)[:-1]))
+    s, rate, *ends = stage.evaluated(np.array([t]), stage.state(values)[None, :], asked)[0]
+    close = _length(values)
+    return sum(s > end - close if rate > 0 else s > end + close for end in ends)
+
+
+def _decided(
+    course: Course, t: float, values: Values, pieces: Mapping[str, int], *, before: Configuration,
+    ended: frozenset[Configuration],
+) -> Situation:  # fmt: skip
+    """Velocities after an impact where there is one, and the configuration that then holds."""
+    values, apart, hit = _contact(course, t, values, before) if before.open else (values, frozenset(), False)
+    try:
+        found = settled(course.stages, t, values, pieces=pieces, apart=apart, ended=ended, before=before)
+    except DerivationError as error:  # a contact ends that nothing can leave
+        return Situation(t, values, before, hit, error.what)
+    if found is not None:
+        return Situation(t, values, found, hit)
+    standing = plain(course.model, pieces, tuple(apart))
+    return Situation(t, values, standing, hit, _jammed(standing))
+
+
+def _contact(
+    course: Course, t: float, values: Values, before: Configuration
+) -> tuple[Values, frozenset[str], bool]:
+    """(values after an impact of what closes, the contacts that are apart, whether velocities jumped)."""
+    gaps = course.loose.gaps(t, values)
+    touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= _length(values)]
+    hit = any(gaps[name][1] < -_speed(values) for name in touching if name in before.open)
+    if hit:
+        values = course.loose.after_impact(t, values, touching)
+        gaps = course.loose.gaps(t, values)
+    apart = (name for name, (_, rate) in gaps.items() if name not in touching or rate > _speed(values))
+    return values, frozenset(apart), hit
+
+
+def _jammed(standing: Configuration) -> str:
+    names = ", ".join(f"'{name}'" for name in standing.modes)
+    return f"no forces of the contacts {names} agree with their state (rigid bodies with so much friction jam)"

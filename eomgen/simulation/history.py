@@ -1,0 +1,98 @@
+"""Model, start, condition -> the phases that a motion passes until the condition holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.model.parts import Model
+from eomgen.simulation.course import Course, at_start, course_of
+from eomgen.simulation.joined import told
+from eomgen.simulation.phases import MET, Condition, Plan, passed
+from eomgen.simulation.stage import Stage, Values
+from eomgen.simulation.stepping import Stepping
+from eomgen.simulation.stretch import Stretch
+from eomgen.symbolic.graph import Scalar
+
+FINE = Stepping(rtol=1e-12, atol=1e-12)
+
+
+@dataclass(frozen=True)
+class Passage:
+    """One phase of a motion.
+
+    Args:
+        stage: its equations.
+        start, end: coordinates and rates by name, at its beginning and at its end.
+        t_0, t_1: its times [s].
+        kind: what ended it: "condition", "time", "failure", or as of Bound: "ends", "turns", "closes", "stops",
+            "slips", "piece".
+        owner: the contact, or the body on a path, whose bound ended it; "" where none did.
+        value: what became zero, over the symbols of the stage; None for "time", "failure", a slack without a formula.
+        message: in words.
+        after: of the last one, where the condition holds just as the phase ends: the stage and the values that follow.
+    """
+
+    stage: Stage
+    start: Values
+    end: Values
+    t_0: float
+    t_1: float
+    kind: str
+    owner: str
+    value: Scalar | None
+    message: str
+    after: tuple[Stage, Values] | None = None
+
+
+def history(
+    model: Model, p: np.ndarray, start: Mapping[str, float] | None = None, *, until: Condition | None, time: float,
+    parameters: Mapping[str, float] | None = None, how: Stepping = FINE,
+) -> tuple[Passage, ...]:  # fmt: skip
+    """The phases from the start to the first time after it at which the condition is 0, or to the end of the time.
+
+    Args:
+        p: the parameters' values; parameters: those of them that replace the model's.
+        start: start values and speeds that replace the model's.
+        until: of a stage, what becomes 0.
+    Raises:
+        DerivationError: the ties do not hold at the start; the reaction of a contact is indeterminate.
+    """
+    course = course_of(model, p, "numpy")
+    plan = Plan(time, how, np.array([]), until)
+    found = []
+    for stretch in passed(course, at_start(course, 0.0, parameters, start), plan):
+        met = until is not None and stretch.bound is not None and _met(stretch, until)
+        found.append(_passage(course, stretch, until, met))
+        if met:
+            break
+    return tuple(found)
+
+
+def _met(stretch: Stretch, until: Condition) -> bool:
+    """Whether the condition holds where a phase ends, and did not hold all along."""
+
+    def size(t: float, x: np.ndarray) -> float:
+        return abs(float(stretch.stage.evaluated(np.array([t]), x[None, :], (until(stretch.stage),))[0, 0]))
+
+    at_start = size(stretch.here.t, stretch.stage.state(stretch.here.values))
+    return size(stretch.run.end, stretch.run.last) <= MET * max(1.0, at_start) < at_start
+
+
+def _passage(course: Course, stretch: Stretch, until: Condition | None, met: bool) -> Passage:
+    here, stage, run, bound = stretch.here, stretch.stage, stretch.run, stretch.bound
+    after, follows = stretch.after, None
+    value: Scalar | None
+    if met or (bound is None and run.crossing is not None):
+        assert until is not None
+        follows = None if after is None else (course.stages.of(after.configuration), after.values)
+        kind, owner, value = "condition", "", until(stage)
+    elif bound is not None:
+        kind, owner, value = bound.kind, bound.owner, bound.value
+    else:
+        kind, owner, value = "time" if run.status == "finished" else "failure", "", None
+    values = stage.values(run.end, run.last)
+    return Passage(stage, here.values, values, here.t, run.end, kind, owner, value,
+                   told(course, stretch), follows)  # fmt: skip

@@ -1,0 +1,197 @@
+"""Reactions, RightHandSide -> the reactions along a motion: the bodies' equations solved at every state, with rank.
+
+    A(q) rho = b(q, u, a),   a of the right-hand side,   asked = C(q) rho + d(q, u)
+
+Where the columns of A are independent, A = Q R gives rho. Where they are not (a singular position), the null space of A
+says which of the reactions asked have a single value all the same; the others are nan there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.reactions import determinate
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.errors import DerivationError
+from eomgen.mechanics.dense import balanced
+from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reactions import Reactions
+from eomgen.simulation.trajectory import Trajectory
+from eomgen.symbolic.graph import Scalar
+
+SINGULAR = 1e-7  # of a column's distance from those before it, against its length
+TRACELESS = 1e-6  # of an asked reaction's part in the null space
+BALANCED = 1e-6  # of what the bodies' equations leave over, against their right side
+
+
+@dataclass(frozen=True)
+class ReactionColumns:
+    """The reactions of one system along its motion.
+
+    Args:
+        reactions: of the system.
+        rhs: its right-hand side.
+    """
+
+    reactions: Reactions
+    rhs: RightHandSide
+
+    @cached_property
+    def asked(self) -> tuple[NamedReaction, ...]:
+        """What the columns are, in their order."""
+        return named_reactions(self.reactions.balance)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        return tuple(named.name for named in self.asked)
+
+    @cached_property
+    def indeterminate(self) -> tuple[str, ...]:
+        """Names of those that have no single value at any state."""
+        known = determinate(self.reactions)
+        return tuple(name for name in self.names if name not in known)
+
+    def along(self, t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """The reactions at n states, n x names; nan where one has no single value [N, N m].
+
+        Args:
+            t, x: n instants, and the states there, n x states.
+            p: parameters.
+        """
+        rates = self.rhs.many(t, x, p)
+        a = rates[:, rates.shape[1] - len(self.rhs.speeds) :]
+        numbers = self._numbers.many(t, np.hstack([x, a]), p)
+        A, b, C, d = self._cut(numbers)
+        found = _solutions(A, b, C) + d
+        found[:, [name in self.indeterminate for name in self.names]] = np.nan
+        return found
+
+    @cached_property
+    def _columns(self) -> list[int]:
+        """The components solved for: what is free whatever the state is taken as 0, and leaves no trace."""
+        return [j for j in range(len(self.reactions.components)) if j not in self.reactions.solution.free]
+
+    @cached_property
+    def _places(self) -> tuple[list[tuple[int, int, Scalar]], list[Scalar], list[tuple[int, int, Scalar]]]:
+        """(entries of A, b, entries of C), an entry with its row and column."""
+        column = {j: k for k, j in enumerate(self._columns)}
+        equations = [e for e in self.reactions.balance.equations if any(j in column for j in e.coefficients)]
+        A = [(i, column[j], x) for i, e in enumerate(equations) for j, x in e.coefficients.items() if j in column]
+        C = [(i, column[j], x) for i, n in enumerate(self.asked) for j, x in n.combination.items() if j in column]
+        return A, [e.needed for e in equations], C
+
+    @cached_property
+    def _numbers(self) -> RightHandSide:
+        """All entries as a function of t, (q, u, a) and p."""
+        A, b, C = self._places
+        system = self.reactions.balance.system
+        symbols = replace(system.symbols, u=system.symbols.u + system.symbols.a)
+        outputs = (*(x for _, _, x in A), *b, *(x for _, _, x in C), *(named.given for named in self.asked))
+        return compiled(program_of(outputs, symbols, inputs=system.inputs), "numpy")
+
+    def _cut(self, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """(A, b, C, d) at every state."""
+        places, b, combined = self._places
+        ends = np.cumsum([len(places), len(b), len(combined)])
+        of_A, of_b, of_C, d = np.split(numbers, ends, axis=1)
+        A = np.zeros((len(numbers), len(b), len(self._columns)))
+        C = np.zeros((len(numbers), len(self.asked), len(self._columns)))
+        A[:, [i for i, _, _ in places], [j for _, j, _ in places]] = of_A
+        C[:, [i for i, _, _ in combined], [j for _, j, _ in combined]] = of_C
+        return A, of_b, C, d
+
+
+def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
+    """C rho at every state, A rho = b; rows and columns of A are brought to one size first, for their units."""
+    found = np.full(C.shape[:2], np.nan)
+    sound = np.isfinite(A).all(axis=(1, 2)) & np.isfinite(b).all(axis=1)
+    if not A.shape[2] or not sound.any():
+        found[sound] = 0.0
+        return found
+    _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
+    A, b, C = A * rows[:, None] * columns, b * rows, C * columns
+    R = np.linalg.qr(np.concatenate([A[sound], b[sound][:, :, None]], axis=2), mode="r")
+    size = A.shape[2]
+    pivots, lengths = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2)), np.linalg.norm(A[sound], axis=1)
+    regular = (pivots > SINGULAR * lengths).all(axis=1)
+    at = np.flatnonzero(sound)
+    rho = np.linalg.solve(R[regular][:, :size, :size], R[regular][:, :size, size:])
+    found[at[regular]] = (C[at[regular]] @ rho)[:, :, 0]
+    for i in at[~regular]:
+        found[i] = _where_singular(A[i], b[i], C[i])
+    return found
+
+
+def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
+    """C rho, nan where the null space of A has a part in it; all nan where no finite rho keeps the bodies in balance."""
+    U, sizes, V = np.linalg.svd(A)
+    rank = int(np.sum(sizes > SINGULAR * max(sizes, default=0.0)))
+    rho = V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
+    if np.linalg.norm(A @ rho - b) > BALANCED * np.linalg.norm(b):
+        return np.full(len(C), np.nan)
+    traces = np.abs(C @ V[rank:].T).max(axis=1, initial=0.0)
+    return np.where(traces > TRACELESS * np.linalg.norm(C, axis=1), np.nan, C @ rho)
+
+
+# -- over a trajectory -----------------------------------------------------------------------------
+
+
+def with_reactions(run: Trajectory, reactions: Callable[[], Reactions], rhs: RightHandSide, p: np.ndarray) -> Trajectory:
+    """The trajectory with its reactions as columns; what has none, and why, in its remark.
+
+    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
+
+    Args:
+        reactions: gives those of the whole run, where it has no phases of its own.
+        rhs: of the whole run.
+        p: parameters.
+    """
+    if not len(run.t):
+        return run
+    try:
+        pieces = [(slice(*phase.rows), phase.stage) for phase in run.phases if phase.stage is not None]
+        parts = [(rows, stage.reactions, stage.rhs) for rows, stage in pieces] or [(slice(None), reactions(), rhs)]
+    except DerivationError as error:
+        return replace(run, remark=f"No reactions: {error.what}.")
+    found: dict[str, np.ndarray] = {}
+    always: dict[str, None] = {}
+    made: dict[int, ReactionColumns] = {}
+    for rows, own, equations in parts:
+        columns = made.setdefault(id(own), ReactionColumns(own, equations))
+        always |= dict.fromkeys(columns.indeterminate)
+        values = columns.along(run.t[rows], _states(run, rows, equations), p)
+        for name, column in zip(columns.names, values.T, strict=True):
+            found.setdefault(name, np.zeros(len(run.t)))[rows] = column
+    return replace(run, reactions=found, units=_units(made.values()), remark=_remark(run.t, found, tuple(always)))
+
+
+def _states(run: Trajectory, rows: slice, rhs: RightHandSide) -> np.ndarray:
+    """x of a phase, of which the trajectory has the coordinates and speeds of all phases."""
+    names = run.coordinates + run.speeds
+    return run.x[rows][:, [names.index(name) for name in rhs.coordinates + rhs.speeds]]
+
+
+def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
+    return {named.name: named.unit for each in columns for named in each.asked}
+
+
+def _remark(t: np.ndarray, found: dict[str, np.ndarray], always: tuple[str, ...]) -> str:
+    """What is nan, and since when."""
+    parts = []
+    if always:
+        parts.append(f"Statically indeterminate: {_few(always)}.")
+    at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
+    singular = [name for name, gone in at_times.items() if gone.any()]
+    if singular:
+        first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
+        parts.append(f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}.")
+    return " ".join(parts)
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"

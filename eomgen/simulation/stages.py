@@ -1,0 +1,120 @@
+"""Model -> Stages: the stage of every configuration of its contacts, derived and compiled once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.contacts import Mode, Modes
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.release import released, stays_straight
+from eomgen.mechanics.system import System, system_of
+from eomgen.model.parts import Model
+from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces
+from eomgen.simulation.impact import Loose
+from eomgen.simulation.stage import Stage
+from eomgen.symbolic.graph import Scalar
+
+OPEN = Mode(closed=False)
+
+
+class Stages:
+    """The stages of a model.
+
+    Args:
+        model: whose contacts change.
+        p: the values of its parameters.
+        target: of the emitted code.
+    """
+
+    def __init__(self, model: Model, p: np.ndarray, target: str | None) -> None:
+        self.model, self.p, self.target = model, p, target
+        self._made: dict[Configuration, Stage] = {}
+
+    def of(self, configuration: Configuration) -> Stage:
+        """The stage of a configuration.
+
+        Raises:
+            DerivationError: a contact ends and nothing can leave it.
+        """
+        if configuration not in self._made:
+            self._made[configuration] = self._stage(configuration)
+        return self._made[configuration]
+
+    @cached_property
+    def loose(self) -> Loose:
+        """The model without the contacts that can end.
+
+        Raises:
+            DerivationError: as `of`.
+        """
+        return Loose(_opened(self.model, dict.fromkeys(self.ends, OPEN)), self.ends, self.p)
+
+    @cached_property
+    def ends(self) -> tuple[str, ...]:
+        """The contacts that can end."""
+        return tuple(contact.name for contact in contacts_of(self.model) if contact.unilateral)
+
+    def _stage(self, configuration: Configuration) -> Stage:
+        model = on_pieces(self.model, configuration.pieces)
+        system = self._system(model, configuration)
+        assembly = with_friction(system, recursive.assemble(system))
+        lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
+        return Stage(configuration, contacts_of(model), lengths, system, assembly, self.p, self.target)
+
+    def _system(self, model: Model, configuration: Configuration) -> System:
+        """The system of a configuration.
+
+        Where a body leaves one contact along another direction than this contact's own, the displacements of two
+        contacts are not those of each alone. Then all that can end are released together, and those that hold close.
+        """
+        if not configuration.open or self._straight:
+            return _opened(model, configuration.modes)
+        all_open = {**configuration.modes, **dict.fromkeys(self.ends, OPEN)}
+        return system_of(_opened(model, all_open).scope.model, configuration.modes)
+
+    @cached_property
+    def _straight(self) -> bool:
+        system = system_of(self.model)
+        return all(stays_straight(system, tie) for tie in self.ends)
+
+    def _length(self, system: System, body: str, k: int) -> tuple[bool, Scalar | None]:
+        bounds = bounds_of(self.model, body)
+        start, end = bounds[k]
+        return k > 0, system.scope.value(end - start) if k + 1 < len(bounds) else None
+
+
+def _opened(model: Model, modes: Modes) -> System:
+    """The system with its contacts in these modes: those that are open released, one after the other.
+
+    Raises:
+        DerivationError: nothing can leave a contact that has ended.
+    """
+    closed: Mapping[str, Mode] = {name: mode for name, mode in modes.items() if mode.closed}
+    system = system_of(model, closed)
+    for name, mode in modes.items():
+        if not mode.closed:
+            system = _released(system, name)
+    return system
+
+
+def _released(system: System, tie: str) -> System:
+    model, modes = released(system, tie)
+    after = system_of(model, modes)
+    dependent = redundant_rows(system.ties)
+    held = [row for row in system.ties.rows if row.tie == tie and row not in dependent]
+    if _freedom(after) < _freedom(system) + len(held):
+        raise DerivationError(f"'{tie}' ends, and what it held does not become free", f"constraints.{tie}",
+                              "place the body by coordinates that can leave the contact")  # fmt: skip
+    return after
+
+
+def _freedom(system: System) -> int:
+    """Independent speeds less the independent closing rows."""
+    ties = system.ties
+    return len(system.symbols.u) - len(ties.closing) + len(redundant_rows(ties))

@@ -1,0 +1,28 @@
+"""What one phase of a motion was."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.simulation.course import Situation
+from eomgen.simulation.stage import Bound, Stage
+from eomgen.simulation.stepping import Run
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """One phase as it was run.
+
+    Args:
+        here: its start.
+        stage: its equations.
+        run: what the integrator left.
+        bound: what ended it; None where the time, a condition or a failure did.
+        after: what follows the bound.
+    """
+
+    here: Situation
+    stage: Stage
+    run: Run
+    bound: Bound | None
+    after: Situation | None

@@ -1,0 +1,35 @@
+"""Scalars of one graph -> the same functions of the symbols of another."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Mapping, Sequence
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import Arithmetic, evaluate
+from eomgen.symbolic.functions import NAMES, function, over
+from eomgen.symbolic.graph import Graph, Node, Scalar
+
+_FUNCTIONS = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
+_RING = {"neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
+         "pow": operator.pow}  # fmt: skip
+
+
+def transplanted(scalars: Sequence[Scalar], graph: Graph, meanings: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
+    """The scalars with each symbol replaced by what its name means in another graph.
+
+    Raises:
+        DerivationError: a symbol has no meaning there, or an operation cannot be carried over.
+    """
+    values: dict[Node, Scalar] = {}
+    for symbol in symbols_of(scalars):
+        if symbol.name not in meanings:
+            raise DerivationError(f"'{symbol.name}' has no meaning here")
+        values[symbol] = meanings[symbol.name]
+    onto = Arithmetic("graph", lambda c: c, _RING | _FUNCTIONS | {"pi": lambda: graph.pi}, _refused)
+    return tuple(evaluate(tuple(scalars), values, onto))
+
+
+def _refused(node: Node) -> Scalar:
+    raise DerivationError(f"'{node.op}' cannot be carried over")
