@@ -23,6 +23,7 @@ from typing import Any
 import sympy
 
 import eomgen
+from eomgen.codegen.reactions import determinate
 from eomgen.symbolic.evaluation import operations
 
 HERE = Path(__file__).parent
@@ -115,6 +116,58 @@ def ratio(theirs: Peer | None, own: float) -> str:
     return "-" if theirs is None or theirs.seconds is None else f"{theirs.seconds / own:.0f}"
 
 
+@dataclass(frozen=True)
+class EveryReaction:
+    """What all reactions of a model take; times in seconds, the best of several runs.
+
+    Args:
+        components: scalar reactions, as outputs ask for them.
+        graph: Model to M and forcing on the graph.
+        seconds: Model to every reaction on the graph, linear in the accelerations.
+        operations: of their program, the accelerations included.
+        whole: operations of the full right-hand side.
+    """
+
+    components: int
+    graph: float
+    seconds: float
+    operations: int
+    whole: int
+
+
+def every_reaction(text: str, runs: int = 3) -> EveryReaction:
+    """Measures the reactions of a model."""
+    model = eomgen.loads(text)
+    graph, _ = best(lambda: eomgen.derive(model), runs)
+
+    def derive_reactions():
+        equations = eomgen.derive(model)
+        return equations, determinate(equations.reactions)
+
+    seconds, (equations, values) = best(derive_reactions, runs)
+    _, program = equations.reactions_program
+    return EveryReaction(len(values), graph, seconds, program.count.total, equations.program.count.total)
+
+
+REACTION_COLUMNS = (
+    "system", "components", "Model to M, F, graph [s]", "Model to every reaction, graph [s]", "ratio",
+    "operations, reactions", "full RHS", "ratio",
+)  # fmt: skip
+REACTION_MODELS = ("double_pendulum", "andrews_squeezer", "arm3", "arm7", "chain20")
+
+
+def reaction_table() -> list[tuple[str, ...]]:
+    """Every reaction of some models."""
+    rows = []
+    for name in REACTION_MODELS:
+        own = every_reaction((MODELS / f"{name}.toml").read_text())
+        rows.append(report((
+            name, cell(own.components), cell(own.graph), cell(own.seconds), f"{own.seconds / own.graph:.1f}",
+            cell(own.operations), cell(own.whole), f"{own.operations / own.whole:.2f}",
+        )))  # fmt: skip
+    return rows
+
+
 COLUMNS = (
     "system", "text to Model [s]", "Model to M, F, graph [s]", "as sympy [s]", "Lagrange [s]", "Kane [s]",
     "Lagrange/graph", "Kane/graph", "Lagrange/sympy form", "Kane/sympy form",
@@ -153,7 +206,7 @@ def report(cells: tuple[str, ...]) -> tuple[str, ...]:
     return cells
 
 
-def markdown(rows: list[tuple[str, ...]], command: str) -> str:
+def markdown(rows: list[tuple[str, ...]], reactions: list[tuple[str, ...]], command: str) -> str:
     """The measurements as a page."""
     lines = [
         "# Derivation, side by side with sympy",
@@ -168,6 +221,16 @@ def markdown(rows: list[tuple[str, ...]], command: str) -> str:
         "| " + " | ".join(COLUMNS) + " |",
         "|" + "---|" * len(COLUMNS),
         *("| " + " | ".join(cells) + " |" for cells in rows),
+        "",
+        "## Every reaction",
+        "",
+        "All force and couple components of all joints and ties as functions of q, u and the accelerations, from the",
+        "frozen Model on, M and F included. Operations: one evaluation from (t, x, p), accelerations included. No peer",
+        "gives them by default.",
+        "",
+        "| " + " | ".join(REACTION_COLUMNS) + " |",
+        "|" + "---|" * len(REACTION_COLUMNS),
+        *("| " + " | ".join(cells) + " |" for cells in reactions),
     ]
     return "\n".join(lines) + "\n"
 
@@ -178,7 +241,7 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="write the table there instead of to stdout")
     arguments = parser.parse_args()
     command = "python benchmarks/derivation.py" + (" --quick" if arguments.quick else "")
-    page = markdown(table(arguments.quick), command)
+    page = markdown(table(arguments.quick), reaction_table(), command)
     if arguments.output is None:
         print(page, end="")
     else:

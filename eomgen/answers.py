@@ -20,7 +20,7 @@ from eomgen.mechanics.outputs import later
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
-from eomgen.situation import Situation, exact_numbers
+from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
@@ -74,15 +74,15 @@ def solve(model: Model) -> dict[str, Answer]:
 def table(answers: dict[str, Answer]) -> str:
     """The answers as text: exact, then the number and the way to it."""
     width = max((len(name) for name in answers), default=0)
-    lines = []
+    shown = []
     for name, answer in answers.items():
-        first, *more = _lines(answer)
-        lines.append(f"{name:<{width}}  {first}")
-        lines += [f"{'':<{width}}  {line}" for line in more]
-    return "".join(f"{line}\n" for line in lines)
+        first, *more = lines(answer)
+        shown.append(f"{name:<{width}}  {first}")
+        shown += [f"{'':<{width}}  {line}" for line in more]
+    return "".join(f"{line}\n" for line in shown)
 
 
-def _lines(answer: Answer) -> list[str]:
+def lines(answer: Answer) -> list[str]:
     """One answer, a line for each thing that is known of it."""
     if not answer.answered:
         return [f"not answered: {answer.message}"]
@@ -199,28 +199,28 @@ class _Solver:
         assert output.at is not None
         moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
         situation = moment.situation
-        value = self._number_at(moment, output)
         try:
-            exact = self._in_unit(situation.at(output.value, moment.exact), output)
+            exact = situation.simple(self._in_unit(situation.at(output.value, moment.exact), output))
         except MissingValues:
-            return _valued(Answer(method=moment.method), value, "at the instant")
-        exact = situation.simple(exact)
+            return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
         text = to_text(exact) if text_size(exact) <= LONGEST else None
         try:
-            value = self._at_start(exact)
+            return _valued(Answer(text, None, "", moment.method), self._at_start(exact), "at the instant")
         except MissingValues as error:
             return Answer(text, None, "", moment.method, error.what)
-        return _valued(Answer(text, None, "", moment.method), value, "at the instant")
 
     def _number_at(self, moment: Moment, output: Output) -> float:
-        """The value in floating point, nan where a parameter is missing."""
+        """The value in floating point.
+
+        Raises:
+            RunFailed: a parameter is missing, and nothing is known of the instant.
+        """
         if not moment.numbers:
-            return math.nan
+            raise RunFailed("the instant has no closed form, and without values of all parameters no number")
         situation = moment.situation
-        state = exact_numbers(moment.numbers)
-        scalar = self._in_unit(situation.at(output.value, state), output)
         known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
-        return evaluate((scalar,), known, FLOAT)[0]
+        value = situation.number(output.value, {**known, **moment.numbers})
+        return evaluate((self._in_unit(value, output),), {}, FLOAT)[0]
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:

@@ -343,7 +343,7 @@ def _friction(system: System) -> Check:
 
 
 def _balance(system: System, assembly: Assembly) -> Iterable[Check]:
-    """D'Alembert's principle for every body, every pair and the whole, in the motion; none where reactions do not follow."""
+    """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""
     try:
         reactions = reactions_of(system)
     except DerivationError:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = 1
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
-LATER = ("reactions", "statics", "kinematics", "linearize", "verify", "inertia", "sweep")
+LATER = ("statics", "kinematics", "linearize", "verify", "inertia", "sweep")
 FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
 
 
@@ -227,6 +227,21 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
 
     with _reading(model) as declared:
         outcome = solved(declared)
+    return _deliver(outcome, wants_json, output)
+
+
+@main.command()
+@_common
+@click.option("--at", metavar="EQUATION", help='The instant: the first time after the start at which "theta=pi/2" holds.')
+@click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
+def reactions(
+    model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...]
+) -> int:
+    """Give every reaction: symbolic, or at an instant exactly and in numbers."""
+    from eomgen.verbs.reactions import reactions as found
+
+    with _reading(model) as declared:
+        outcome = found(declared, at=at, from_rest=from_rest)
     return _deliver(outcome, wants_json, output)
 
 

@@ -127,6 +127,17 @@ class Journey:
         Raises:
             RunFailed: it is never met.
         """
+        asked = (condition.text, side or "")
+        if asked not in self._moments:
+            self._moments[asked] = self._until(condition, side)
+        return self._moments[asked]
+
+    @cached_property
+    def _moments(self) -> dict[tuple[str, str], Moment]:
+        """Those that were sought already."""
+        return {}
+
+    def _until(self, condition: Equation, side: str | None) -> Moment:
         if self.course is None or self._starts_in_balance(self.situation):
             return self._within(self.situation, condition, self.start, self.numbers)
         stretches = self._stretches(condition)

@@ -14,12 +14,15 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.closure import gaps_of
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.contacts import has_phases
+from eomgen.simulation.independence import Independence
 from eomgen.simulation.integrate import SAMPLES, integrate
 from eomgen.simulation.phases import run_phases
 from eomgen.simulation.reaction_columns import with_reactions
@@ -38,11 +41,14 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     Raises:
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
-        DerivationError: the model has no equations of motion.
+        DerivationError: the model has no equations of motion; by "kinetostatic", a body is held by nothing, or a force
+            acts at no place.
     """
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     system = system_of(model)
+    if method == "kinetostatic":
+        reactions_of(system)  # refuses joints and ties that cannot carry the motion
     return Equations(model, method, system, with_friction(system, recursive.assemble(system)))
 
 
@@ -118,18 +124,24 @@ def simulated(
 def _watched(
     equations: Equations, run: Trajectory, rhs: RightHandSide, p: np.ndarray, tolerances: tuple[float, float]
 ) -> Trajectory:
-    """The run, ended where dependent coordinates are not determined and it went astray."""
-    if equations.system.elimination is None:
-        return run
-    blocks = equations.system.elimination.blocks
+    """The run, ended where dependent coordinates or closing ties do not say how it goes on, and it went astray."""
+    system = equations.system
     rtol, atol = (max(tolerance / 1000, 1e-13) for tolerance in tolerances)
 
     def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
         finer = integrate(rhs, time=(start, end), x0=x, p=p, rtol=rtol, atol=atol, samples=2)
         return finer.x[-1] if finer.ok else np.full_like(x, np.nan)
 
-    determinants = _along(equations, tuple(block.determinant for block in blocks), p)
-    return ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
+    if system.elimination is not None:
+        blocks = system.elimination.blocks
+        determinants = _along(equations, tuple(block.determinant for block in blocks), p)
+        run = ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
+    rank = len(system.ties.closing) - len(redundant_rows(system.ties))
+    if rank and len(run.t):
+        J = _along(equations, tuple(x for row in equations.graph.J for x in row), p)
+        rows = Independence(J, tuple(row.tie for row in system.ties.closing), rank)
+        run = ended_where_singular(run, rows, [rows.words(run.t, run.x)], again, rtol=tolerances[0])
+    return run
 
 
 def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:

@@ -7,6 +7,7 @@ are put into the equations first, and these are solved there: so nothing is divi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -27,6 +28,7 @@ from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import readable_all, simplest
@@ -103,6 +105,22 @@ class Situation:
         return simplest(scalar, WORK, self.positive)
 
     # -- at an instant ---------------------------------------------------------------------------
+
+    def number(self, formula: Expression, numbers: Mapping[Node, float]) -> float:
+        """The formula at a state in floating point, accelerations and reactions found there.
+
+        Args:
+            numbers: of t, q, u and the parameters.
+        """
+        inputs = self.system.symbols.inputs
+        values = dict(numbers)
+        for name, node in inputs.items():
+            values[node] = evaluate((self.system.inputs[name],), values, FLOAT)[0]
+        found = evaluate((self.eliminated(self.raw(formula)),), values, FLOAT)[0]
+        if math.isfinite(found):
+            return found
+        scalar = self.at(formula, exact_numbers(numbers))  # a pivot vanishes there: solved anew
+        return evaluate((scalar,), values, FLOAT)[0]
 
     def at(self, formula: Expression, state: State) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.

@@ -7,11 +7,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eomgen.errors import NotYet
+from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
-from eomgen.pipeline import Equations, derive
+from eomgen.pipeline import METHODS, Equations, derive
 from eomgen.symbolic.expressions import parse
 from eomgen.symbolic.graph import Node, Scalar
 
@@ -144,6 +144,21 @@ def derivable() -> tuple[str, ...]:
         except NotYet:
             continue
         found.append(path.stem)
+    return tuple(found)
+
+
+@cache
+def by_every_method() -> tuple[tuple[str, str], ...]:
+    """(model, method) of everything derivable; what nothing holds has no kineto-statics."""
+    found = []
+    for name in derivable():
+        for method in METHODS:
+            try:
+                equations(name, method)
+            except DerivationError:
+                assert method == "kinetostatic"
+                continue
+            found.append((name, method))
     return tuple(found)
 
 

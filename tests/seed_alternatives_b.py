@@ -82,9 +82,6 @@ joint = { kind = "revolute", on = "OA.end", angle = "psi + theta" }
 kind = "pin"
 points = ["AB.end", "CB.end"]
 [outputs]
-theta_d_squared = { value = "theta'^2", from = "rest" }
-R1 = { value = "-reaction_x(OA, OA)", from = "rest" }
-R2 = { value = "-reaction_y(OA, OA)", from = "rest" }
 v_A = { value = "speed(OA.end)", at = "theta = pi/2", from = "rest" }
 R1_vertical = { value = "-reaction_x(OA, OA)", at = "theta = pi/2", from = "rest" }
 R3_vertical = { value = "-reaction_x(CB, CB)", at = "theta = pi/2", from = "rest" }

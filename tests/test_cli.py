@@ -24,6 +24,7 @@ MODELS = ROOT / "models"
 PENDULUM = str(MODELS / "double_pendulum.toml")
 TRUSS = str(ROOT / "tests" / "truss.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
+OSCILLATIONS = str(MODELS / "seeds" / "ch22_p3.toml")  # asks for its linearization too, which comes later
 VERBS = ["new", "check", "derive", "solve", "simulate", "codegen", "schema", "doctor"]
 
 FALL = """
@@ -133,10 +134,10 @@ def test_new_and_codegen_have_json_too(tmp_path, monkeypatch):
 
 def test_only_the_result_is_on_stdout():
     """The same text with a failure as without it: messages go to stderr."""
-    result = run("solve", SEED)
-    assert result.exit_code == 3
-    assert "not answered: N_A" in result.stderr
-    assert result.stdout.startswith("kinetic_energy  = 6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2\n")
+    whole, part = run("solve", SEED), run("solve", OSCILLATIONS)
+    assert (whole.exit_code, whole.stderr, part.exit_code) == (0, "", 3)
+    assert part.stderr.startswith("not answered: K11, K12")
+    assert whole.stdout.startswith("kinetic_energy  = ") and part.stdout.startswith("Q_theta ")
 
 
 @pytest.mark.parametrize(
@@ -326,14 +327,14 @@ def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(forma
 
 def test_solve_gives_every_output_in_the_fixed_shape():
     """{name: {exact, value, unit, method, message}}; what cannot be answered has nulls, and exit 3."""
-    result = run("solve", SEED, "--json")
-    outputs = json.loads(result.stdout)["outputs"]
-    assert result.exit_code == 3
+    whole, part = run("solve", SEED, "--json"), run("solve", OSCILLATIONS, "--json")
+    outputs, others = (json.loads(result.stdout)["outputs"] for result in (whole, part))
+    assert (whole.exit_code, part.exit_code) == (0, 3)
     assert list(outputs) == ["kinetic_energy", "Q_theta", "theta_dd", "omega_disc", "N_A"]
     assert all(list(answer) == ["exact", "value", "unit", "method", "message"] for answer in outputs.values())
-    assert (outputs["N_A"]["exact"], outputs["N_A"]["value"]) == (None, None)
-    assert "reactions" in outputs["N_A"]["message"]
     assert outputs["Q_theta"]["exact"] == "6*M*R*g*sin(theta)"
+    assert (others["K11"]["exact"], others["K11"]["value"]) == (None, None)
+    assert "linearization" in others["K11"]["message"]
 
 
 def test_simulate_summarises_on_stdout_or_writes_files(tmp_path):
@@ -370,14 +371,41 @@ def test_a_run_that_ends_early_gives_what_there_is_and_exit_code_3(tmp_path):
 
 @pytest.mark.skipif(compiler() is None, reason="no C compiler")
 def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
-    """cc -std=c99 -Wall -Wextra -pedantic -Werror; the self-test returns 0."""
+    """cc -std=c99 -Wall -Wextra -pedantic -Werror; the self-tests of right-hand side and reactions return 0."""
     result = run("codegen", PENDULUM, "--target", "c", "-o", str(tmp_path))
-    names = ["double_pendulum_rhs.c", "double_pendulum_rhs.h", "test_vectors.json"]
-    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    names = [f"double_pendulum_{what}" for what in ("rhs.c", "rhs.h", "reactions.c", "reactions.h")]
+    names.append("test_vectors.json")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(names)
     assert result.stdout.split() == [str(tmp_path / name) for name in names]
     command = [str(compiler()), "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-DEOMGEN_SELFTEST", "-o", "t"]
-    subprocess.run([*command, names[0], "-lm"], cwd=tmp_path, check=True)
-    subprocess.run(["./t"], cwd=tmp_path, check=True)
+    for source in (names[0], names[2]):
+        subprocess.run([*command, source, "-lm"], cwd=tmp_path, check=True)
+        subprocess.run(["./t"], cwd=tmp_path, check=True)
+
+
+def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):
+    """A body that nothing holds, reactions that have no single value: no file, null in the JSON, a line on stderr."""
+    for name, line in (("atwood", "no code for the reactions: body 'left' is held by nothing along y"),
+                       ("four_cranks", "no code for the reactions: none has a single value")):  # fmt: skip
+        result = run("codegen", str(MODELS / f"{name}.toml"), "-o", str(tmp_path / name))
+        assert (result.exit_code, result.stderr) == (0, line + "\n")
+        assert not list((tmp_path / name).glob("*reactions*"))
+        assert json.loads((tmp_path / name / "test_vectors.json").read_text())["reactions"] is None
+    payload = json.loads(run("codegen", PENDULUM, "-o", str(tmp_path / "c"), "--json").stdout)
+    assert payload["reactions"] == [f"reaction_{axis}(arm{k})" for k in (1, 2) for axis in "xy"]
+    assert payload["reaction_operations"] > 0
+
+
+def test_a_run_says_once_where_a_reaction_has_no_value(tmp_path):
+    """nan in the file, null in the JSON, one line on stderr that names the first instant and the ties."""
+    words = ("simulate", str(MODELS / "parallelogram_reactions.toml"), "--time", "0.1", "--samples", "3")
+    result = run(*words, "--json")
+    trajectory = json.loads(result.stdout)["trajectory"]
+    assert trajectory["reaction_x(OA)"][0] is None and trajectory["reaction_y(OA)"][0] is not None
+    assert result.stderr.count("No single value in singular positions, first at t = 0 s: reaction_x(OA)") == 1
+    path = tmp_path / "run.csv"
+    assert run(*words, "-o", str(path)).stderr.count("No single value") == 1
+    assert path.read_text().splitlines()[1].split(",")[4] == "nan"
 
 
 def test_the_schema_fits_the_models():

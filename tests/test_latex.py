@@ -9,9 +9,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from derivations import derivable, equations
+from derivations import by_every_method, derivable, equations
 
-from eomgen.pipeline import METHODS
 from eomgen.report import rendered
 from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import equations_latex, unit_latex, value_latex
@@ -65,8 +64,7 @@ def formulas(markdown: str) -> list[str]:
     return displays + re.findall(r"\$([^$\n]+)\$", rest)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", derivable())
+@pytest.mark.parametrize(("name", "method"), by_every_method())
 def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
     """every command is known to both, every brace and environment closes, only aligned and cases are used"""
     found = formulas(rendered(equations(name, method).derivation, "markdown"))

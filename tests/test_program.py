@@ -10,8 +10,10 @@ from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 from eomgen.codegen.factorization import operation_count, solved
 from eomgen.codegen.names import RESERVED, identifier, identifiers
-from eomgen.codegen.program import Assign, Solve, program_of, right_hand_side
+from eomgen.codegen.program import Assign, Solve, program_in_motion, program_of, right_hand_side
+from eomgen.codegen.rhs import compiled
 from eomgen.codegen.solving import solve_bordered
+from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits, operations
 from eomgen.symbolic.functions import cos, sin
@@ -231,3 +233,18 @@ def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
         [exact * x for x in f], [exact * x for x in g],
     )  # fmt: skip
     assert solve_bordered(lower, J, f, g) == pytest.approx([float(x) for x in long], rel=1e-13)
+
+
+@pytest.mark.parametrize("made", [pendulum, lambda: spring_row(20), tied_pendulum], ids=["written out", "solve", "tie"])
+def test_what_holds_accelerations_takes_those_of_the_right_hand_side(made):
+    """f(q, u, a) along the motion = f with the a that the right-hand side returns, by the same kind of solution."""
+    assembly = made()
+    symbols = assembly.symbols
+    outputs = tuple(3 * a + x * u for a, x, u in zip(symbols.a, symbols.q, symbols.u, strict=True))
+    rhs, along = right_hand_side(assembly), program_in_motion(outputs, assembly)
+    kinds = [[type(s) for s in program.statements if type(s) is Solve] for program in (rhs, along)]
+    assert kinds[0] == kinds[1]
+    for v in vectors(rhs):
+        n = len(symbols.q)
+        right = [3 * a + x * u for a, x, u in zip(v.result[n:], v.x[:n], v.x[n:], strict=True)]
+        assert compiled(along, "numpy")(v.t, v.x, v.p) == pytest.approx(right, rel=1e-9, abs=1e-9)

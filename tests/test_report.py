@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from derivations import LARGE, derivable, equations, free_system, read_back, residuals, symbols_named
+from derivations import LARGE, by_every_method, derivable, equations, free_system, read_back, residuals, symbols_named
 
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces, per_speed
-from eomgen.pipeline import METHODS
 from eomgen.report import ALL, rendered
 from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import symbols_in
@@ -82,8 +81,7 @@ def without_names(derivation: Derivation, scalars: Sequence[Scalar]) -> tuple[Sc
     return substituted(scalars, known)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize(("name", "method"), [pair for pair in by_every_method() if pair[0] in SMALL])
 def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
     derived = equations(name, method)
@@ -241,8 +239,7 @@ def test_the_payload_has_the_keys_that_others_rely_on():
     assert "definitions" not in data
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", derivable())
+@pytest.mark.parametrize(("name", "method"), by_every_method())
 def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
     """symbols of the formulas are rows of a table or defined; letters are in the notation"""
     derivation = equations(name, method).derivation

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,18 +17,20 @@ import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
+import eomgen
 from eomgen.codegen import build
 from eomgen.codegen.files import write_files
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import Description
+from eomgen.codegen.targets.base import REACTIONS, Description
 from eomgen.codegen.vectors import outputs_at, vectors
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Graph, Node
 
 GOLDEN = Path(__file__).parent / "golden"
+MODELS = Path(__file__).parent.parent / "models"
 TARGETS = [target.name for target in ALL]
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 each_target = pytest.mark.parametrize(
@@ -262,6 +265,57 @@ def test_the_text_is_what_was_agreed(target, tmp_path):
         golden = GOLDEN / (f"{path.name}.txt" if path.suffix == ".py" else path.name)
         if path.name != "test_vectors.json":
             assert path.read_text() == golden.read_text(), f"look at the difference, then copy to {golden}"
+
+
+def reactions_written(tmp_path, target):
+    """Files of a double pendulum's right-hand side and reactions."""
+    equations = eomgen.derive(eomgen.load(MODELS / "double_pendulum.toml"))
+    names, reactions = equations.reactions_program
+    description = Description("Double pendulum", "made by eomgen", {}, vectors(equations.program, seed=2))
+    told = replace(description, vectors=vectors(reactions), role=REACTIONS, outputs=names,
+                   remarks=dict.fromkeys(names, "[N]"))  # fmt: skip
+    return write_files("double_pendulum", equations.program, description, target=target, directory=tmp_path,
+                       reactions=(reactions, told))  # fmt: skip
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_text_of_reactions_is_what_was_agreed(target, tmp_path):
+    """Golden files of NAME_reactions beside those of NAME_rhs."""
+    kept = [path for path in reactions_written(tmp_path, target) if "reactions" in path.name]
+    assert len(kept) == {"c": 2, "numpy": 1}[target]
+    for path in kept:
+        golden = GOLDEN / (f"{path.name}.txt" if path.suffix == ".py" else path.name)
+        assert path.read_text() == golden.read_text(), f"look at the difference, then copy to {golden}"
+
+
+@needs_cc
+def test_reactions_and_right_hand_side_go_into_one_library(tmp_path):
+    """No two functions of the same name: both files link together, and each passes its own test."""
+    paths = reactions_written(tmp_path, "c")
+    sources = [str(path) for path in paths if path.suffix == ".c"]
+    command = [build.compiler(), *STRICT, "-shared", "-fPIC", *sources, "-o", str(tmp_path / "both.so"), "-lm"]
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    for source in sources:
+        assert self_test(Path(source)).returncode == 0
+
+
+def test_test_vectors_of_reactions_have_their_names(tmp_path):
+    """{"names", "vectors"} under "reactions", each vector with its result `out`, right by the file itself."""
+    document = json.loads(reactions_written(tmp_path, "numpy")[-1].read_text())
+    names = [f"reaction_{axis}(arm{k})" for k in (1, 2) for axis in "xy"]
+    assert document["reactions"]["names"] == names
+    assert all(len(row["out"]) == 4 for row in document["reactions"]["vectors"])
+    check = (
+        "import json, double_pendulum_reactions as f\n"
+        "for v in json.load(open('test_vectors.json'))['reactions']['vectors']:\n"
+        "    out = f.double_pendulum_reactions(v['t'], v['x'], v['p'], v['inputs'])\n"
+        "    many = f.double_pendulum_reactions_many([v['t']], [v['x']], v['p'])[0]\n"
+        "    scale = v['tolerance']*max(1, *map(abs, v['out']))\n"
+        "    assert all(abs(a - c) <= scale for a, c in zip(out, v['out'], strict=True))\n"
+        "    assert all(abs(a - c) <= scale for a, c in zip(many, v['out'], strict=True))\n"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", check], cwd=tmp_path, check=True)
 
 
 @needs_cc

@@ -112,7 +112,7 @@ def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = No
 
 
 def program_in_motion(outputs: Row, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
-    """Outputs that hold accelerations, along the motion: a of the equations, by the way that takes the fewest operations.
+    """Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations.
 
     Args:
         outputs: expressions in the assembly's symbols, accelerations among them.

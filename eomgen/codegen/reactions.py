@@ -51,7 +51,7 @@ def determinate(reactions: Reactions) -> dict[str, Scalar]:
 def reactions_program(
     reactions: Reactions, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None
 ) -> tuple[tuple[str, ...], Program]:
-    """(names, the program of their values): the accelerations are those of the right-hand side, from the same equations.
+    """(names, the program of their values), the accelerations from the same equations as in the right-hand side.
 
     Args:
         inputs: the model's own expression of each input, in t and parameters.

@@ -155,16 +155,17 @@ def balance_of(system: System) -> Balance:
 
 
 def refuse_placeless(system: System) -> None:
-    """Refuse what acts at no place, or on a point that a coordinate moves in its body: some body's balance would lack it.
+    """Refuse what acts at no place, or on a point that a coordinate moves in its body: some balance would lack it.
 
     Raises:
         DerivationError: it is named.
     """
     for force in system.loads.applied:
         if force.placeless or any(not hasattr(load, "place") and hasattr(load, "coordinate") for load in force.loads):
-            raise DerivationError(f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow",
-                                  f"forces.{force.name}", "give it as forces and couples on bodies")  # fmt: skip
-        if any(_pushes_along(system, slide_power(system.motion, load)) for load in force.loads if isinstance(load, PointForce)):
+            what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
+            raise DerivationError(what, f"forces.{force.name}", "give it as forces and couples on bodies")
+        pushes = [load for load in force.loads if isinstance(load, PointForce)]
+        if any(_pushes_along(system, slide_power(system.motion, push)) for push in pushes):
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
     for row in system.ties.rows:
         if not row.pushes and row.status != "identical":
@@ -263,14 +264,20 @@ def _applied(system: System, axes: _Axes) -> list[tuple[Scalar, ...]]:
     """(force, moment about the mass centre) of everything given, on every body."""
     totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
     effects = [e for load in (*system.loads.placed, *weights(system.loads)) for e in _effects(axes, load)]
-    effects += [e for effort in system.loads.efforts for e in _effort_effects(axes, effort)]
+    for effect in (*effects, *joint_effects(system)):
+        totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
+    return totals
+
+
+def joint_effects(system: System) -> list[Effect]:
+    """What drives, springs, dampers and rotors of all joints do, on both bodies of each."""
+    axes = _Axes(system.motion)
+    effects = [e for effort in system.loads.efforts for e in _effort_effects(axes, effort)]
     for link in axes.motion.links:
         for k, armature in _armatures(axes.motion, link):
             rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
             effects += _joint_effects(axes, link, *_scaled(axes, link.name, k, -armature * rate))
-    for effect in effects:
-        totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
-    return totals
+    return effects
 
 
 def efforts_of(system: System, body: str) -> list[Effect]:

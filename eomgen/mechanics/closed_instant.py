@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.integrals import rates_of, relations_of
+from eomgen.mechanics.integrals import Relations, rates_of, relations_of
 from eomgen.mechanics.laws import laws_of_motion
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import simplest
 
@@ -46,8 +46,13 @@ class ClosedInstant:
 
     def by_laws(self) -> State:
         """t, and q(t), u(t) of every coordinate that has a law; {} where the condition has no root in closed form."""
+        named, constants = self._with_constants_named()
+        state = named._at_root(laws_of_motion(self.system, named.accelerations, named.start))
+        return dict(zip(state, substituted(tuple(state.values()), constants), strict=True))
+
+    def _at_root(self, laws: State) -> State:
+        """The laws at the time at which the condition holds."""
         t = self.system.symbols.t
-        laws = laws_of_motion(self.system, self.accelerations, self.start)
         (equation,) = substituted((self.condition,), laws)
         if depends_on(equation, self._moving):
             return {}
@@ -57,11 +62,25 @@ class ClosedInstant:
         state = dict(zip(laws, substituted(tuple(laws.values()), {t: instant}), strict=True))
         return self._agreeing({t: instant, **state})
 
+    def _with_constants_named(self) -> tuple[ClosedInstant, State]:
+        """(the same with a symbol for each sum of constants, what the symbols stand for): such sums stay together."""
+        scalars = (*self.accelerations, self.condition, *self.start.values())
+        sums = constant_sums(scalars, (*self._moving, self.system.symbols.t))
+        names = {node: node.graph.symbol(f"(constant {node.index})") for node in sums}
+        written = substituted(scalars, names)
+        n = len(self.accelerations)
+        values = {symbol: self.located.value(node) for node, symbol in names.items()}
+        positive = self.located.positive | {symbol for symbol, value in values.items() if value > 0}
+        located = Located({**self.located.numbers, **values}, frozenset(positive))
+        start = dict(zip(self.start, written[n + 1 :], strict=True))
+        named = ClosedInstant(self.system, self.assembly, written[:n], written[n], start, located)
+        return named, {symbol: node for node, symbol in names.items()}
+
     def by_integrals(self) -> State:
         """Coordinates by the condition and the ties, speeds by the integrals; those that have a closed form."""
         speeds = self._rates({})
         equations = list(substituted((self.condition,), speeds))
-        equations += position_equations(self.system, self.start)
+        equations += position_equations(self.system, self.start, self._relations({}))
         others = (*self.system.symbols.u, self.system.symbols.t)
         equations = [x for x in equations if not depends_on(x, others)]
         places = self._agreeing(places_of(equations, self.system.symbols.q, self.located))
@@ -71,7 +90,7 @@ class ClosedInstant:
     def _rates(self, at: State) -> State:
         """The speeds as functions of the coordinates that are not in `at`."""
         try:
-            relations = relations_of(self.system, self.assembly, self.start, at)
+            relations = self._relations(at)
             if relations is None:
                 return {}
             sense = 1
@@ -81,6 +100,12 @@ class ClosedInstant:
             return dict(zip(found, substituted(tuple(found.values()), at), strict=True)) if found else {}
         except DerivationError:  # a division by 0 at this place
             return {}
+
+    def _relations(self, at: State) -> Relations | None:
+        try:
+            return relations_of(self.system, self.assembly, self.start, at)
+        except DerivationError:  # a division by 0 at this place, a start without closed form
+            return None
 
     def _agreeing(self, state: State) -> State:
         """Those values that hold parameters only and are the located numbers."""
@@ -97,10 +122,52 @@ class ClosedInstant:
         return (*self.system.symbols.q, *self.system.symbols.u)
 
 
-def position_equations(system: System, start: Mapping[Node, Scalar]) -> list[Scalar]:
-    """What ties say of positions: gaps, and rates that can be integrated from the start."""
+def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Node]:
+    """The largest sums in the scalars that hold none of the moving symbols, and some symbol."""
+    found: list[Node] = []
+    stack: list[Scalar] = list(scalars)
+    while stack:
+        x = stack.pop()
+        if type(x) is not Node or x in found or x.op == "symbol":
+            continue
+        if x.op in ("add", "sub") and not depends_on(x, moving) and symbols_of((x,)):
+            found.append(x)
+        else:
+            stack += x.args
+    return found
+
+
+def position_equations(
+    system: System, start: Mapping[Node, Scalar], relations: Relations | None = None
+) -> list[Scalar]:
+    """What is known of positions: the ties' gaps, and rates that can be integrated from the start.
+
+    Args:
+        relations: what momenta and ties say of the speeds.
+    """
     rows = [row for row in system.ties.rows if not row.identical]
-    return [row.gap for row in rows if row.gap is not None] + _integrated_rates(system, start)
+    gaps = [row.gap for row in rows if row.gap is not None]
+    return gaps + _integrated_rates(system, start) + _integrated_relations(system, start, relations)
+
+
+def _integrated_relations(
+    system: System, start: Mapping[Node, Scalar], relations: Relations | None
+) -> list[Scalar]:
+    """q_k - q_k0 - integral of A over q_s, of u_k = A(q_s) u_s: the mass centre that keeps its place."""
+    if relations is None:
+        return []
+    symbols = system.symbols
+    own = {u: q for q, rate in zip(symbols.q, system.scope.rates, strict=True) for u in symbols.u if rate is u}
+    leading = None if relations.speed is None else own.get(relations.speed)
+    found: list[Scalar] = []
+    for u, share in relations.shares.items():
+        q = own.get(u)
+        if q is None or q is leading or q not in start or not is_zero(relations.constants[u]):
+            continue
+        gained = 0 if is_zero(share) else _gained(share, leading, start, (*symbols.q, symbols.t))
+        if gained is not None:
+            found.append(q - start[q] - gained)
+    return found
 
 
 def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scalar]:

@@ -20,13 +20,16 @@ from eomgen.mechanics.dense import independent
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.ties import Ties, holds_identically
 from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.derivative import depends_on, symbols_of
 from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations
 from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import cancelled
+from eomgen.symbolic.text import text_size
 
 REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
+LONGEST = 600  # characters of a coefficient that is made readable
+MOST = 9  # symbols in it
 WORK = 2000  # products of terms for making one coefficient readable
 
 Label = tuple[str, int]
@@ -176,11 +179,16 @@ def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple
     """(A, b, blocks) of u_d = A u_i + b."""
     system = [{j: ties.J[i][k] for j, k in enumerate(dependent)} for i in rows]
     right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
-    solution, blocks = cramer.solved(system, right, vanishes=holds_identically)
-    short = tuple(tuple(cancelled(x, WORK) if type(x) is Node else x for x in row) for row in solution)
-    if operations(x for row in short for x in row).total <= operations(x for row in solution for x in row).total:
-        solution = short
+    solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=_shorter)
     return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
+
+
+def _shorter(x: Scalar) -> Scalar:
+    """x as one quotient without common factors, where that takes fewer operations and x is not long."""
+    if type(x) is not Node or text_size(x) > LONGEST or len(symbols_of((x,))) > MOST:
+        return x
+    short = cancelled(x, WORK)
+    return short if operations((short,)).total <= operations((x,)).total else x
 
 
 def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A: Any, b: Any) -> Scope:

@@ -4,20 +4,22 @@
     each pair:    what two bodies do to each other has no resultant and no moment
     the whole:    sum of reactions and applied forces = dP/dt,   of their moments about the origin = dL/dt
 
-P and L are those of the bodies' twists, of which the bodies' own equations in the plane make no use.
+P and L are those of the bodies' twists, of which the bodies' own equations in the plane make no use; the forces of the
+whole are taken as the loads give them, not from the bodies' equations.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 
 import numpy as np
 
-from eomgen.mechanics.balance import DIRECTIONS, PLANE_ROWS, SPACE_ROWS, Balance, Component, Effect
+from eomgen.mechanics.balance import DIRECTIONS, PLANE_ROWS, SPACE_ROWS, Balance, Component, Effect, joint_effects
 from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.loads import in_ground_axes, weights
 from eomgen.mechanics.maximal import Numbers, State
 from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.system import System
@@ -83,15 +85,23 @@ class _Wrenches:
     @cached_property
     def of_components(self) -> tuple[np.ndarray, np.ndarray]:
         """(resultant of a unit of each component, components x 6; sum of the sizes of its parts)."""
-        parts = [(j, e) for j, c in enumerate(self.balance.components) for e in (*c.effects, *c.rubbing)]
-        values = self.numbers.array(tuple(y for _, e in parts for y in _flat(e))).reshape(-1, 9)
-        total, size = (np.zeros((len(self.balance.components), 6)) for _ in range(2))
-        for (j, effect), (*f, a, b, c, d, e, g) in zip(parts, values, strict=True):
-            moment = np.array([a, b, c]) + np.cross([d, e, g], f)
-            wrench = self.about_origin(effect.link, np.array([*f, *moment]))
+        components = self.balance.components
+        owners = [j for j, c in enumerate(components) for _ in (*c.effects, *c.rubbing)]
+        effects = [e for c in components for e in (*c.effects, *c.rubbing)]
+        total, size = (np.zeros((len(components), 6)) for _ in range(2))
+        for j, wrench in zip(owners, self.of_effects(effects), strict=True):
             total[j] += wrench
             size[j] += abs(wrench)
         return total, size
+
+    def of_effects(self, effects: Sequence[Effect]) -> list[np.ndarray]:
+        """Each of them alone."""
+        flat = tuple(x for e in effects for x in (*e.force, *e.couple, *e.arm))
+        values = self.numbers.array(flat).reshape(-1, 3, 3)
+        return [
+            self.about_origin(effect.link, np.concatenate([force, couple + np.cross(arm, force)]))
+            for effect, (force, couple, arm) in zip(effects, values, strict=True)
+        ]
 
     def about_origin(self, link: int, wrench: np.ndarray) -> np.ndarray:
         """Force and moment about a mass centre, in the axes of the body's equations -> about the ground's origin."""
@@ -110,14 +120,11 @@ class _Wrenches:
     @cached_property
     def _places(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Of each body (its equations' axes in the ground's, its mass centre)."""
-        centers = [link.pose.point(mass_properties(self.system.scope, link.name).com) for link in self.system.motion.links]
-        p = self.numbers.array(tuple(centers)).reshape(-1, 3)
-        R = [np.eye(3) if self._plane else self.numbers.array(link.pose.R) for link in self.system.motion.links]
+        scope, links = self.system.scope, self.system.motion.links
+        centers = tuple(link.pose.point(mass_properties(scope, link.name).com) for link in links)
+        p = self.numbers.array(centers).reshape(-1, 3)
+        R = [np.eye(3) if self._plane else self.numbers.array(link.pose.R) for link in links]
         return list(zip(R, p, strict=True))
-
-
-def _flat(effect: Effect) -> tuple[Scalar, ...]:
-    return (*effect.force, *effect.couple, *effect.arm)
 
 
 def _of_pairs(wrenches: _Wrenches) -> str:
@@ -165,13 +172,23 @@ def _of_the_whole(wrenches: _Wrenches, x: np.ndarray) -> str:
 
 
 def _applied(wrenches: _Wrenches) -> np.ndarray:
-    """Resultant of all that is given."""
-    balance = wrenches.balance
-    values = wrenches.numbers.array(tuple(e.applied for e in balance.equations))
-    own = np.zeros((len(balance.system.motion.links), 6))
-    for e, value in zip(balance.equations, values, strict=True):
-        own[balance.system.motion.index[e.body], e.direction] = value
-    return sum((wrenches.about_origin(i, wrench) for i, wrench in enumerate(own)), start=np.zeros(6))
+    """Resultant of all that is given, the loads as they were given."""
+    system, numbers = wrenches.system, wrenches.numbers
+    vectors: list[Scalar] = []
+    for load in (*system.loads.placed, *weights(system.loads)):
+        vectors += _about_origin(system, load)
+    given = numbers.array(tuple(vectors)).reshape(-1, 6).sum(axis=0)
+    return given + sum(wrenches.of_effects(joint_effects(system)), start=np.zeros(6))
+
+
+def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:
+    """Force, and moment about the ground's origin, in the ground's axes; of a load on the ground nothing."""
+    if _body(load) is None:
+        return []
+    if isinstance(load, Couple):
+        return [*ZERO, *in_ground_axes(system.motion, load.couple, load.axes)]
+    force = in_ground_axes(system.motion, load.force, load.axes)
+    return [*force, *cross(system.motion.position(load.place), force)]
 
 
 def _momentum_rates(system: System) -> tuple[Scalar, ...]:

@@ -64,9 +64,15 @@ def with_friction(system: System, assembly: Assembly) -> Assembly:
 
 def rubs(system: System) -> bool:
     """Whether anything rubs."""
-    return any(row.friction is not None for row in system.ties.rows) or any(
-        joint_friction(system, link) is not None for link in system.motion.links
-    )
+    return bool(frictions(system))
+
+
+def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
+    """(contact, what a unit of N rubs with, the sliding velocity) of everything that rubs."""
+    found = [(row.tie, row.friction, row.sliding) for row in system.ties.rows]
+    for link in system.motion.links:
+        found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
+    return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
 
 
 def rubbing_contacts(system: System, reactions: Reactions) -> list[Rub]:

@@ -24,6 +24,7 @@ from eomgen.symbolic.functions import function, over
 from eomgen.symbolic.graph import Node, Scalar, linear_terms
 from eomgen.symbolic.normal_form import readable, simplest
 from eomgen.symbolic.spatial import dot
+from eomgen.symbolic.symbols import Symbols
 
 WORK = 5_000  # products of terms for finding that a rate of momentum is a function of time
 LONGEST = 20_000  # products of terms for making a speed readable
@@ -150,7 +151,7 @@ def relations_of(
             continue
         (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
         rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
-        right.append(_at_start(integral.expression, start, symbols.u) - rest)
+        right.append(_at_start(integral.expression, start, symbols) - rest)
     if at:
         rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
         right = list(substituted(tuple(right), at))
@@ -224,7 +225,7 @@ def speed_of(
     """The one free speed as a function of the coordinates that are not in `at`, with the sign `sense`."""
     positive = positive_parameters(system.scope)
     for energy in energy_integral(system, assembly):
-        difference = energy.expression - _at_start(energy.expression, start, system.symbols.u)
+        difference = energy.expression - _at_start(energy.expression, start, system.symbols)
         (difference,) = substituted(substituted((difference,), relations.speeds), at)
         return _root_of_energy(difference, relations, sense, positive)
     if accelerations is None:
@@ -235,10 +236,18 @@ def speed_of(
     return sense * function("sqrt", simplest(substituted((square,), at)[0], LONGEST, positive))
 
 
-def _at_start(integral: Scalar, start: Mapping[Node, Scalar], u: Sequence[Node]) -> Scalar:
-    """An integral's value at the start; where the speeds are 0 coefficients need not exist, as at a branch point."""
-    (integral,) = substituted((integral,), {x: start[x] for x in u if x in start})
-    return substituted((integral,), start)[0]
+def _at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:
+    """An integral's value at the start; where the speeds are 0 coefficients need not exist, as at a branch point.
+
+    Raises:
+        DerivationError: it holds a coordinate or speed that has no exact value there.
+    """
+    (integral,) = substituted((integral,), {u: start[u] for u in symbols.u if u in start})
+    (value,) = substituted((integral,), start)
+    left = [x.name for x in (*symbols.q, *symbols.u) if depends_on(value, (x,))]
+    if left:
+        raise DerivationError(f"the start has no closed form: {', '.join(left)}")
+    return value
 
 
 def _root_of_energy(energy: Scalar, relations: Relations, sense: int, positive: frozenset[Node]) -> Scalar:
@@ -249,7 +258,7 @@ def _root_of_energy(energy: Scalar, relations: Relations, sense: int, positive: 
     C, B = substituted((energy, slope), {s: 0})
     A = over(derivative(slope, s), 2)
     if holds_identically(B):
-        return sense * function("sqrt", simplest(over(-C, A), LONGEST, positive))
+        return 0 if holds_identically(C) else sense * function("sqrt", simplest(over(-C, A), LONGEST, positive))
     inside = simplest(B * B - 4 * A * C, LONGEST, positive)
     return simplest(over(sense * function("sqrt", inside) - B, 2 * A), LONGEST, positive)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linear_motion import Constants, Line, pair, solution
@@ -19,13 +20,14 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, derivative, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.signs import sign_of_terms
 from eomgen.symbolic.text import text_size
 
 WORK = 20_000  # products of terms for one law
+SEEN = 1e-3  # relative: a change that rounding does not make
 
 
 def laws_of_motion(
@@ -103,7 +105,10 @@ class _Laws:
             q = tuple(self._coordinate(u) for u in two)
             if q[0] is None or q[1] is None:
                 continue
-            a = tuple(simplest(x, WORK, self.positive) for x in substituted([speeds[u] for u in two], laws))
+            a = substituted([speeds[u] for u in two], laws)
+            if self._vary([derivative(x, y) for x in a for y in q]):
+                continue
+            a = tuple(simplest(x, WORK, self.positive) for x in a)
             A = [[derivative(x, y) for y in q] for x in a]
             b = [simplest(x - row[0] * q[0] - row[1] * q[1], WORK, self.positive) for x, row in zip(a, A, strict=True)]
             constant = (*A[0], *A[1], *b)
@@ -118,12 +123,25 @@ class _Laws:
 
     def _line(self, a: Scalar, q: Node, u: Node) -> Line | None:
         """a as A q + B u + f(t) with constants A and B, or None."""
+        if self._vary([derivative(a, q), derivative(a, u)]):
+            return None
         a = simplest(a, WORK, self.positive)
         A, B = derivative(a, q), derivative(a, u)
         if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in (A, B)):
             return None
         f = simplest(a - A * q - B * u, WORK, self.positive)
         return None if depends_on(f, self._moving) else Line(A, B, f)
+
+    def _vary(self, coefficients: Sequence[Scalar]) -> bool:
+        """Whether numbers at two states show that one of the coefficients is none: it changes with what moves."""
+        rng = Random(1)
+        fixed = {x: rng.uniform(0.5, 1.5) for x in symbols_of(coefficients) if x not in self._moving}
+        states = [fixed | {x: rng.uniform(0.3, 1.1) for x in self._moving} for _ in range(2)]
+        try:
+            one, other = (evaluate(coefficients, state, FLOAT) for state in states)
+        except (NoValue, ZeroDivisionError):
+            return False
+        return any(abs(x - y) > SEEN * max(abs(x), abs(y)) for x, y in zip(one, other, strict=True))
 
     def _coordinate(self, u: Node) -> Node | None:
         """The coordinate whose rate the speed is."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from eomgen.mechanics.balance import Balance, Component, Effect, efforts_of, joint_friction
 from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
 
 FORCE, COUPLE = "N", "N*m"
@@ -130,5 +130,7 @@ def _drive(balance: Balance, component: Component) -> str:
     """drive(q) where the joint alone follows the coordinate q, else by the joint."""
     motion = balance.system.motion
     s = motion.link(component.owner).s[component.number - 1]
-    followers = [other for link in motion.links for other in link.s if s in motion.scope.symbols.q and depends_on(other, (s,))]
+    if type(s) is not Node or s not in motion.scope.symbols.q:
+        return component.name
+    followers = [other for link in motion.links for other in link.s if depends_on(other, (s,))]
     return f"drive({s.name})" if len(followers) == 1 else component.name

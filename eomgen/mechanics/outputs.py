@@ -72,7 +72,7 @@ class Quantities:
     @cached_property
     def reactions(self) -> Reactions:
         """All reactions, of generic coordinates or at the given ones."""
-        return reactions_of(self.system, self.at)
+        return reactions_of(self.system, self.at, short=True)
 
     def value(self, call: Call) -> Scalar:
         """One function at its arguments, in q, u, a, t and the parameters.

@@ -90,8 +90,8 @@ def _freed(system: System, model: Model, row: Row) -> Model:
     if leave.turns:
         model, turn = _with_coordinate(model, row.tie, "turn")
         changes["angle"] = as_expression(turn if joint.angle is None else f"({joint.angle.text}) + {turn}")
-    body = model.bodies[leave.link.name]
-    return altered(model, bodies=Table({**model.bodies, leave.link.name: altered(body, joint=altered(joint, **changes))}))
+    body = altered(model.bodies[leave.link.name], joint=altered(joint, **changes))
+    return altered(model, bodies=Table({**model.bodies, leave.link.name: body}))
 
 
 def _with_coordinate(model: Model, tie: str, what: str) -> tuple[Model, str]:

@@ -26,7 +26,6 @@ from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import Wrench, apply, dot, times
 
-
 Push = PointForce | Couple
 
 

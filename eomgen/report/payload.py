@@ -14,7 +14,8 @@ from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.equation_steps import multiplier_forces
 from eomgen.report.json_form import VERSION, steps
-from eomgen.report.reading import TRIED, Reader
+from eomgen.report.reaction_payload import reactions_payload
+from eomgen.report.reading import TRIED, Reader, without_cases
 from eomgen.report.statements import Derivation
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import text_size, to_text, with_definitions
@@ -70,6 +71,7 @@ def equations_payload(
         "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
         "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
         "equations": [f"{left} = {right}" for left, right in sides],
+        **reactions_payload(system, assembly, _taken(assembly) | {name for name, _ in definitions}),
         "steps": steps(derivation),
         "certificate": certificate,
     }
@@ -139,10 +141,10 @@ def _sides(assembly: Assembly) -> tuple[Scalar, ...]:
 def _texts(scalars: Sequence[Scalar], taken: frozenset[str]) -> tuple[list[tuple[str, str]], list[str]]:
     """The texts, and the named parts that they share where all in full would be too long."""
     whole = sum(text_size(x) for x in scalars)
-    written = Reader().short(scalars) if whole <= TRIED * len(scalars) else tuple(scalars)
+    written = without_cases(Reader().short(scalars) if whole <= TRIED * len(scalars) else scalars)
     if sum(text_size(x) for x in written) <= LARGEST:
         return [], [to_text(x) for x in written]
-    return with_definitions(scalars, NAMED_PART, taken)
+    return with_definitions(without_cases(scalars), NAMED_PART, taken)
 
 
 def _taken(assembly: Assembly) -> frozenset[str]:

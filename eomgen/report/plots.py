@@ -130,19 +130,24 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
     panel.axhline(0, color="#808080", linewidth=0.8)
     panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
     panel.set_ylabel("$E - E(0)$ [J]")
+    within = " in each phase" if len(trajectory.phases) > 1 else ""
     panel.annotate(
-        f"relative drift {trajectory.drift:.1e}", (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom",
-        fontsize=9, color="#505050",
+        f"relative drift {trajectory.drift:.1e}{within}", (1.0, 1.02), xycoords="axes fraction", ha="right",
+        va="bottom", fontsize=9, color="#505050",
     )  # fmt: skip
 
 
 def _reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
-    """Those that have a value at some instant."""
+    """Those that have a value at some instant; of a unit of which all are 0, none."""
     groups: dict[str, list[str]] = {}
     for name, column in trajectory.reactions.items():
         if not np.isnan(column).all():
             groups.setdefault(trajectory.units.get(name, ""), []).append(name)
-    return groups
+    return {unit: names for unit, names in groups.items() if any(_size(trajectory, name) > 0 for name in names)}
+
+
+def _size(trajectory: Trajectory, name: str) -> float:
+    return float(np.nanmax(np.abs(trajectory.reactions[name])))
 
 
 def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
@@ -161,14 +166,14 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
     panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     if len(shown) < len(owners):
-        panel.annotate(f"the largest, at {len(shown)} of {len(owners)} joints and ties", (1.0, 1.02), xycoords="axes fraction", ha="right",
-                       va="bottom", fontsize=9, color="#505050")  # fmt: skip
+        words = f"the largest, at {len(shown)} of {len(owners)} joints and ties"
+        panel.annotate(words, (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=9,
+                       color="#505050")  # fmt: skip
 
 
 def _largest(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
     """The joints and ties with the largest reactions, as many as have their lines in one panel; in their order."""
-    size = {owner: max(float(np.nanmax(np.abs(trajectory.reactions[name]))) for name in names)
-            for owner, names in owners.items()}  # fmt: skip
+    size = {owner: max(_size(trajectory, name) for name in names) for owner, names in owners.items()}
     falling = sorted(owners, key=lambda owner: -size[owner])
     lines = np.cumsum([len(owners[owner]) for owner in falling])
     kept = falling[: max(1, int(np.searchsorted(lines, MOST_REACTIONS, side="right")))]

@@ -8,6 +8,7 @@ from typing import Any
 
 from eomgen.mechanics.balance import Balance, Component
 from eomgen.mechanics.friction import Rub, rubbing_contacts
+from eomgen.mechanics.named_reactions import NamedReaction
 from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import PointForce
@@ -116,6 +117,23 @@ def meaning(balance: Balance, component: Component) -> str:
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
+
+
+def said(balance: Balance, named: NamedReaction) -> str:
+    """What a reaction is that an output asks for by name, in words."""
+    kind, _, rest = named.name.removeprefix("reaction_").partition("(")
+    axis = kind.removeprefix("couple_")
+    of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
+    if axis not in AXES and of_one:
+        return meaning(balance, balance.components[of_one[0]])
+    place = rest.removesuffix(")")
+    side = place.partition(".")[2]
+    mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]
+    component = next((c for c in mine if c.side == side), mine[0])
+    on = _on(balance, component)
+    if kind.startswith("couple_"):
+        return f"couple {on}, about {axis}"
+    return f"force {on}, along {axis}"
 
 
 def _on(balance: Balance, component: Component) -> str:

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.explicit import short_accelerations
 from eomgen.mechanics.integrals import rates_of
 from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
-from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print, omitted, readable_value
+from eomgen.report.reaction_values import Readings, readings_of
+from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print
 from eomgen.report.setting_steps import count, listed
 from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table
 from eomgen.symbolic.derivative import depends_on, substituted
@@ -54,8 +51,7 @@ def reactions_step(
         return (Step("reactions", "Reactions", (Prose((f"The reactions do not follow: {letters}.",)),)),)
     if not letters.symbols:
         return ()
-    writer = _Writer(system, reader, letters, _accelerations(system, assembly))
-    formulas, left_out = writer.formulas()
+    formulas, left_out = _formulas(readings_of(system, reader, assembly, free=True), letters)
     shown = {formula.sides[0] for formula in formulas} | {
         symbol for c, symbol in zip(letters.balance.components, letters.symbols, strict=True)
         if c in letters.reactions.indeterminate
@@ -69,85 +65,38 @@ def reactions_step(
     return (Step("reactions", "Reactions", tuple(statements)),) if statements else ()
 
 
-def _accelerations(system: System, assembly: Assembly) -> dict[Node, Scalar]:
-    found = short_accelerations(system, assembly)
-    return {} if found is None else dict(zip(assembly.symbols.a, found, strict=True))
-
-
 def _too_long(number: int, after: bool) -> Prose:
     more = f"{number} more" if after else "All of them" if number > 1 else "It"
     return Prose((f"{more} {'are' if number > 1 else 'is'} too long to print here: ", VERB,
                   " evaluates them, ", Code("eomgen codegen MODEL"), " gives them as code."))  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Writer:
-    """Puts reactions into readable form, as many as a reader can take.
-
-    Args:
-        accelerations: of the independent speeds as functions of q and u, {} where they are long.
-    """
-
-    system: System
-    reader: Reader
-    letters: Lettered
-    accelerations: Mapping[Node, Scalar]
-
-    def formulas(self) -> tuple[list[Formula], int]:
-        """(the formulas, how many more there are)."""
-        kept: list[Formula] = []
-        length, left_out = 0, 0
-        rubbing = {rub.component for rub in self.letters.rubs}  # these stand in the step of friction
-        own = self._own_values()
-        for j, symbol in enumerate(self.letters.symbols):
-            value = self.letters.reactions.values[j]
-            if value is None or j in rubbing:
-                continue
-            sides = self._sides(value, own.get(self.letters.balance.components[j].name, value), length)
-            if not sides:
-                left_out += 1
-                continue
+def _formulas(readings: Readings, letters: Lettered) -> tuple[list[Formula], int]:
+    """(the formulas of as many reactions as a reader can take, how many more there are)."""
+    kept: list[Formula] = []
+    length, left_out = 0, 0
+    rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
+    for j, symbol in enumerate(letters.symbols):
+        if j in rubbing or not letters.reactions.solution.determined(j):
+            continue
+        sides = _sides(readings, j) if readings.reader.full or length < PAGE else []
+        if sides:
             kept.append(Formula((symbol, *sides)))
             length += sum(map(text_size, sides))
-        return kept, left_out
+        else:
+            left_out += 1
+    return kept, left_out
 
-    def _own_values(self) -> dict[str, Scalar | None]:
-        """By name, the reactions of the system over its independent speeds, where that is another."""
-        if self.system.free is None or not self.accelerations:
-            return {}
-        reactions = reactions_of(self.system, short=True)
-        return {c.name: x for c, x in zip(reactions.components, reactions.values, strict=True)}
 
-    def _sides(self, value: Scalar, own: Scalar | None, length: int) -> list[Scalar]:
-        """The value with accelerations, and without them where that is short; [] where both are too long."""
-        full = self.reader.full
-        if not full and length >= PAGE:
-            return []
-        with_a, without = self._short(value), self._without(own)
-        if without is None:
-            return [] if isinstance(with_a, Omitted) else [with_a]
-        if isinstance(with_a, Omitted) or length_in_print(with_a) > CLEARER * length_in_print(without) + SHORT // 4:
-            return [without]
-        return [without] if with_a is without else [with_a, without]
-
-    def _short(self, value: Scalar) -> Scalar | Omitted:
-        """The value in readable form, or how large it is."""
-        found = readable_value(self.reader, value, self.positive)
-        too_long = not self.reader.full and text_size(found) > LONGEST
-        return omitted(value) if too_long else found
-
-    @cached_property
-    def positive(self) -> frozenset[Node]:
-        return positive_parameters(self.system.scope)
-
-    def _without(self, value: Scalar | None) -> Scalar | None:
-        """The value with the accelerations of the equations of motion, where that is short."""
-        symbols = tuple(self.accelerations)
-        if value is None or not depends_on(value, symbols) or text_size(value) > TRIED:
-            return None
-        (found,) = substituted((value,), self.accelerations)
-        short = self._short(found)
-        return None if isinstance(short, Omitted) or length_in_print(short) > SHORT else short
+def _sides(readings: Readings, j: int) -> list[Scalar]:
+    """A reaction with accelerations, and without them where that is short; [] where both are too long."""
+    with_a, without = readings.with_accelerations({j: 1}), readings.without({j: 1})
+    too_long = not readings.reader.full and text_size(with_a) > LONGEST
+    if without is None or length_in_print(without) > SHORT:
+        return [] if too_long else [with_a]
+    if too_long or length_in_print(with_a) > CLEARER * length_in_print(without) + SHORT // 4:
+        return [without]
+    return [without] if with_a is without else [with_a, without]
 
 
 # -- along the motion from the start ----------------------------------------------------------------
@@ -157,22 +106,23 @@ def along_the_motion(
     system: System, reader: Reader, assembly: Assembly, letters: Lettered
 ) -> tuple[Step, ...]:
     """The reactions as functions of the coordinates alone, where first integrals give the speeds and that is short."""
-    accelerations = _accelerations(system, assembly)
-    start = _start(system)
+    readings, start = readings_of(system, reader, assembly), _start(system)
+    accelerations, positive = readings.accelerations, readings.positive
     if not accelerations or start is None or system.free is not None:
         return ()
-    positive = positive_parameters(system.scope)
     rates = rates_of(system, assembly, start, accelerations=tuple(accelerations.values()))
     if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:
         return ()
+    known, u = rates, tuple(rates)
     squares = [(u * u, simplest(x * x, WORK, positive)) for u, x in rates.items()]
     formulas: list[Statement] = []
-    for symbol, value in zip(letters.symbols, letters.reactions.values, strict=True):
-        if value is None or not depends_on(value, tuple(rates)) or text_size(value) > TRIED:
+    rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
+    for j, symbol in enumerate(letters.symbols):
+        if j in rubbing or not letters.reactions.solution.determined(j):
             continue
-        (found,) = substituted(substituted((value,), accelerations), rates)
-        found = simplest(found, WORK, positive)
-        if not depends_on(found, tuple(rates)) and length_in_print(found) <= SHORT and not _holds_a_root(found):
+        values = [x for way in readings.own_ways if depends_on(x := way.value(j), u)]
+        found = readings.replaced(values, lambda x: substituted(substituted((x,), accelerations), known)[0])
+        if found is not None and not depends_on(found, u) and _is_clear(found):
             formulas.append(Formula((symbol, found)))
     if not formulas:
         return ()
@@ -182,9 +132,9 @@ def along_the_motion(
     return (Step("along", "Reactions along the motion from the start", statements),)
 
 
-def _holds_a_root(x: Scalar) -> bool:
-    """Whether the sense of a motion, which is open, stands in it by a root."""
-    return any(node.op == "sqrt" for node in order((x,)))
+def _is_clear(x: Scalar) -> bool:
+    """Whether it is short, and the sense of the motion, which is open, does not stand in it by a root."""
+    return length_in_print(x) <= SHORT and all(node.op != "sqrt" for node in order((x,)))
 
 
 def _start(system: System) -> dict[Node, Scalar] | None:

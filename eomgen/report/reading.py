@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Container, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
+from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.layout import SUMS, factors
 from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, simplest
@@ -21,6 +23,7 @@ TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
+HALF = Fraction(1, 2)
 MOST_CASES = 4  # conditions of one formula, of which each case is put into readable form
 PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED_PART = 160  # characters of a formula in which long parts have names
@@ -159,10 +162,30 @@ def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
     return x
 
 
+def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x).
+
+    Where x = y exactly it is the mean of both.
+    """
+    known: dict[Node, Scalar] = {}
+    for node in order(scalars):
+        if node.op == "select":
+            condition, if_true, if_false = node.args
+            low, high = substituted(condition.args, known)
+            s = function("sign", high - low)
+            if_true, if_false = substituted((if_true, if_false), known)
+            known[node] = HALF * (if_true * (1 + s) + if_false * (1 - s))
+    return substituted(tuple(scalars), known) if known else tuple(scalars)
+
+
 def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = ()) -> Scalar:
     """The value as shown, or as one quotient where that is shorter; as it is where both are too long."""
+    conditions = conditions_in(value)
+    if 0 < len(conditions) <= MOST_CASES and text_size(value) <= TRIED:
+        cases = [readable_value(reader, decided(value, conditions[0], holds), positive) for holds in (True, False)]
+        return conditions[0].graph.select(conditions[0], *cases) if cases[0] is not cases[1] else cases[0]
     shown = reader.shown(value)
-    if type(value) is not Node or text_size(value) > TRIED or conditions_in(value):
+    if type(value) is not Node or text_size(value) > TRIED:
         return value if isinstance(shown, Omitted) else shown
     one = simplest(value, WORK, positive)
     return one if isinstance(shown, Omitted) or length_in_print(one) < length_in_print(shown) else shown

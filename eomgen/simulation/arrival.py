@@ -1,6 +1,7 @@
 """x' = f(s, x), start, g -> the first s after the start at which g(s, x) = 0, in numbers.
 
-s is the time, or any parameter along a path. Zeros at which g only touches 0 are found too.
+s is the time, or any parameter along a path. Zeros at which g only touches 0 are found too. g is integrated beside x,
+roughly, so that no step is too long for it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from eomgen.errors import RunFailed
 Function = Callable[[float, np.ndarray], Any]
 
 TOLERANCE = 1e-12  # of one step
+ROUGHLY = 1e-5  # of g: the tolerance with which it is integrated
 SAMPLES = 16  # of g in one step
 MOST_STEPS = 4000
 NOISE = 1e-10  # of g, against its largest value, below which it may be rounding
@@ -36,7 +38,7 @@ class NeverReached(RunFailed):
 
 
 def first_arrival(
-    f: Function, g: Function, s: float, x: np.ndarray,
+    f: Function, g: Function, s: float, x: Any,
     *, sense: int = 1, valid: Function | None = None, within: float = np.inf,
 ) -> Arrival:  # fmt: skip
     """The first zero of g after the start; a zero at the start is none.
@@ -47,42 +49,33 @@ def first_arrival(
         s, x: the start.
         sense: in which s runs, +1 or -1.
         valid: positive as long as the path may be followed.
-        within: a distance |s| beyond which it is not sought.
+        within: how far s may go from the start.
     Raises:
         NeverReached: the path ends, or goes on for long, before there is one.
     """
-    path = _Path(f, g, sense)
-    solver = _solver(f, s, x, sense, TOLERANCE)
-    first, last = float(g(s, x)), s
-    for _ in range(MOST_STEPS):
-        old = solver.y.copy()
-        with np.errstate(all="ignore"):
+    x = np.array(x, dtype=float)
+    path = _Path(f, g)
+    first = float(g(s, x))
+    with np.errstate(all="ignore"):
+        solver = path.solver(s, x, first, s + sense * within)
+        while solver.status == "running" and path.steps < MOST_STEPS:
+            begin, old = solver.t, solver.y[:-1].copy()
             solver.step()
-        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
-            break
-        found = path.in_step(solver, old, starting=last == s, at_start=first)
-        if valid is not None and not _holds(valid, solver, found):
-            raise NeverReached(f"the motion turns back before, at {solver.t:.6g}")
-        if found is not None:
-            return found
-        last = solver.t
-        if abs(last) > within:
-            break
-    raise NeverReached(f"it is not met as far as the motion was followed, up to {solver.t:.6g}")
+            if solver.status == "failed" or not np.all(np.isfinite(solver.y[:-1])):
+                break
+            found = path.in_step(solver, old, first if begin == s else None)
+            if valid is not None and not _holds(valid, solver, found):
+                raise NeverReached(f"the motion turns back before, at {solver.t:.6g}")
+            if found is not None:
+                return found
+    raise NeverReached(f"the condition is not met as far as the motion was followed, up to {solver.t:.6g}")
 
 
 def _holds(valid: Function, solver: Any, found: Arrival | None) -> bool:
     """Whether the path may be followed up to the zero, or to the end of the step."""
     if found is not None:
         return float(valid(found.s, found.x)) > -TOUCHES
-    return float(valid(solver.t, solver.y)) > 0
-
-
-def _solver(f: Function, s: float, x: np.ndarray, sense: int, tolerance: float) -> Any:
-    from scipy.integrate import DOP853
-
-    with np.errstate(all="ignore"):
-        return DOP853(f, s, np.array(x, dtype=float), sense * np.inf, rtol=tolerance, atol=tolerance)
+    return float(valid(solver.t, solver.y[:-1])) > 0
 
 
 @dataclass
@@ -91,19 +84,43 @@ class _Path:
 
     f: Function
     g: Function
-    sense: int
+    steps: int = 0
     largest: float = 0.0
     last: float = 0.0  # the last value of g that is no rounding; 0 before there is one
 
-    def in_step(self, solver: Any, old: np.ndarray, *, starting: bool, at_start: float) -> Arrival | None:
-        """The first zero in the step just made."""
-        dense = solver.dense_output()
+    def solver(self, s: float, x: np.ndarray, first: float, end: float) -> Any:
+        """The integrator of (x, g), g with a tolerance of its own."""
+        from scipy.integrate import DOP853
+
+        def both(s: float, y: np.ndarray) -> np.ndarray:
+            rate = np.asarray(self.f(s, y[:-1]), dtype=float)
+            slope = self._slope(Arrival(s, y[:-1]), rate)
+            return np.append(rate, slope if np.isfinite(slope) else 0.0)
+
+        steepness = abs(self._slope(Arrival(s, x), np.asarray(self.f(s, x), dtype=float)))
+        scale = max(abs(first), 0.01 * steepness, 1e-9)
+        atol = np.append(np.full(len(x), TOLERANCE), ROUGHLY * (scale if np.isfinite(scale) else 1.0))
+        return DOP853(both, s, np.append(x, 0.0), end, rtol=TOLERANCE, atol=atol)
+
+    def in_step(self, solver: Any, old: np.ndarray, at_start: float | None) -> Arrival | None:
+        """The first zero in the step just made.
+
+        Args:
+            old: the state where it began.
+            at_start: g at the very start, where the step began there.
+        """
+        self.steps += 1
+        whole = solver.dense_output()
+
+        def dense(z: float) -> np.ndarray:
+            return whole(z)[:-1]
+
         s = np.linspace(solver.t_old, solver.t, SAMPLES + 1)
         values = np.array([float(self.g(z, dense(z))) for z in s])
         if not np.all(np.isfinite(values)):
             return None
         self.largest = max(self.largest, float(np.max(np.abs(values))))
-        if starting and abs(at_start) > NOISE * self.largest:
+        if at_start is not None and abs(at_start) > NOISE * self.largest:
             self.last = at_start
         for k in range(1, len(s)):
             found = self._between(dense, s, values, k)
@@ -117,8 +134,8 @@ class _Path:
         """A zero between the samples k - 1 and k, or an extremum at 0 around k - 1."""
         from scipy.optimize import brentq
 
-        if self.last * values[k] < 0:
-            if values[k - 1] * values[k] < 0:
+        if np.sign(self.last) * np.sign(values[k]) < 0:
+            if np.sign(values[k - 1]) * np.sign(values[k]) < 0:
                 return float(brentq(lambda z: float(self.g(z, dense(z))), s[k - 1], s[k], xtol=1e-15, rtol=8.9e-16))
             return float(s[k - 1])
         a, b = abs(values[k - 2]) if k > 1 else np.inf, abs(values[k])
@@ -145,22 +162,20 @@ class _Path:
 
     def _polished(self, begin: float, x: np.ndarray, s: float) -> Arrival:
         """The state at s by steps that end there, then Newton's method on g."""
-        state = self._carried(begin, x, s)
-        best = Arrival(s, state)
+        best = Arrival(s, self._carried(begin, x, s))
         for _ in range(POLISHINGS):
-            value, slope = float(self.g(best.s, best.x)), self._slope(best)
-            if value == 0 or not np.isfinite(value / slope if slope else np.inf):
-                break
-            step = -value / slope
-            if abs(step) > 1e-6 * (1 + abs(best.s)):
-                break  # an extremum: g has no slope there
-            best = Arrival(best.s + step, best.x + step * self.f(best.s + step / 2, best.x))
+            rate = np.asarray(self.f(best.s, best.x), dtype=float)
+            value, slope = float(self.g(best.s, best.x)), self._slope(best, rate)
+            step = -value / slope if slope else 0.0
+            if value == 0 or not np.isfinite(step) or abs(step) > 1e-6 * (1 + abs(best.s)):
+                break  # there, or at an extremum, where g has no slope
+            best = Arrival(best.s + step, best.x + step * rate)
         return best
 
-    def _slope(self, at: Arrival) -> float:
+    def _slope(self, at: Arrival, rate: np.ndarray) -> float:
         """dg/ds by a central difference along the path."""
-        h = 1e-5 * (1 + abs(at.s))
-        rate = self.f(at.s, at.x)
+        fastest = float(np.max(np.abs(rate) / (1 + np.abs(at.x)), initial=0.0))
+        h = 1e-5 / max(fastest, 1e-3)
         ahead, behind = self.g(at.s + h, at.x + h * rate), self.g(at.s - h, at.x - h * rate)
         return float(ahead - behind) / (2 * h)
 

@@ -16,11 +16,15 @@ STEP = 1e-3  # from a singular start, of the leading coordinate
 AROUND = 12.0  # steps: how far other coordinates may move in this one
 GUESSES = 60
 CLOSED = 1e-12  # of the gaps
+REACHES = (1.0, 10.0, 100.0)  # how far the leading coordinate is followed, in sizes of its start and 1
 SINGULAR = 1e-7  # of the slopes of the gaps, against those a little aside
+NEARER = 1 - 1e-9  # what the second sense must undercut: of two mirror images the first one is taken
 ASIDE = 0.1
 
 Vector = Callable[[np.ndarray], np.ndarray]
 Number = Callable[[np.ndarray], float]
+Condition = Callable[[np.ndarray, int], float]
+"""(q, sense of motion) -> a number."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,7 @@ class Configurations:
     sought: tuple[int, ...]
 
     def first(
-        self, g: Callable[[np.ndarray, int], float], y: Number, q: np.ndarray, senses: Sequence[int], near: np.ndarray
+        self, g: Condition, y: Number, q: np.ndarray, senses: Sequence[int], near: np.ndarray
     ) -> tuple[Arrival, int]:
         """(the nearest configuration with g(q, sense) = 0, the sense of motion).
 
@@ -53,24 +57,25 @@ class Configurations:
         Raises:
             NeverReached: in no sense.
         """
-        found: list[tuple[float, Arrival, int]] = []
         reasons: list[NeverReached] = []
-        for sense in senses:
-            try:
-                within = min((distance for distance, *_ in found), default=np.inf)
-                arrival = self._one_way(lambda q, sense=sense: g(q, sense), y, q, sense, near, within)
-                found.append((abs(arrival.s), arrival, sense))
-            except NeverReached as reason:
-                reasons.append(reason)
-        if not found:
-            raise reasons[0]
-        _, arrival, sense = min(found, key=lambda each: each[0])
-        return arrival, sense
+        for reach in REACHES:
+            found: list[tuple[float, Arrival, int]] = []
+            for sense in senses:
+                within = min([reach * (1 + abs(q[self.leading])), *(NEARER * distance for distance, *_ in found)])
+                try:
+                    arrival = self._one_way(g, y, q, sense, near, within)
+                    found.append((abs(arrival.s), arrival, sense))
+                except NeverReached as reason:
+                    reasons.append(reason)
+            if found:
+                _, arrival, sense = min(found, key=lambda each: each[0])
+                return arrival, sense
+        raise reasons[-1]
 
     def _one_way(
-        self, g: Number, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float
+        self, g: Condition, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float
     ) -> Arrival:
-        regular = self._regular(q)
+        regular = self.is_regular(q)
         s = 0.0
         if not regular:
             s = sense * STEP
@@ -78,11 +83,11 @@ class Configurations:
         if y(q + (0 if not regular else 1e-4 * sense * self.direction(q))) < 0:
             raise NeverReached("the motion does not go this way from the start")
         return first_arrival(
-            lambda s, q: self.direction(q), lambda s, q: g(q), s, q,
+            lambda s, q: self.direction(q), lambda s, q: g(q, sense), s, q,
             sense=sense, valid=lambda s, q: y(q), within=within,
         )  # fmt: skip
 
-    def _regular(self, q: np.ndarray) -> bool:
+    def is_regular(self, q: np.ndarray) -> bool:
         """Whether the gaps fix the sought coordinates' rates: no branch point, as its rounded place may seem finite."""
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.direction(q))):

@@ -102,10 +102,9 @@ def _closed_or_open(
         if not course.stages.ends:
             raise
     free = values(course.stages.ends)
+    _refuse_overlap(course, t, free)
     away = tuple(name for name, (gap, rate) in course.loose.gaps(t, free).items() if _apart(gap, rate, free))
-    found = values(away)
-    _refuse_overlap(course, t, found)
-    return found, away
+    return values(away), away
 
 
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:

@@ -26,6 +26,7 @@ from eomgen.symbolic.graph import Scalar
 
 SINGULAR = 1e-7  # of a column's distance from those before it, against its length
 TRACELESS = 1e-6  # of an asked reaction's part in the null space
+AT_ONCE = 2_000_000  # entries of C that are held in memory at once
 BALANCED = 1e-6  # of what the bodies' equations leave over, against their right side
 
 
@@ -66,8 +67,9 @@ class ReactionColumns:
         rates = self.rhs.many(t, x, p)
         a = rates[:, rates.shape[1] - len(self.rhs.speeds) :]
         numbers = self._numbers.many(t, np.hstack([x, a]), p)
-        A, b, C, d = self._cut(numbers)
-        found = _solutions(A, b, C) + d
+        few = max(1, AT_ONCE // (1 + len(self.asked) * len(self._columns)))
+        pieces = [self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few)]
+        found = np.concatenate([np.zeros((0, len(self.names))), *(_solutions(A, b, C) + d for A, b, C, d in pieces)])
         found[:, [name in self.indeterminate for name in self.names]] = np.nan
         return found
 
@@ -115,7 +117,7 @@ def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
         return found
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
-    R = np.linalg.qr(np.concatenate([A[sound], b[sound][:, :, None]], axis=2), mode="r")
+    R = np.asarray(np.linalg.qr(np.concatenate([A[sound], b[sound][:, :, None]], axis=2), mode="r"))
     size = A.shape[2]
     pivots, lengths = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2)), np.linalg.norm(A[sound], axis=1)
     regular = (pivots > SINGULAR * lengths).all(axis=1)
@@ -128,7 +130,7 @@ def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
 
 
 def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
-    """C rho, nan where the null space of A has a part in it; all nan where no finite rho keeps the bodies in balance."""
+    """C rho, nan where the null space of A has a part in it; all nan where no finite rho holds the balance."""
     U, sizes, V = np.linalg.svd(A)
     rank = int(np.sum(sizes > SINGULAR * max(sizes, default=0.0)))
     rho = V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
@@ -141,7 +143,9 @@ def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
 # -- over a trajectory -----------------------------------------------------------------------------
 
 
-def with_reactions(run: Trajectory, reactions: Callable[[], Reactions], rhs: RightHandSide, p: np.ndarray) -> Trajectory:
+def with_reactions(
+    run: Trajectory, reactions: Callable[[], Reactions], rhs: RightHandSide, p: np.ndarray
+) -> Trajectory:
     """The trajectory with its reactions as columns; what has none, and why, in its remark.
 
     In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.

@@ -86,7 +86,7 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
 
 
 def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
-    """Whether forces and accelerations are such as the configuration says; one without a single value does not deny it."""
+    """Whether forces and accelerations are such as the configuration says; what has no single value denies nothing."""
     x = stage.state(values)
     found = stage.look(t, x)
     forces, accelerations = stage.sizes(t, x)

@@ -268,15 +268,16 @@ class Stage:
         row, scope = rows_of(self.system.motion, contact.name)[0], self.system.scope
         gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
         return [Signal(contact.name, "gap", gap), Signal(contact.name, "gap'", rate),
-                Signal(contact.name, "gap''", *scope.with_accelerations((rate,)))]  # fmt: skip
+                Signal(contact.name, "gap''", scope.with_accelerations((rate,))[0])]  # fmt: skip
 
     def _of_closed(self, contact: Contact) -> list[Signal]:
         name = contact.name
-        found = [Signal(name, f"N{k}" if k > 1 else "N", *N) for k, N in enumerate(self._normals(contact), start=1)]
+        normals = enumerate(self._normals(contact), start=1)
+        found = [Signal(name, f"N{k}" if k > 1 else "N", value, column) for k, (value, column) in normals]
         if contact.mu is None:
             return found
         v, scope = self._sliding(contact), self.system.scope
-        found += [Signal(name, "slide", v), Signal(name, "slide'", *scope.with_accelerations((v,)))]
+        found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
             held = next(r for r in self.system.ties.rows if r.tie == name and r.component == "t")
             found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._reaction(held))]

@@ -136,6 +136,8 @@ class Trajectory:
     def summary(self) -> str:
         """How it went, in a line or two."""
         parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]
+        if len(self.phases) > 1:
+            parts.append(f"{len(self.phases)} phases.")
         if self.drift is not None:
             parts.append(f"Energy drift {self.drift:.1e} of the energy that moves.")
         if self.gap is not None:

@@ -45,7 +45,7 @@ class Block:
 
 def solved(
     rows: Sequence[Mapping[int, Scalar]], right: Sequence[Sequence[Scalar]],
-    *, vanishes: Callable[[Scalar], bool] = is_zero,
+    *, vanishes: Callable[[Scalar], bool] = is_zero, shorter: Callable[[Scalar], Scalar] | None = None,
 ) -> tuple[tuple[tuple[Scalar, ...], ...], tuple[Block, ...]]:  # fmt: skip
     """X of A X = right, n x m, and the blocks whose determinants must not vanish.
 
@@ -53,20 +53,23 @@ def solved(
         rows: of A, {column: entry}, n of them; A is regular at almost every state.
         right: n rows of m.
         vanishes: whether an entry that came up on the way is zero at all states.
+        shorter: puts an unknown into a shorter form before it is used further.
     Raises:
         DerivationError: more than LARGEST_BLOCK unknowns hang together.
     """
     pairs = zip(rows, right, strict=True)
     lines = [Line(i, {j: x for j, x in row.items() if not is_zero(x)}, list(r)) for i, (row, r) in enumerate(pairs)]
+    written = shorter or (lambda x: x)
     by_numbers = _numbers_eliminated(lines, vanishes)
     known: dict[int, list[Scalar]] = {}
     blocks = []
     for group, unknowns in triangular(lines):
         block = Block(unknowns, tuple(line.number for line in group), _matrix(group, unknowns))
         blocks.append(block)
-        known |= _by_determinants(block, [_without(line, known) for line in group])
+        found = _by_determinants(block, [_without(line, known) for line in group])
+        known |= {j: [written(x) for x in row] for j, row in found.items()}
     for j, line in reversed(by_numbers):
-        known[j] = [over(x, line.entries[j]) for x in _without(line, known)]
+        known[j] = [written(over(x, line.entries[j])) for x in _without(line, known)]
     return tuple(tuple(known[j]) for j in range(len(rows))), tuple(blocks)
 
 

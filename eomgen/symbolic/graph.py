@@ -7,7 +7,7 @@ sub-expression is held, differentiated, counted and emitted once. Exact numbers 
 What folds on construction, and nothing else: rational arithmetic; 0 and 1; signs (a negation stands
 outermost, a coefficient is positive); like terms; x - x, x / x; sqrt(x)**2; k sin**2 + k cos**2;
 sines and cosines of a linear argument (sign, multiples of pi/2, exact values at multiples of pi/6 and pi/4, inverse
-functions in it), and the inverse functions where their value is such a multiple.
+functions in it), and the inverse functions where their value is such a multiple; exp(n log(x)).
 There is no expansion and no simplification.
 """
 
@@ -18,6 +18,7 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.angles import circular, inverse_circular
+from eomgen.symbolic.exponentials import exponential
 from eomgen.symbolic.factors import coefficient, common_of_squares, same_number
 from eomgen.symbolic.node import Node, Scalar, collected, is_zero, linear_terms
 from eomgen.symbolic.numbers import Number, binary_folded_at, exact, exact_power, folded_at, root_of, tidy
@@ -329,6 +330,8 @@ class Graph:
         if len(args) == 1:
             if name in ("asin", "acos", "atan") and (known := inverse_circular(self, name, a)) is not None:
                 return known
+            if name == "exp" and type(a) is Node:
+                return exponential(self, a)
             if type(a) is not Node:
                 folded = folded_at(name, exact(a))
                 return self.held(name, (a,)) if folded is None else folded

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,10 @@ from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.expressions import parse
-from eomgen.verbs.outcome import Outcome, listed, prepared
+from eomgen.verbs.given import assignments, nearest
+from eomgen.verbs.outcome import Outcome, prepared
+
+MOST_TOLD = 20  # phases in the text
 
 
 def simulate(
@@ -71,6 +73,9 @@ def _run_text(model: Model, run: Trajectory) -> str:
     columns = run.columns()
     width = max((len(name) for name in columns), default=0)
     lines = [f"{model.name}: {run.summary()}"]
+    told = run.phases[:MOST_TOLD] if len(run.phases) > 1 else ()
+    lines += [f"  from {phase.start:.6g} s: {phase.ended_by}" for phase in told]
+    lines += [f"  and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
     if len(run.t):
         lines += [f"{'':<{width}}  {'start':>16}  {'end':>16}"]
         lines += [f"{name:<{width}}  {column[0]:>16.9g}  {column[-1]:>16.9g}" for name, column in columns.items()]
@@ -85,6 +90,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "end": {name: column[-1] for name, column in columns.items() if column},
         "energy_drift": _finite(run.drift), "gap": _finite(run.gap),
         "steps": run.steps, "evaluations": run.evaluations, "remark": run.remark, "files": files,
+        "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],
     }  # fmt: skip
     return payload if files else payload | {"trajectory": columns}
 
@@ -100,9 +106,9 @@ def _parameters(model: Model, given: tuple[str, ...]) -> dict[str, float]:
         UsageError: no parameter of that name, or no number.
     """
     values = {}
-    for name, text in _assignments(given, "--set m=2"):
+    for name, text in assignments(given, "--set m=2"):
         if name not in model.parameters:
-            raise UsageError(f"--set: there is no parameter '{name}'", mend=_nearest(name, model.parameters))
+            raise UsageError(f"--set: there is no parameter '{name}'", mend=nearest(name, model.parameters))
         values[name] = _value(text, {}, f"--set {name}={text}")
     return values
 
@@ -116,21 +122,11 @@ def _start(equations: pipeline.Equations, parameters: Mapping[str, float], given
     known = exact_parameters(equations.model, parameters)
     names = (*equations.coordinates, *equations.speeds)
     values = {}
-    for name, text in _assignments(given, "--start theta=1"):
+    for name, text in assignments(given, "--start theta=1"):
         if name not in names:
-            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=_nearest(name, names))
+            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=nearest(name, names))
         values[name] = _value(text, known, f"--start {name}={text}")
     return values
-
-
-def _assignments(given: tuple[str, ...], example: str) -> list[tuple[str, str]]:
-    pairs = []
-    for word in given:
-        name, sign, text = word.partition("=")
-        if not sign or not name.strip() or not text.strip():
-            raise UsageError(f"'{word}' is no assignment", mend=f"write {example}")
-        pairs.append((name.strip(), text.strip()))
-    return pairs
 
 
 def _value(text: str, known: Mapping[str, Any], where: str) -> float:
@@ -139,9 +135,3 @@ def _value(text: str, known: Mapping[str, Any], where: str) -> float:
         return float(parse(text).evaluate({**known, "pi": math.pi}))
     except (ExpressionError, OverflowError) as error:
         raise UsageError(f"{where}: {getattr(error, 'what', error)}", mend=getattr(error, "mend", "")) from error
-
-
-def _nearest(name: str, names: Iterable[str]) -> str:
-    names = list(names)
-    near = difflib.get_close_matches(name, names, n=1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {listed(names)}"

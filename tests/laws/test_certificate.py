@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 
 import eomgen
-from eomgen.certificate import certify
+from eomgen.certificate import accelerations_at, certify, closed_state
 from eomgen.equations import Equations
-from eomgen.mechanics import inertia, kinematics, recursion, tree
+from eomgen.errors import DerivationError
+from eomgen.mechanics import balance, contacts, friction, inertia, kinematics, reactions, recursion, ties, tree
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.balance import Balance, BodyEquation
+from eomgen.mechanics.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
+from eomgen.symbolic.evaluation import fifty_digits
 from eomgen.symbolic.graph import Scalar, linear_terms
 from eomgen.symbolic.spatial import times
 
@@ -117,3 +122,165 @@ def test_an_error_in_the_engine_turns_it_red(monkeypatch, name, place, attribute
     monkeypatch.setattr(place, attribute, wrong)
     equations = derived(name)
     assert not certify(equations.system, equations.graph).ok
+
+
+# -- the balance of the bodies ---------------------------------------------------------------------
+
+BALANCED = ("double_pendulum", "parallelogram_reactions", "ch22_p1", "ch18_p5", "ch16_p6", "four_bar", "ch17_p5")
+
+
+def in_motion(equations: Equations):
+    """A state on the ties, the accelerations those of the equations."""
+    state, _ = closed_state(equations.system, Random(7))
+    a = accelerations_at(equations.graph, state)
+    return state | {s: fifty_digits().number(1) * float(x) for s, x in zip(equations.graph.symbols.a, a, strict=True)}
+
+
+def turned(equation: BodyEquation):
+    """Every version of a body's equation with one sign turned: of an entry, the load or the inertia."""
+    for j, entry in equation.coefficients.items():
+        for wrong in with_one_sign_turned(entry):
+            yield replace(equation, coefficients={**equation.coefficients, j: wrong})
+    for field in ("applied", "inertia"):
+        for wrong in with_one_sign_turned(getattr(equation, field)):
+            yield replace(equation, **{field: wrong})
+
+
+def balance_mutants(right: Balance):
+    """Every balance with one sign turned in one equation, or in what a component does to one of several bodies."""
+    for i, equation in enumerate(right.equations):
+        for wrong in turned(equation):
+            equations = (*right.equations[:i], wrong, *right.equations[i + 1 :])
+            yield f"{equation.body}, {i}", replace(right, equations=equations)
+    for j, component in enumerate(right.components):
+        for k, effect in enumerate(component.effects if len(component.effects) > 1 else ()):
+            other = replace(effect, force=times(-1, effect.force), couple=times(-1, effect.couple))
+            wrong = replace(component, effects=(*component.effects[:k], other, *component.effects[k + 1 :]))
+            yield component.name, replace(right, components=(*right.components[:j], wrong, *right.components[j + 1 :]))
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_a_wrong_sign_in_any_equation_of_a_body_is_out_of_balance(name, monkeypatch):
+    """One term of a coefficient, a load, an inertia force or couple, or one of two opposite forces."""
+    equations = derived(name)
+    system, state = equations.system, in_motion(equations)
+    right = reactions.balance_of(system)
+    assert imbalance(reactions.reactions_of(system), state, Random(1)) == ""
+    planted = 0
+    for what, wrong in balance_mutants(right):
+        monkeypatch.setattr(reactions, "balance_of", lambda system, wrong=wrong: wrong)
+        planted += 1
+        try:
+            seen = imbalance(reactions.reactions_of(system), state, Random(1))
+        except DerivationError as error:  # refused at once: a body would be held by nothing
+            seen = error.what
+        assert seen, f"a wrong sign in {what} was not seen"
+    assert planted >= 7
+
+
+def pushing(law, value, sliding, mode):
+    factor = friction_factor(law, value, sliding, mode)
+    return None if factor is None else -factor
+
+
+def other_way(system, found):
+    return [replace(rub, force=tuple(-x for x in rub.force)) for rub in rubbing_contacts(system, found)]
+
+
+def without_parent(axes, link, force, couple):
+    return joint_effects(axes, link, force, couple)[:1]
+
+
+def to_the_other_side(axes, i, place):
+    return times(-1, arm(axes, i, place))
+
+
+friction_factor, rubbing_contacts = contacts.friction_factor, friction.rubbing_contacts
+joint_effects, arm = balance._joint_effects, balance._Axes.arm
+REACTION_ERRORS = [
+    ("ch16_p6", ties, "friction_factor", pushing),
+    ("ch16_p6", friction, "rubbing_contacts", other_way),
+    ("double_pendulum", balance, "_joint_effects", without_parent),
+    ("arm3", balance, "_joint_effects", without_parent),
+    ("double_pendulum", balance._Axes, "arm", to_the_other_side),
+    ("ch22_p1", balance._Axes, "arm", to_the_other_side),
+    ("arm3", balance, "_armatures", lambda motion, link: [(0, 1)] if link.joint.efforts() else []),
+    ("elastic_pendulum", balance, "_effort_effects", lambda axes, effort: []),
+    ("ch18_p3", balance, "weights", lambda loads: ()),
+]
+
+
+@pytest.mark.parametrize(("name", "place", "attribute", "wrong"), REACTION_ERRORS)
+def test_an_error_in_reactions_or_friction_turns_it_red(monkeypatch, name, place, attribute, wrong):
+    """A wrong sign or a lost term in what the balance of the bodies or the friction is made of."""
+    monkeypatch.setattr(place, attribute, wrong)
+    equations = derived(name)
+    assert not certify(equations.system, equations.graph).ok
+
+
+def test_where_reactions_do_not_follow_the_balance_is_left_out():
+    """A body that nothing holds has no reactions; the other checks stand."""
+    equations = derived("atwood")
+    names = [check.name for check in certify(equations.system, equations.graph).checks]
+    assert "every body is in balance with its reactions" not in names and len(names) >= 7
+
+
+ROUGH = """
+eomgen = 1
+name = "rough"
+space = "plane"
+[parameters]
+m = 1.2
+mu = 0.3
+g = 9.81
+l = 0.7
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+BAR = """
+[bodies.bar]
+mass = "m"
+inertia = "m*l^2"
+points = { P = ["-l", 0], Q = ["l", 0] }
+line = ["P", "Q"]
+"""
+RUBBING = {
+    "a bar on a floor": """
+[coordinates]
+x = { start = 0.3, speed = 1 }
+y = 0.4
+a = 0.9
+""" + BAR + """joint = { kind = "planar", x = "x", y = "y + l*sin(a) - 0.4", angle = "a" }
+[constraints.floor]
+kind = "support"
+point = "bar.P"
+normal = [0, 1]
+friction = "mu"
+""",
+    "a pin in a slot": """
+[coordinates]
+a = { start = 0.5, speed = 1 }
+b = 0.9
+[bodies.crank]
+mass = "m"
+inertia = "m*l^2"
+points = { P = ["l", 0] }
+joint = { kind = "revolute", angle = "a" }
+""" + BAR + """joint = { kind = "revolute", at = [1.5, 0], angle = "b" }
+[constraints.slot]
+kind = "slider"
+point = "crank.P"
+on = "bar"
+friction = { viscous = "mu" }
+""",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", RUBBING)
+def test_the_certificate_holds_where_a_closing_tie_rubs(name):
+    """N is its multiplier, solved together with the accelerations; friction is in Q, the balance and the energy."""
+    certificate = eomgen.derive(eomgen.loads(ROUGH + RUBBING[name])).certify()
+    assert certificate.ok, str(certificate)
+    told = {check.name for check in certificate.checks}
+    assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= told

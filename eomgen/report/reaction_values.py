@@ -1,0 +1,98 @@
+"""System -> every reaction in its shortest readable form, with the accelerations in it and without them.
+
+A body held by more equations than it has unknowns gives a reaction in several ways that agree on every motion: from as
+few equations as can be, or by all of them, projected on the reaction. The shorter one is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.explicit import short_accelerations
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reactions import Combination, Reactions, reactions_of
+from eomgen.mechanics.system import System
+from eomgen.report.reading import TRIED, Reader, length_in_print, readable_value
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.text import text_size
+
+TOO_MANY = 2000  # components times equations, from which on one way must do
+
+
+@dataclass(frozen=True)
+class Readings:
+    """The reactions of a system for a reader.
+
+    Args:
+        system: over its independent speeds.
+        shown: the same, or with its dependent coordinates free: shorter, with their accelerations.
+        reader: of formulas.
+        accelerations: of the independent speeds as functions of q and u, {} where they are long.
+    """
+
+    system: System
+    shown: System
+    reader: Reader
+    accelerations: Mapping[Node, Scalar]
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        return positive_parameters(self.system.scope)
+
+    @cached_property
+    def ways(self) -> tuple[Reactions, ...]:
+        """Of the shown system, the one from few equations first."""
+        return _ways(self.shown)
+
+    @cached_property
+    def own_ways(self) -> tuple[Reactions, ...]:
+        return self.ways if self.shown is self.system else _ways(self.system)
+
+    def with_accelerations(self, combination: Combination, given: Scalar = 0) -> Scalar:
+        """sum of combination * components + given, linear in the accelerations.
+
+        Raises:
+            Indeterminate: it has no single value.
+        """
+        return self._shortest([way.combined(combination, "") + given for way in self.ways])
+
+    def without(self, combination: Combination, given: Scalar = 0) -> Scalar | None:
+        """The same by the equations of motion; None where nothing accelerates in it, or that is long."""
+        values = [way.combined(combination, "") + given for way in self.own_ways]
+        if not self.accelerations or not all(depends_on(x, tuple(self.accelerations)) for x in values):
+            return None
+        found = self.replaced(values, lambda x: substituted((x,), self.accelerations)[0])
+        return None if found is None or text_size(found) > TRIED else found
+
+    def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
+        """The shortest of the values after a replacement; None where all of them are long."""
+        short = [y for x in values if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED]
+        return self._shortest(short) if short else None
+
+    def _shortest(self, values: list[Scalar]) -> Scalar:
+        forms = [readable_value(self.reader, x, self.positive) for x in values]
+        return min(forms, key=length_in_print)
+
+
+def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: bool = False) -> Readings:
+    """The reactions of a system for a reader.
+
+    Args:
+        free: dependent coordinates have accelerations of their own in the form with accelerations.
+    Raises:
+        DerivationError: a body is held by nothing; a force acts at no place.
+    """
+    found = short_accelerations(system, assembly)
+    accelerations = {} if found is None else dict(zip(assembly.symbols.a, found, strict=True))
+    return Readings(system, (system.free or system) if free else system, reader, accelerations)
+
+
+def _ways(system: System) -> tuple[Reactions, ...]:
+    few = reactions_of(system, short=True)
+    size = len(few.balance.equations) * len(few.components)
+    return (few,) if size > TOO_MANY else (few, reactions_of(system))
+

@@ -1,0 +1,42 @@
+"""How independent the closing rows are along a motion: where they come to depend on one another, it may branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
+
+
+@dataclass(frozen=True)
+class Independence:
+    """The closing rows J of a system.
+
+    Args:
+        rows: (t n, x n x states) -> J, n x (k nu).
+        ties: the tie of each row, k.
+        rank: how many rows are independent at almost every state.
+    """
+
+    rows: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    ties: tuple[str, ...]
+    rank: int
+
+    def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The singular value of J that vanishes where the rank falls, each row against its greatest length, n x 1."""
+        return np.linalg.svd(self._scaled(t, x), compute_uv=False)[:, self.rank - 1 : self.rank]
+
+    def words(self, t: np.ndarray, x: np.ndarray) -> str:
+        """Which ties depend on one another at the worst of the states."""
+        U, sizes, _ = np.linalg.svd(self._scaled(t, x))
+        shares = np.abs(U[int(np.argmin(sizes[:, self.rank - 1])), :, self.rank - 1])
+        names = dict.fromkeys(tie for tie, share in zip(self.ties, shares, strict=True) if share > SHARE)
+        listed = ", ".join(f"'{name}'" for name in names)
+        return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
+
+    def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        J = np.nan_to_num(self.rows(t, x)).reshape(len(t), len(self.ties), -1)
+        lengths = np.max(np.linalg.norm(J, axis=2, keepdims=True), axis=0, initial=0.0)
+        return J / np.where(lengths > 0, lengths, 1.0)

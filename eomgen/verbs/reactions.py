@@ -1,0 +1,189 @@
+"""eomgen reactions: every reaction, as a formula, or at one instant of the motion exactly and in numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from eomgen import answers, pipeline
+from eomgen.answers import Answer
+from eomgen.equations import Equations
+from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
+from eomgen.mechanics.balance import balance_of
+from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.system import System
+from eomgen.model.checks.outputs import FUNCTIONS
+from eomgen.model.fields import Equation
+from eomgen.model.part import altered
+from eomgen.model.parts import Model, Output
+from eomgen.model.table import Table
+from eomgen.model.values import numeric_parameters
+from eomgen.report.reaction_formulas import reaction_formulas
+from eomgen.report.reaction_names import said
+from eomgen.report.reaction_payload import null_space
+from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.expressions import Expression, parse, parse_equation
+from eomgen.verbs.given import assignments, nearest
+from eomgen.verbs.outcome import Outcome, listed
+
+NO_VALUE = "it has no single value at the start"
+OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
+
+
+def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Outcome:
+    """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
+
+    Args:
+        at: the instant, an equation; the first time after the start at which it holds.
+        from_rest: positions `theta=0` from which the motion starts with all speeds 0; () for the model's own start.
+    Raises:
+        UsageError: no equation, or no coordinate of that name.
+        DerivationError: a body is held by nothing; a force acts at no place.
+    """
+    equations = pipeline.derive(model, "kinetostatic")
+    system = equations.system
+    asked = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
+    if at is None and not from_rest:
+        found = _formulas(equations, asked)
+    else:
+        found = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
+    open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
+    failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
+    space = null_space(system, equations.graph) if open_ else []
+    payload = {"name": model.name, "reactions": {name: answer.as_dict() for name, answer in found.items()},
+               **({"null_space": space} if space else {})}  # fmt: skip
+    notes = () if found else ("nothing reacts: no body is held by joints or ties",)
+    return Outcome(_text(system, asked, found, bool(space)) + _open_text(space), payload,
+                   f"not answered: {listed(failed)}" if failed else "", notes)  # fmt: skip
+
+
+def _function(name: str) -> str:
+    return name.partition("(")[0]
+
+
+# -- as formulas -----------------------------------------------------------------------------------
+
+
+def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Answer]:
+    """Every reaction as a formula, and its value at the start."""
+    found = reaction_formulas(equations.system, equations.graph)
+    values, missing = _at_start(equations)
+    answered = {}
+    for named in asked:
+        formula = found[named.name]
+        method = "balance of the bodies" + (", accelerations left in it" if formula.accelerated else "")
+        value = 0.0 if formula.text == "0" else values.get(named.name)
+        message = formula.message or missing or (None if value is not None else NO_VALUE)
+        answered[named.name] = Answer(formula.text, value, named.unit, method, message)
+    return answered
+
+
+def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
+    """({name: value}, why there are none, or None): what has no single value at the start is left out."""
+    try:
+        p = np.array(list(numeric_parameters(equations.model).values()), dtype=float)
+        columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
+        values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
+    except (MissingValues, DerivationError, ModelError) as error:
+        return {}, error.what
+    return {n: float(x) + 0.0 for n, x in zip(columns.names, values, strict=True) if math.isfinite(x)}, None
+
+
+# -- at an instant, or from rest -------------------------------------------------------------------
+
+
+def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Answer]:
+    """The answers to outputs that ask for the reactions, with their units."""
+    instant = None if at is None else _equation(at)
+    from_ = "rest" if from_rest else None if at is None else "start"
+    values = [parse(named.name, references=True) for named in asked]
+    outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
+    model = _checked(model, f"--at {at}", outputs=Table(outputs))
+    found = answers.solve(model)
+    return {named.name: dataclasses.replace(found[f"o{k}"], unit=named.unit) for k, named in enumerate(asked)}
+
+
+def _equation(text: str) -> Equation:
+    try:
+        return Equation(*parse_equation(text), text=text)
+    except ExpressionError as error:
+        raise UsageError(f"--at {text}: {error.what}", mend=error.mend or 'write --at "theta = pi/2"') from error
+
+
+def _at_rest(model: Model, given: tuple[str, ...]) -> Model:
+    """The model with these starting positions, all speeds 0; the same where none are given.
+
+    Raises:
+        UsageError: no coordinate of that name, a driven one, or no expression of parameters.
+    """
+    coordinates: dict[str, Any] = dict(model.coordinates)
+    words = [word for text in given for word in re.split(r",(?=[^()]*=)", text)]
+    for name, text in assignments(words, '--from-rest "theta=0"'):
+        if name not in coordinates:
+            raise UsageError(f"--from-rest: there is no coordinate '{name}'", mend=nearest(name, coordinates))
+        if coordinates[name].driven:
+            raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", mend=_free(model))
+        coordinates[name] = altered(coordinates[name], start=_expression(name, text))
+    if not given:
+        return model
+    return _checked(model, "--from-rest", coordinates=Table(coordinates))
+
+
+def _checked(model: Model, where: str, **changes: Any) -> Model:
+    """The model with some tables replaced, checked as a whole.
+
+    Raises:
+        UsageError: something in them is wrong.
+    """
+    try:
+        return dataclasses.replace(model, **changes)
+    except ModelError as error:
+        raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", mend=error.mend) from error
+
+
+def _free(model: Model) -> str:
+    return f"there are {listed(name for name, part in model.coordinates.items() if not part.driven)}"
+
+
+def _expression(name: str, text: str) -> Expression:
+    try:
+        return parse(text)
+    except ExpressionError as error:
+        raise UsageError(f"--from-rest {name}={text}: {error.what}", mend=error.mend) from error
+
+
+# -- as text ---------------------------------------------------------------------------------------
+
+
+def _text(system: System, asked: Iterable[NamedReaction], found: dict[str, Answer], below: bool) -> str:
+    """Each reaction by name and in words, then as `solve` prints its answers.
+
+    Args:
+        below: what may be added to indeterminate ones follows below.
+    """
+    balance = balance_of(system)
+    lines = []
+    for named in asked:
+        answer = found[named.name]
+        known = [f"{OPEN}, see below"] if below and OPEN in (answer.message or "") else answers.lines(answer)
+        lines += [f"{named.name}: {said(balance, named)}\n", *(f"    {line}\n" for line in known)]
+    return "".join(lines)
+
+
+def _open_text(space: list[dict[str, str]]) -> str:
+    """What may be added to the indeterminate ones without a trace."""
+    lines = []
+    for number, shares in enumerate(space, start=1):
+        k = "k" if len(space) == 1 else f"k{number}"
+        lines.append(f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:\n")
+        lines += [f"    {name}: {_times(share, k)}\n" for name, share in shares.items()]
+    return "\n" + "".join(lines) if lines else ""
+
+
+def _times(share: str, k: str) -> str:
+    return {"1": k, "-1": f"-{k}"}.get(share, f"({share})*{k}" if " " in share else f"{share}*{k}")

@@ -1,0 +1,61 @@
+"""Sparse linear equations over the graph: solved without dividing by what vanishes where they are regular."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import Graph, Node
+from eomgen.symbolic.linear import solved
+
+
+def system(rows, right, unknowns, **how):
+    """The solution, shadows at a fixed state."""
+    number = fifty_digits().number
+
+    def values(scalars):
+        state = {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))}
+        return evaluate(scalars, state, fifty_digits())
+
+    return solved(rows, right, unknowns, values, **how)
+
+
+def rank(a) -> int:
+    return 0 if type(a) is not Node else 2
+
+
+def test_a_force_along_a_direction_is_found_without_dividing_by_its_components():
+    """-sin T = b1, cos T = b2: T = -sin b1 + cos b2, also where sin = 0."""
+    g = Graph()
+    theta, b = g.symbol("theta"), [g.symbol("b1"), g.symbol("b2")]
+    solution = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, simple=rank, sure=1)
+    assert solution.determined(0) and len(solution.left) == 1
+    assert equal_at_random_states([(solution.constants[0], -sin(theta) * b[0] + cos(theta) * b[1])]).equal
+    divided = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, simple=rank)
+    assert not equal_at_random_states([(divided.constants[0], solution.constants[0])]).equal  # only for consistent b
+
+
+@pytest.mark.parametrize("sure", [None, 1])
+def test_what_is_indeterminate_stays_so(sure):
+    """One row for two unknowns: the second is free, the first follows from it; a third is determined all the same."""
+    g = Graph()
+    theta, b, c = g.symbol("theta"), g.symbol("b"), g.symbol("c")
+    rows = [{0: cos(theta), 1: sin(theta)}, {2: sin(theta)}]
+    solution = system(rows, [b, c], 3, simple=rank, sure=sure)
+    assert len(solution.free) == 1 and solution.determined(2) and not solution.determined(0)
+    assert equal_at_random_states([(solution.constants[2], c / sin(theta))]).equal
+
+
+def test_numbers_go_before_normal_equations():
+    """x0 = b - c x1 stays as it is; the two rows of x1 alone are brought together."""
+    g = Graph()
+    theta, b = g.symbol("theta"), [g.symbol(name) for name in ("b0", "b1", "b2")]
+    s, c = sin(theta), cos(theta)
+    solution = system([{0: 1, 1: c}, {1: s}, {1: c, 0: 1}], [b[0], b[1], b[0]], 2, simple=rank, sure=1)
+    assert solution.determined(0) and solution.determined(1)
+    assert equal_at_random_states([(solution.constants[0] + c * solution.constants[1], b[0])]).equal
