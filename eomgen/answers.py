@@ -15,8 +15,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
 from eomgen.journey import Journey, Moment
-from eomgen.mechanics.integrals import rates_of
 from eomgen.mechanics.outputs import later
+from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters

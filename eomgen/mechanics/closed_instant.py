@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.integrals import Relations, rates_of, relations_of
 from eomgen.mechanics.laws import laws_of_motion
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.scope import primitive
+from eomgen.mechanics.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar, is_zero

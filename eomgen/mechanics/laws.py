@@ -102,8 +102,8 @@ class _Laws:
     def _by_pair(self, speeds: Mapping[Node, Scalar], laws: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
         """Two coordinates with linear equations of their own, without damping."""
         for two in combinations(speeds, 2):
-            q = tuple(self._coordinate(u) for u in two)
-            if q[0] is None or q[1] is None:
+            q = [x for u in two if (x := self._coordinate(u)) is not None]
+            if len(q) < 2:
                 continue
             a = substituted([speeds[u] for u in two], laws)
             if self._vary([derivative(x, y) for x in a for y in q]):

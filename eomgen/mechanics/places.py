@@ -90,9 +90,8 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
         elif not _joined(left, unknowns, located):
             break
     found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
-    return {
-        node: simplest(value, LIMIT, located.positive) for node, value in found.items() if not depends_on(value, unknowns)
-    }
+    known = {node: value for node, value in found.items() if not depends_on(value, unknowns)}
+    return {node: simplest(value, LIMIT, located.positive) for node, value in known.items()}
 
 
 Step = tuple[Node, Scalar, int]
@@ -142,7 +141,7 @@ Waves = tuple[Scalar, Scalar, Scalar]
 
 
 def _pair_of_loop(left: Sequence[Scalar], unknowns: Collection[Node]) -> tuple[int, int, Waves, Waves] | None:
-    """Two equations a cos q + b sin q + r = 0 of one unknown q that determine both waves, and other unknowns in them."""
+    """Two equations a cos q + b sin q + r = 0 of one unknown q that fix both waves, with other unknowns in them."""
     for i, j in combinations(range(len(left)), 2):
         for q in _held(left[i], unknowns):
             if len(_held(left[i], unknowns)) < 2 or q not in _held(left[j], unknowns):

@@ -1,4 +1,4 @@
-"""Along the configurations of one freedom, without time: where a motion goes that rest or a dead centre hides from time.
+"""Along the configurations of one freedom, without time: where a motion goes from a rest or a dead centre.
 
     dq/ds = d(q),   u_s^2 = y(q) >= 0 where the motion may be
 """

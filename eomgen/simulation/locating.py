@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closed_instant import position_equations
-from eomgen.mechanics.integrals import Relations, rates_of, relations_of
+from eomgen.mechanics.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.simulation.arrival import first_arrival
@@ -256,6 +257,6 @@ def _dot(row: tuple[Scalar, ...], shares: tuple[Scalar, ...]) -> Scalar:
     return sum((n * s for n, s in zip(row, shares, strict=True)), start=0)
 
 
-def values_of(parameters: Mapping[str, Node], known: Mapping[str, float]) -> Numbers:
+def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> Numbers:
     """The parameters that have values, by node."""
     return {node: float(known[name]) for name, node in parameters.items() if name in known}

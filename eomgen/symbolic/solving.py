@@ -1,8 +1,8 @@
 """Equation, unknown -> its roots in closed form, as many as are known; nothing is guessed from numbers.
 
-Known are: polynomials that split into factors of degree 1 and 2 in a power of x, equations in the sine and cosine of one
-angle, in exponentials with one exponent, and those that a squaring or two rid of their roots. Roots that a squaring
-brought in are left out where numbers show that they are none.
+Known are: polynomials that split into factors of degree 1 and 2 in a power of x, equations in the sine and cosine of
+one angle, in exponentials with one exponent, and those that a squaring or two rid of their roots. Roots that a
+squaring brought in are left out where numbers show that they are none.
 """
 
 from __future__ import annotations
@@ -168,8 +168,8 @@ def coefficients(f: Terms, atom: Node) -> dict[int, Terms]:
 
 def _factors(f: Terms) -> list[Terms]:
     """The factors of f, single atoms among them."""
-    atoms = [atom for atom, e in common_monomial(f) if e > 0]
-    return [*({(((atom, 1),), ()): 1} for atom in atoms), *(part for part, _ in factored(f))]
+    alone: list[Terms] = [{(((atom, 1),), ()): 1} for atom, e in common_monomial(f) if e > 0]
+    return alone + [part for part, _ in factored(f)]
 
 
 def _squared(expansion: Expansion, f: Terms, root: Node) -> Terms:

@@ -111,10 +111,10 @@ class Writer:
         below: Scalar = 1
         beside: Scalar = 1
         for atom in sums:  # sqrt(2) sqrt(4 a + 2 b) = 2 sqrt(2 a + b)
-            inside = self.atoms.opaque[atom].arguments[0]
-            number = self.content(inside)
+            f = self.atoms.opaque[atom].arguments[0]
+            number = self.content(f)
             above = self.graph.mul(above, tidy(number))
-            beside = self.graph.mul(beside, self.graph.sqrt(self.sum(scaled(inside, 1 / number))))
+            beside = self.graph.mul(beside, self.graph.sqrt(self.sum(scaled(f, 1 / number))))
             del exponents[atom]
         for atom in [*(a for a in exponents if a < 0), *roots]:
             del exponents[atom]
