@@ -220,7 +220,7 @@ class _Solver:
         situation = moment.situation
         known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
         value = situation.number(output.value, {**known, **moment.numbers})
-        return evaluate((self._in_unit(value, output),), {}, FLOAT)[0]
+        return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:

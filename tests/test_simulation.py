@@ -5,11 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 
+import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed, UsageError
@@ -17,6 +20,7 @@ from eomgen.report.plots import mathtext, plot_trajectory
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.trajectory import Trajectory
 
+MODELS = Path(__file__).parent.parent / "models"
 PENDULUM = {"x0": [1.0, 0.0], "p": [1.0, 1.0, 9.81]}
 
 
@@ -179,6 +183,25 @@ def test_senseless_questions_are_refused(message):
     """What is wrong, said before anything is integrated."""
     with pytest.raises(UsageError, match=message):
         run(**BAD[message])
+
+
+# -- ties that come to depend on one another ------------------------------------------------------------
+
+
+def test_a_run_led_astray_at_a_change_point_ends_with_time_and_tie():
+    """Four equal cranks in line with their coupler: the closing rows lose rank, and the motion may branch."""
+    result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=2, target="numpy")
+    assert result.status == "singular" and result.drift < 1e-6
+    where = r"Stopped at t = 0\.24\d* s: 'P', 'Q', 'R' do not determine the motion there "
+    assert re.fullmatch(where + r"\(a dead centre or a change point\)\.", result.message)
+    assert result["a"][-1] == pytest.approx(0, abs=0.02)
+
+
+def test_ties_that_stay_independent_end_no_run():
+    """The same cranks, started so slowly that they swing back before the change point."""
+    hanging = {name: -math.pi / 2 + 0.3 for name in "abce"}
+    result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=3, target="numpy", start=hanging)
+    assert result.ok and result.drift < 1e-6
 
 
 # -- what is written ------------------------------------------------------------------------------

@@ -14,8 +14,10 @@ from eomgen.mechanics.system import System, system_of
 from eomgen.model.part import altered
 from eomgen.model.table import Table
 from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.transplant import transplanted
+
 
 def drive(system: System, coordinate: str) -> Scalar:
     """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
@@ -83,5 +85,5 @@ def _eliminated(system: System, tie: str) -> Scalar:
     for u, a in zip(free.symbols.u, free.symbols.a, strict=True):
         if u not in system.symbols.u:
             known |= {u: system.scope.names[u.name], a: system.scope.names[a.name]}
-    (value,) = substituted((residual(free, recursive.assemble(free), k, tie) / coefficient,), known)
+    (value,) = substituted((over(residual(free, recursive.assemble(free), k, tie), coefficient),), known)
     return value

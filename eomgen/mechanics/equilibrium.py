@@ -17,7 +17,9 @@ from random import Random
 
 import numpy as np
 
-from eomgen.mechanics.balance import DIRECTIONS, PLANE_ROWS, SPACE_ROWS, Balance, Component, Effect, joint_effects
+from eomgen.mechanics.balance import DIRECTIONS, Balance
+from eomgen.mechanics.components import Component
+from eomgen.mechanics.effects import PLANE_ROWS, SPACE_ROWS, Effect, joint_effects
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.loads import in_ground_axes, weights
 from eomgen.mechanics.maximal import Numbers, State

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.balance import joint_friction
+from eomgen.mechanics.components import joint_friction
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.reactions import Reactions, reactions_of, values_at_a_state
 from eomgen.mechanics.system import System
@@ -88,6 +88,7 @@ def rubbing_contacts(system: System, reactions: Reactions) -> list[Rub]:
         else:
             row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
             factor, sliding = row.friction, row.sliding
+        assert factor is not None, "what has an effect of friction has its factor"
         found.append(Rub(component.owner, j, tuple(factor * d for d in gradient(sliding, u)), factor))
     return found
 

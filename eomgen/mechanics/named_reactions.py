@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.balance import Balance, Component, Effect, efforts_of, joint_friction
+from eomgen.mechanics.balance import Balance
+from eomgen.mechanics.components import Component, joint_friction
+from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, plus

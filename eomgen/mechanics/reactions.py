@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import DIRECTIONS, Balance, Component, Effect, balance_of, efforts_of
+from eomgen.mechanics.balance import DIRECTIONS, Balance, balance_of
 from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.components import Component
+from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion
@@ -66,7 +68,7 @@ class Reactions:
         """Of each free component: what may be added to all reactions without a trace, by name."""
         found = []
         for f in self.solution.free:
-            row = {self.components[f].name: 1}
+            row: dict[str, Scalar] = {self.components[f].name: 1}
             row |= {self.components[j].name: -s[f] for j, s in self.solution.shares.items() if f in s}
             found.append(row)
         return tuple(found)

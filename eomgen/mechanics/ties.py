@@ -157,7 +157,7 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
     velocity = _power(motion, wrenches, direct)
-    sliding = 0
+    sliding: Scalar = 0
     if row.tangent:
         along = 0 if row.material else _slide(motion, row.tangent)
         sliding = _power(motion, _wrenches(motion, row.tangent), along)

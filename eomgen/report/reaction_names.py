@@ -6,7 +6,8 @@ from collections.abc import Container
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.mechanics.balance import Balance, Component
+from eomgen.mechanics.balance import Balance
+from eomgen.mechanics.components import Component
 from eomgen.mechanics.friction import Rub, rubbing_contacts
 from eomgen.mechanics.named_reactions import NamedReaction
 from eomgen.mechanics.reactions import Reactions

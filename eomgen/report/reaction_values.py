@@ -20,6 +20,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import text_size
 
+LONGEST = 3000  # characters of accelerations that are put into reactions
 TOO_MANY = 2000  # components times equations, from which on one way must do
 
 
@@ -87,7 +88,8 @@ def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: boo
         DerivationError: a body is held by nothing; a force acts at no place.
     """
     found = short_accelerations(system, assembly)
-    accelerations = {} if found is None else dict(zip(assembly.symbols.a, found, strict=True))
+    long = found is None or sum(map(text_size, found)) > LONGEST
+    accelerations = {} if found is None or long else dict(zip(assembly.symbols.a, found, strict=True))
     return Readings(system, (system.free or system) if free else system, reader, accelerations)
 
 

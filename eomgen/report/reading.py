@@ -24,6 +24,7 @@ WAVES = 100  # terms of a normal form that are written shortly; more of them tak
 POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
 HALF = Fraction(1, 2)
+DIVIDED = 4000  # characters: longer formulas are not tried as one quotient
 MOST_CASES = 4  # conditions of one formula, of which each case is put into readable form
 PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED_PART = 160  # characters of a formula in which long parts have names
@@ -185,7 +186,7 @@ def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = (
         cases = [readable_value(reader, decided(value, conditions[0], holds), positive) for holds in (True, False)]
         return conditions[0].graph.select(conditions[0], *cases) if cases[0] is not cases[1] else cases[0]
     shown = reader.shown(value)
-    if type(value) is not Node or text_size(value) > TRIED:
+    if type(value) is not Node or text_size(value) > DIVIDED:
         return value if isinstance(shown, Omitted) else shown
     one = simplest(value, WORK, positive)
     return one if isinstance(shown, Omitted) or length_in_print(one) < length_in_print(shown) else shown

@@ -10,6 +10,7 @@ from collections.abc import Container
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
+from typing import Any
 
 from eomgen.symbolic.graph import Node, Number, Scalar
 
@@ -181,10 +182,10 @@ def rebuilt_as_written(x: Scalar) -> Scalar:
         return x
     total: Scalar = 0
     for product in summands(x):
-        above: Scalar = product.coefficient
+        above: Any = product.coefficient
         for base, power in product.numerator:
             above = above * base**power
-        below: Scalar = 1
+        below: Any = 1
         for base, power in product.denominator:
             below = below * base**power
         total = total + (above if type(below) is int else above / below)

@@ -87,7 +87,9 @@ def solved(
     return Solution(constants, shares, free, tuple(line.right for line in lines))
 
 
-def _lines(rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], values: Values, tolerance: float) -> list[_Line]:
+def _lines(
+    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], values: Values, tolerance: float
+) -> list[_Line]:
     flat = [entry for row in rows for entry in row.values()]
     shadows = iter(values(flat))
     lines = []

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.derivative import symbols_of
@@ -11,9 +12,11 @@ from eomgen.symbolic.evaluation import Arithmetic, evaluate
 from eomgen.symbolic.functions import NAMES, function, over
 from eomgen.symbolic.graph import Graph, Node, Scalar
 
-_FUNCTIONS = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
-_RING = {"neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
-         "pow": operator.pow}  # fmt: skip
+_FUNCTIONS: dict[str, Callable[..., Any]] = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
+_RING: dict[str, Callable[..., Any]] = {
+    "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
+    "pow": operator.pow,
+}  # fmt: skip
 
 
 def transplanted(scalars: Sequence[Scalar], graph: Graph, meanings: Mapping[str, Scalar]) -> tuple[Scalar, ...]:

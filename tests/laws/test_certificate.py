@@ -12,7 +12,19 @@ import eomgen
 from eomgen.certificate import accelerations_at, certify, closed_state
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics import balance, contacts, friction, inertia, kinematics, reactions, recursion, ties, tree
+from eomgen.mechanics import (
+    balance,
+    components,
+    contacts,
+    effects,
+    friction,
+    inertia,
+    kinematics,
+    reactions,
+    recursion,
+    ties,
+    tree,
+)
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.balance import Balance, BodyEquation
 from eomgen.mechanics.equilibrium import imbalance
@@ -196,16 +208,16 @@ def to_the_other_side(axes, i, place):
 
 
 friction_factor, rubbing_contacts = contacts.friction_factor, friction.rubbing_contacts
-joint_effects, arm = balance._joint_effects, balance._Axes.arm
+joint_effects, arm = effects.effects_at_joint, effects.Axes.arm
 REACTION_ERRORS = [
     ("ch16_p6", ties, "friction_factor", pushing),
     ("ch16_p6", friction, "rubbing_contacts", other_way),
-    ("double_pendulum", balance, "_joint_effects", without_parent),
-    ("arm3", balance, "_joint_effects", without_parent),
-    ("double_pendulum", balance._Axes, "arm", to_the_other_side),
-    ("ch22_p1", balance._Axes, "arm", to_the_other_side),
-    ("arm3", balance, "_armatures", lambda motion, link: [(0, 1)] if link.joint.efforts() else []),
-    ("elastic_pendulum", balance, "_effort_effects", lambda axes, effort: []),
+    ("double_pendulum", components, "effects_at_joint", without_parent),
+    ("arm3", components, "effects_at_joint", without_parent),
+    ("double_pendulum", effects.Axes, "arm", to_the_other_side),
+    ("ch22_p1", effects.Axes, "arm", to_the_other_side),
+    ("arm3", effects, "_armatures", lambda motion, link: [(0, 1)] if link.joint.efforts() else []),
+    ("elastic_pendulum", effects, "_effort_effects", lambda axes, effort: []),
     ("ch18_p3", balance, "weights", lambda loads: ()),
 ]
 

@@ -1,0 +1,191 @@
+"""System -> Components: every scalar reaction of joints and ties, and what a unit of it does to the bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from eomgen.mechanics.contacts import CLOSED, friction_factor
+from eomgen.mechanics.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
+from eomgen.mechanics.kinematics import Link, Motion
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import Row
+from eomgen.model.forces.load import PointForce
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.spatial import ZERO, Vector, transposed, vector_of
+
+EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True)
+class Component:
+    """One scalar reaction.
+
+    Args:
+        owner: the tie, or the body whose joint it is.
+        kind: "tie", "joint", or "drive": what moves a driven coordinate at a joint.
+        label: "x", "y", "z", "n", "t", "couple", "couple x", "tension", "drive", or "" for a row of no place.
+        number: its row in the tie, or its place among the joint's components, from 1.
+        effects: of a unit of it, on the child or the first-named body first.
+        rubbing: its friction for a unit of it, on the same bodies.
+        side: the body on which it is the force of a hinge of several, the coordinate of a drive, or "".
+    """
+
+    owner: str
+    kind: str
+    label: str
+    number: int
+    effects: tuple[Effect, ...]
+    rubbing: tuple[Effect, ...] = ()
+    side: str = ""
+
+    @property
+    def name(self) -> str:
+        """As an output asks for it: reaction_x(B), tension(rope, 2)."""
+        if self.label == "tension":
+            return f"tension({self.owner})" if self.number == 1 else f"tension({self.owner}, {self.number})"
+        if self.label == "drive":
+            return f"drive({self.side or self.owner})"
+        owner = f"{self.owner}.{self.side}" if self.side else self.owner
+        return f"reaction_{self.label.replace(' ', '_')}({owner})"
+
+
+def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
+    """All of them: those of the joints, what drives given motions, those of the ties."""
+    return (*_joint_components(system, axes), *_tie_components(system, axes))
+
+
+# -- of joints -------------------------------------------------------------------------------------
+
+
+def _joint_components(system: System, axes: Axes) -> list[Component]:
+    found = []
+    driven = _driven_joints(axes.motion)
+    for link in axes.motion.links:
+        joint = link.joint
+        if joint is None or not joint.carries_reaction:
+            continue
+        pushes = _basis(axes, link)
+        for number, (label, force, couple) in enumerate(pushes, start=1):
+            effects = tuple(effects_at_joint(axes, link, force, couple))
+            factor = joint_friction(system, link) if label == "n" else None
+            rubbing = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, factor)))
+            found.append(Component(link.name, "joint", label, number, effects, rubbing))
+        for k, s in enumerate(link.s):
+            if link.name in driven and _is_driven(axes.motion, s):
+                effects = tuple(effects_at_joint(axes, link, *scaled(axes, link.name, k, 1)))
+                found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driven[link.name]))
+    return found
+
+
+def _driven_joints(motion: Motion) -> dict[str, str]:
+    """{body: coordinate} of the joints at which somebody has to drive a given motion ("": time alone).
+
+    They are those whose variable follows it alone; where there is none, those in which it has a part.
+    """
+    symbols, table = motion.scope.symbols, motion.scope.model.coordinates
+    free = [q for q in symbols.q if not table[q.name].driven]
+    found: dict[str, str] = {}
+    for driver in (*(q for q in symbols.q if table[q.name].driven), symbols.t):
+        name = "" if driver is symbols.t else driver.name
+        joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
+        moved = {link.name: link for link in joints if any(depends_on(s, (driver,)) for s in link.s)}
+        alone = [body for body, link in moved.items() if not any(depends_on(s, free) for s in link.s)]
+        found |= dict.fromkeys(alone or moved, name)
+    return found
+
+
+def _is_driven(motion: Motion, s: Scalar) -> bool:
+    """Whether a joint's variable follows a given motion."""
+    driven = [q for q in motion.scope.symbols.q if motion.scope.model.coordinates[q.name].driven]
+    return depends_on(s, (*driven, motion.scope.symbols.t))
+
+
+def _basis(axes: Axes, link: Link) -> list[tuple[str, Vector, Vector]]:
+    """(label, force, couple) of each reaction of a joint, child's axes: the complement of its freedom."""
+    columns = link.joint.complement(link.s, axes.motion.scope.value)
+    forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
+    couples = [vector_of(c[:3]) for c in columns if _vanishes(c[3:])]
+    if axes.plane:
+        forces = [f for f in forces if not _vanishes(f[:2])]
+        found = [("couple", ZERO, c) for c in couples if not is_zero(c[2])]
+        return [*_forces(axes, link, forces, 2), *([] if _is_idle(axes, link) else found)]
+    mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
+    names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
+    held = [(name, ZERO, c) for name, c in zip(names, EACH_AXIS if len(couples) == 3 else couples, strict=True)]
+    wrenches = [(f"wrench {k}", vector_of(c[3:]), vector_of(c[:3])) for k, c in enumerate(mixed, start=1)]
+    return [*_forces(axes, link, forces, 3), *held, *wrenches]
+
+
+def _vanishes(entries: Sequence[Scalar]) -> bool:
+    return all(is_zero(x) for x in entries)
+
+
+def _numbered(name: str, count: int) -> list[str]:
+    return [name] if count == 1 else [f"{name} {k}" for k in range(1, count + 1)]
+
+
+def _forces(axes: Axes, link: Link, forces: list[Vector], most: int) -> list[tuple[str, Vector, Vector]]:
+    """The forces of a joint: along the equations' axes where it can carry any, else normal to its motion."""
+    if len(forces) == most:
+        R_CE = transposed(axes.of_body(link))
+        return [("xyz"[k], turned(R_CE, EACH_AXIS[k]), ZERO) for k in range(most)]
+    return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
+
+
+def _is_idle(axes: Axes, link: Link) -> bool:
+    """Whether nothing can turn the body against its joint: a particle that carries no body."""
+    motion = axes.motion
+    shape = motion.scope.model.bodies[link.name].shape
+    carries = any(other.parent == motion.index[link.name] for other in motion.links)
+    return shape is not None and shape.kind == "particle" and not carries and link.point == ZERO
+
+
+def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Vector]]:
+    """The forces that a guide can carry; in the plane the one along the left normal of its motion."""
+    sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]
+    if axes.plane and len(forces) == 1 and len(sliding) == 1:
+        v = sliding[0]
+        return [("n", (-v[1], v[0], 0))]
+    return list(zip(_numbered("n", len(forces)), forces, strict=True))
+
+
+def joint_friction(system: System, link: Link) -> Scalar | None:
+    """What a unit of the normal reaction of a path rubs with along the path; None without friction."""
+    law = getattr(link.joint, "friction", None)
+    if law is None:
+        return None
+    return friction_factor(law, system.scope.value, link.s_rate[0], system.modes.get(link.name, CLOSED))
+
+
+# -- of ties ---------------------------------------------------------------------------------------
+
+
+def _tie_components(system: System, axes: Axes) -> list[Component]:
+    found = []
+    for row in system.ties.rows:
+        effects = tuple(e for push in row.pushes for e in effects_of_load(axes, push))
+        if not effects:
+            continue
+        rubbing: tuple[Effect, ...] = ()
+        if row.friction is not None:
+            rubbing = tuple(e.times(row.friction) for push in row.tangent for e in effects_of_load(axes, push))
+        found.append(_of_tie(system, row, effects, rubbing))
+    return found
+
+
+def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], rubbing: tuple[Effect, ...]) -> Component:
+    """The component; of a hinge of several bodies, the force on the one that the row adds.
+
+    Where the first-named point is the ground's, it is the force on the body.
+    """
+    first = row.pushes[0]
+    held = row.component in ("x", "y", "z")
+    from_ground = isinstance(first, PointForce) and first.place[0] is None
+    points = getattr(system.scope.model.constraints.get(row.tie), "points", None) or ()
+    if held and (len(points) > 2 or from_ground):
+        side = system.motion.links[effects[-1].link].name if len(points) > 2 else ""
+        opposite = tuple(e.times(-1) for e in effects)
+        return Component(row.tie, "tie", row.component, row.number, opposite, (), side)
+    return Component(row.tie, "tie", row.component, row.number, effects, rubbing)

@@ -1,0 +1,93 @@
+"""A contact released: the coordinates keep their names, and what only the contact held becomes free."""
+
+from __future__ import annotations
+
+import pytest
+
+import eomgen
+from eomgen.errors import DerivationError
+from eomgen.mechanics.release import released, stays_straight
+from eomgen.mechanics.system import System, system_of
+from eomgen.symbolic.exact import equal_at_random_states
+
+HEAD = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, l = 1 }
+"""
+WIRE = """
+coordinates = { s = 0, theta = 0.2 }
+points.O = [0, 0]
+constraints.wire = { kind = "link", points = ["ball.origin", "O"], length = "l", unilateral = true }
+bodies.ball.shape = { kind = "particle", mass = "m" }
+bodies.ball.joint = { kind = "placed", at = ["l*sin(theta)", "-l*cos(theta)"] }
+bodies.other.shape = { kind = "particle", mass = "m" }
+bodies.other.joint = { kind = "placed", at = ["s", 0] }
+"""
+WALL = """
+coordinates = { theta = 0.2 }
+constraints.floor = { kind = "support", point = "bar.start", normal = [0, 1], at = [0, 0], unilateral = true }
+constraints.wall = { kind = "support", point = "bar.end", normal = [1, SLOPE], at = [0, 0], unilateral = true }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "2*l" }
+joint = { kind = "placed", at = ["2*l*sin(theta) - 2*l*cos(theta)*SLOPE", 0], angle = "theta + pi/2" }
+"""
+CABLES = """
+coordinates.theta = 0.5
+points = { O1 = [0, 0], O2 = ["2*l", 0] }
+constraints.left = { kind = "link", points = ["bar.start", "O1"], length = "l", unilateral = true }
+constraints.right = { kind = "link", points = ["bar.end", "O2"], length = "l", unilateral = true }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "2*l" }
+joint = { kind = "placed", at = ["l*cos(theta)", "-l*sin(theta)"] }
+"""
+
+
+def freed(text: str, tie: str) -> tuple[System, System]:
+    """The system before and after."""
+    before = system_of(eomgen.loads(HEAD + text))
+    model, modes = released(before, tie)
+    return before, system_of(model, modes)
+
+
+def status(system: System, tie: str) -> set[str]:
+    return {row.status for row in system.ties.rows if row.tie == tie}
+
+
+def test_a_displacement_stands_last_and_its_rate_is_that_of_the_gap():
+    """The coordinates of the model first, then wire_gap; L - |r| = wire_gap, whatever the angle."""
+    from eomgen.mechanics.ties import rows_of
+
+    before, after = freed(WIRE, "wire")
+    assert [q.name for q in before.symbols.q] == ["s", "theta"]
+    assert [q.name for q in after.symbols.q] == ["s", "theta", "wire_gap"]
+    (row,) = rows_of(after.motion, "wire")
+    assert status(after, "wire") == set() and equal_at_random_states([(row.velocity, after.symbols.u[2])]).equal
+
+
+@pytest.mark.parametrize("slope", ["0", "0.3"])
+def test_another_contact_of_the_body_still_holds(slope):
+    """Away from the wall, upright or inclined, the ladder stays on the floor by its coordinates alone."""
+    before, after = freed(WALL.replace("SLOPE", slope), "wall")
+    assert status(before, "wall") == status(before, "floor") == status(after, "floor") == {"identical"}
+    assert len(after.symbols.u) == 2 and stays_straight(before, "wall") == (slope == "0")
+
+
+def test_a_body_on_parallel_wires_turns_as_it_leaves_one():
+    """No shift along one wire leaves the other as it is: the body turns too, and the other wire closes."""
+    _, after = freed(CABLES, "left")
+    assert [q.name for q in after.symbols.q] == ["theta", "left_gap", "left_turn"]
+    assert status(after, "right") == {"closing"}
+
+
+def test_what_no_body_can_leave_is_said():
+    """A crank on its hinge that rests on a stop all along: nothing placed can go away from it."""
+    text = """
+    coordinates.theta = 0.5
+    constraints.rim = { kind = "link", points = ["bar.end", "O"], length = "l", unilateral = true }
+    points.O = [0, 0]
+    bodies.bar.shape = { kind = "rod", mass = "m", length = "l" }
+    bodies.bar.joint = { kind = "revolute", angle = "theta" }
+    """
+    with pytest.raises(DerivationError, match="'rim' ends, and no body can leave it"):
+        freed(text, "rim")
