@@ -18,6 +18,7 @@ from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.proven import proven_places
 from eomgen.mechanics.start import start_state
+from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
@@ -34,7 +35,7 @@ from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.transplant import transplanted
 
 HORIZONS = (10.0, 100.0, 1000.0, 10000.0)  # s, for conditions that are met late
-FINE = Stepping(rtol=1e-12, atol=1e-12)
+FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)
 HOLDS = 1e-8  # of a condition against its change along the phase
 SAME_TIME = 1e-8  # of instants, relative to them and 1 s
 
@@ -138,11 +139,21 @@ class Journey:
         return {}
 
     def _until(self, condition: Equation, side: str | None) -> Moment:
+        if self._is_start(condition):
+            return Moment(self.situation, self.start, self.numbers, "at the start")
         if self.course is None or self._starts_in_balance(self.situation):
             return self._within(self.situation, condition, self.start, self.numbers)
         stretches = self._stretches(condition)
         moment = self._exactly(stretches, condition)
         return self._after(moment, stretches) if side == "after" else moment
+
+    def _is_start(self, condition: Equation) -> bool:
+        """Whether an instant is asked for by the time t = 0."""
+        symbols = self.situation.system.symbols
+        scalar = _difference(self.situation, condition)
+        if depends_on(scalar, (*symbols.q, *symbols.u)):
+            return False
+        return depends_on(scalar, (symbols.t,)) and holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
     def _within(
         self, situation: Situation, condition: Equation, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
@@ -207,7 +218,7 @@ class Journey:
                 if stretch.bound is not None and self._holds_at_end(stretch, until(stretch.stage)):
                     return found
             if found[-1].run.status != "finished":
-                raise RunFailed(found[-1].run.message)
+                raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].run.message}")
         raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
 
     def _holds_at_end(self, stretch: Stretch, scalar: Scalar) -> bool:
@@ -215,8 +226,9 @@ class Journey:
         run = stretch.run
         if run.end <= stretch.here.t:
             return False
-        values = stretch.stage.evaluated(np.array([run.t[0], run.end]), np.array([run.x[0], run.last]), (scalar,))[:, 0]
-        return bool(abs(values[1]) <= HOLDS * max(abs(values[0]), abs(values[0] - values[1]), 1e-12))
+        t, x = np.append(run.t, run.end), np.vstack([run.x, run.last])
+        size = np.abs(stretch.stage.evaluated(t, x, (scalar,))[:, 0])
+        return bool(size[-1] <= HOLDS * max(np.max(size), 1e-12))
 
     def _exactly(self, stretches: list[Stretch], condition: Equation) -> Moment:
         """The end of the last phase, every end before it sought in closed form."""

@@ -12,7 +12,7 @@ from eomgen.mechanics.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.pipeline import METHODS, Equations, derive
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expressions import Call, Reference, parse
 from eomgen.symbolic.graph import Node, Scalar
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -163,7 +163,10 @@ def by_every_method() -> tuple[tuple[str, str], ...]:
 
 
 def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
-    """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier."""
+    """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier.
+
+    Cases are printed by two functions more than the grammar has: select(less_equal(x, y), a, b).
+    """
     symbols = equations.graph.symbols
     free = free_system(equations).symbols
     own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *free.u, *free.a)
@@ -171,7 +174,15 @@ def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = 
     multipliers = {symbol.name: symbol for symbol in symbols.lam}
     expression = parse(text, references=True, longest=2_000_000)
     lookup = {**names, "pi": symbols.graph.pi, **(also or {})}
-    return expression.evaluate(lookup, call=lambda call: multipliers[str(call)])
+
+    def called(call: Call) -> Scalar:
+        if str(call) in multipliers:
+            return multipliers[str(call)]
+        args = [lookup[x.name] if isinstance(x, Reference) else x.evaluate(lookup, call=called) for x in call.args]
+        graph = symbols.graph
+        return graph.select(*args) if call.name == "select" else graph.call(call.name, *args)
+
+    return expression.evaluate(lookup, call=called)
 
 
 def free_system(equations: Equations) -> System:

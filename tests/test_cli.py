@@ -385,9 +385,12 @@ def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
 
 def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):
     """A body that nothing holds, reactions that have no single value: no file, null in the JSON, a line on stderr."""
-    for name, line in (("atwood", "no code for the reactions: body 'left' is held by nothing along y"),
-                       ("four_cranks", "no code for the reactions: none has a single value")):  # fmt: skip
-        result = run("codegen", str(MODELS / f"{name}.toml"), "-o", str(tmp_path / name))
+    loose, _, weight = (MODELS / "atwood.toml").read_text().partition("[constraints.string]")
+    (tmp_path / "loose.toml").write_text(loose + weight[weight.index("[forces") : weight.index("[outputs]")])
+    for path, line in ((tmp_path / "loose.toml", "no code for the reactions: body 'left' is held by nothing along y"),
+                       (MODELS / "four_cranks.toml", "no code for the reactions: none has a single value")):  # fmt: skip
+        name = path.stem
+        result = run("codegen", str(path), "-o", str(tmp_path / name))
         assert (result.exit_code, result.stderr) == (0, line + "\n")
         assert not list((tmp_path / name).glob("*reactions*"))
         assert json.loads((tmp_path / name / "test_vectors.json").read_text())["reactions"] is None

@@ -59,3 +59,13 @@ def test_numbers_go_before_normal_equations():
     solution = system([{0: 1, 1: c}, {1: s}, {1: c, 0: 1}], [b[0], b[1], b[0]], 2, simple=rank, sure=1)
     assert solution.determined(0) and solution.determined(1)
     assert equal_at_random_states([(solution.constants[0] + c * solution.constants[1], b[0])]).equal
+
+
+def test_a_normal_reaction_that_rubs_is_tested_by_its_push_alone():
+    """(n + mu t) N = b with n = (-sin, cos), t = -(cos, sin): n . (n + mu t) = 1, and N = n . b."""
+    g = Graph()
+    theta, mu, b = g.symbol("theta"), g.symbol("mu"), [g.symbol("b1"), g.symbol("b2")]
+    s, c = sin(theta), cos(theta)
+    rows = [{0: -s - mu * c}, {0: c - mu * s}]
+    solution = system(rows, b, 1, simple=rank, sure=1, tests=[{0: -s}, {0: c}])
+    assert equal_at_random_states([(solution.constants[0], -s * b[0] + c * b[1])]).equal

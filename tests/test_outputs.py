@@ -8,11 +8,11 @@ from random import Random
 import pytest
 
 import eomgen
-from eomgen.answers import explicit_accelerations
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.outputs import COMPONENTS, MAGNITUDES, TURNING, Quantities, later
 from eomgen.mechanics.system import system_of
 from eomgen.model.checks.outputs import FUNCTIONS
+from eomgen.situation import accelerations_and_multipliers
 from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import parse
@@ -201,8 +201,8 @@ def moving(text: str) -> Motion:
     """The model moving as its equations say."""
     motion = Motion(text)
     assembly = recursive.assemble(motion.system)
-    accelerations = explicit_accelerations(motion.system, assembly)
-    motion.state |= {node: motion.number(a) for node, a in zip(motion.system.symbols.a, accelerations, strict=True)}
+    found = accelerations_and_multipliers(motion.system, assembly)
+    motion.state |= {node: motion.number(found[node]) for node in motion.system.symbols.a}
     return motion
 
 

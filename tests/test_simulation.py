@@ -190,7 +190,8 @@ def test_senseless_questions_are_refused(message):
 
 def test_a_run_led_astray_at_a_change_point_ends_with_time_and_tie():
     """Four equal cranks in line with their coupler: the closing rows lose rank, and the motion may branch."""
-    result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=2, target="numpy")
+    with pytest.warns(RuntimeWarning, match="Statically indeterminate"):
+        result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=0.3, target="numpy")
     assert result.status == "singular" and result.drift < 1e-6
     where = r"Stopped at t = 0\.24\d* s: 'P', 'Q', 'R' do not determine the motion there "
     assert re.fullmatch(where + r"\(a dead centre or a change point\)\.", result.message)
@@ -200,7 +201,8 @@ def test_a_run_led_astray_at_a_change_point_ends_with_time_and_tie():
 def test_ties_that_stay_independent_end_no_run():
     """The same cranks, started so slowly that they swing back before the change point."""
     hanging = {name: -math.pi / 2 + 0.3 for name in "abce"}
-    result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=3, target="numpy", start=hanging)
+    with pytest.warns(RuntimeWarning, match="Statically indeterminate"):
+        result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=2, target="numpy", start=hanging)
     assert result.ok and result.drift < 1e-6
 
 

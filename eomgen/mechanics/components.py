@@ -10,7 +10,7 @@ from eomgen.mechanics.effects import Axes, Effect, effects_at_joint, effects_of_
 from eomgen.mechanics.kinematics import Link, Motion
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
-from eomgen.model.forces.load import PointForce
+from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, transposed, vector_of
@@ -66,7 +66,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
         joint = link.joint
         if joint is None or not joint.carries_reaction:
             continue
-        pushes = _basis(axes, link)
+        pushes = _basis(axes, link, system)
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
             factor = joint_friction(system, link) if label == "n" else None
@@ -102,7 +102,7 @@ def _is_driven(motion: Motion, s: Scalar) -> bool:
     return depends_on(s, (*driven, motion.scope.symbols.t))
 
 
-def _basis(axes: Axes, link: Link) -> list[tuple[str, Vector, Vector]]:
+def _basis(axes: Axes, link: Link, system: System) -> list[tuple[str, Vector, Vector]]:
     """(label, force, couple) of each reaction of a joint, child's axes: the complement of its freedom."""
     columns = link.joint.complement(link.s, axes.motion.scope.value)
     forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
@@ -110,7 +110,7 @@ def _basis(axes: Axes, link: Link) -> list[tuple[str, Vector, Vector]]:
     if axes.plane:
         forces = [f for f in forces if not _vanishes(f[:2])]
         found = [("couple", ZERO, c) for c in couples if not is_zero(c[2])]
-        return [*_forces(axes, link, forces, 2), *([] if _is_idle(axes, link) else found)]
+        return [*_forces(axes, link, forces, 2), *([] if _is_idle(axes, link, system) else found)]
     mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
     names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
     held = [(name, ZERO, c) for name, c in zip(names, EACH_AXIS if len(couples) == 3 else couples, strict=True)]
@@ -134,12 +134,16 @@ def _forces(axes: Axes, link: Link, forces: list[Vector], most: int) -> list[tup
     return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
 
 
-def _is_idle(axes: Axes, link: Link) -> bool:
-    """Whether nothing can turn the body against its joint: a particle that carries no body."""
+def _is_idle(axes: Axes, link: Link, system: System) -> bool:
+    """Whether nothing can turn the body against its joint: a particle with all that acts on it at its mass."""
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape
     carries = any(other.parent == motion.index[link.name] for other in motion.links)
-    return shape is not None and shape.kind == "particle" and not carries and link.point == ZERO
+    if shape is None or shape.kind != "particle" or carries or link.point != ZERO:
+        return False
+    loads = (*system.loads.placed, *(push for row in system.ties.rows for push in (*row.pushes, *row.tangent)))
+    mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]
+    return all(is_zero(effect.six[5]) for load in mine for effect in effects_of_load(axes, load))
 
 
 def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Vector]]:
@@ -153,10 +157,12 @@ def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Ve
 
 def joint_friction(system: System, link: Link) -> Scalar | None:
     """What a unit of the normal reaction of a path rubs with along the path; None without friction."""
-    law = getattr(link.joint, "friction", None)
-    if law is None:
+    pieces = getattr(link.joint, "pieces", ())
+    value, mode = system.scope.value, system.modes.get(link.name, CLOSED)
+    factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
+    if all(factor is None for factor in factors):
         return None
-    return friction_factor(law, system.scope.value, link.s_rate[0], system.modes.get(link.name, CLOSED))
+    return link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
 
 
 # -- of ties ---------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.wellposed import is_conservative
-from eomgen.model.forces.load import Couple, GeneralizedForce, PointForce
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
 from eomgen.symbolic.derivative import depends_on, gradient
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import readable
@@ -55,19 +55,33 @@ def energy_integral(system: System, assembly: Assembly) -> tuple[Integral, ...]:
 
 def work_of_constant_forces(system: System) -> Scalar:
     """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
-    loads, motion, symbols = system.loads, system.motion, system.symbols
+    loads = system.loads
     work: Scalar = 0
     for force in loads.applied:
         for load in () if force.potential is not None else force.loads:
-            if isinstance(load, PointForce) and load.axes is None:
-                work = work + dot(load.force, motion.position(load.place))
-            elif isinstance(load, Couple) and load.body is not None:
-                work = work + load.couple[2] * (motion.link(load.body).angle or 0)
-            elif isinstance(load, GeneralizedForce):
-                work = work + load.value * next(q for q in symbols.q if q.name == load.coordinate)
+            work = work + _work(system, load)
     for effort in loads.efforts:
-        work = work + effort.drive * motion.link(effort.body).s[effort.variable]
+        if _is_constant(system, effort.drive):
+            work = work + effort.drive * system.motion.link(effort.body).s[effort.variable]
     return work
+
+
+def _work(system: System, load: Load) -> Scalar:
+    """The work of one load where it is constant, else 0."""
+    motion = system.motion
+    if isinstance(load, PointForce) and load.axes is None and _is_constant(system, *load.force):
+        return dot(load.force, motion.position(load.place))
+    if isinstance(load, Couple) and _is_constant(system, *load.couple):
+        return load.couple[2] * (motion.link(load.body).angle or 0)
+    if isinstance(load, GeneralizedForce) and _is_constant(system, load.value):
+        return load.value * next(q for q in system.symbols.q if q.name == load.coordinate)
+    return 0
+
+
+def _is_constant(system: System, *scalars: Scalar) -> bool:
+    symbols = system.symbols
+    moving = (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values())
+    return not any(depends_on(x, moving) for x in scalars)
 
 
 def momentum_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:

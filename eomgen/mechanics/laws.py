@@ -17,13 +17,13 @@ from eomgen.mechanics.linear_motion import Constants, Line, pair, solution
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import holds_identically
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, derivative, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.solving import vanishes
 from eomgen.symbolic.text import text_size
 
 WORK = 20_000  # products of terms for one law
@@ -160,7 +160,7 @@ class _Laws:
         """The sign of a constant: of its value, or the one that all of its terms have."""
         if type(x) is not Node:
             return (x > 0) - (x < 0)
-        if holds_identically(x):
+        if vanishes(x):
             return 0
         values = exact_parameters(self.system.scope.model)
         parameters = self.system.symbols.parameters

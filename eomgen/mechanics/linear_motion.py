@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.scope import integral_from_zero
-from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.functions import function, over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.normal_form import readable
+from eomgen.symbolic.solving import vanishes
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
 
@@ -138,7 +138,7 @@ def _of_term(A: Scalar, B: Scalar, g: Scalar, of: Constants) -> Scalar | None:
         return _of_polynomial(A, B, g, t)
     # x g + y g':  (mu - A) x - B mu y = 1,  (mu - A) y = B x
     below = of.simple((mu - A) * (mu - A) - B * B * mu)
-    if holds_identically(below):
+    if vanishes(below):
         return None  # resonance
     return over((mu - A) * g + B * derivative(g, t), below)
 

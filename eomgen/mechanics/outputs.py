@@ -53,7 +53,8 @@ def later(function: str) -> str:
 
 COMPONENTS_OF_REACTIONS = {f"reaction_{axis}": i for axis, i in _AXES.items()}
 COUPLES = {"reaction_couple": 2, **{f"reaction_couple_{axis}": i for axis, i in _AXES.items()}}
-ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, "reaction_n", "tension", "multiplier", "drive"))
+_ALONE = ("reaction_n", "reaction_t", "tension", "multiplier", "drive")
+ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, *_ALONE))
 """Functions for which the balance of the bodies is needed."""
 
 
@@ -110,6 +111,8 @@ class Quantities:
         owner, _, side = owner.partition(".")
         if call.name == "reaction_n":
             return self.reactions.normal(owner)
+        if call.name == "reaction_t":
+            return self.reactions.friction(owner)
         if call.name in COMPONENTS_OF_REACTIONS:
             return self.reactions.component("force", COMPONENTS_OF_REACTIONS[call.name], owner, side, frame)
         return self.reactions.component("couple", COUPLES[call.name], owner, side, frame)

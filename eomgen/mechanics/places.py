@@ -17,13 +17,12 @@ from fractions import Fraction
 from itertools import combinations
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import has_period, roots
+from eomgen.symbolic.solving import has_period, roots, vanishes
 
 AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable
@@ -57,9 +56,9 @@ class Located:
         turn = 2 * node.graph.pi
         for candidate in candidates:
             away = (self.numbers.get(node, math.nan) - self.value(candidate)) / math.tau
-            turns = round(away) if math.isfinite(away) and has_period(equation, node, turn) else 0
+            turns = round(away) if math.isfinite(away) else 0
             shifted = candidate + turns * turn if turns else candidate
-            if self.agrees(shifted, node):
+            if self.agrees(shifted, node) and (not turns or has_period(equation, node, turn)):
                 return shifted
         return None
 
@@ -79,7 +78,7 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
     relations: dict[Node, Scalar] = {}
     found: dict[Node, Scalar] = {}
     while left:
-        left = [x for x in substituted(left, {**relations, **found}) if not is_zero(x) and not holds_identically(x)]
+        left = [x for x in substituted(left, {**relations, **found}) if not is_zero(x) and not vanishes(x)]
         step = _single(left, unknowns, located) or _relation(left, unknowns, located)
         if step is not None:
             node, value, used = step
@@ -147,7 +146,7 @@ def _pair_of_loop(left: Sequence[Scalar], unknowns: Collection[Node]) -> tuple[i
             if len(_held(left[i], unknowns)) < 2 or q not in _held(left[j], unknowns):
                 continue
             first, second = _waves(left[i], q), _waves(left[j], q)
-            if first and second and not holds_identically(first[0] * second[1] - second[0] * first[1]):
+            if first and second and not vanishes(first[0] * second[1] - second[0] * first[1]):
                 return i, j, first, second
     return None
 
@@ -162,4 +161,4 @@ def _waves(equation: Scalar, q: Node) -> Waves | None:
     half = Fraction(1, 2)
     a, r = half * (at[0] - at[2]), half * (at[0] + at[2])
     b = at[1] - r
-    return (a, b, r) if holds_identically(equation - a * cos(q) - b * sin(q) - r) else None
+    return (a, b, r) if vanishes(equation - a * cos(q) - b * sin(q) - r) else None

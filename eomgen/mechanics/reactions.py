@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import DIRECTIONS, Balance, balance_of
+from eomgen.mechanics.balance import DIRECTIONS, Balance, BodyEquation, balance_of
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import substituted
@@ -118,6 +119,16 @@ class Reactions:
         if self.is_open(owner):
             return 0
         return self._labelled(owner, "n", "normal reaction")
+
+    def friction(self, owner: str) -> Scalar:
+        """The force along the contact, positive along the normal turned clockwise: it rubs, or keeps from sliding."""
+        if self.is_open(owner):
+            return 0
+        name = f"reaction_t({owner})"
+        for named in named_reactions(self.balance):
+            if named.name == name:
+                return self.combined({j: self._replaced((k, 0, 0))[0] for j, k in named.combination.items()}, name)
+        return self._labelled(owner, "t", "friction")
 
     def tension(self, owner: str, strand: int = 1) -> Scalar:
         """Tension of a link, or of a strand of a string."""
@@ -249,10 +260,12 @@ def reactions_of(
 
 def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -> Solution:
     entries = [x for e in balance.equations for x in e.coefficients.values()]
+    pushes = [_pushes(balance, e) for e in balance.equations]
     needed = tuple(e.needed for e in balance.equations)
     if at:
         entries = list(readable_all(substituted(tuple(entries), at)))
         needed = readable_all(substituted(needed, at))
+        pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at)), strict=True)) for row in pushes]
     flat = iter(entries)
     rows = [{j: next(flat) for j in e.coefficients} for e in balance.equations]
     parameters = frozenset(balance.system.symbols.parameters.values())
@@ -263,7 +276,16 @@ def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return solved(rows, needed, len(balance.components), values, simple=simple, last=last, sure=sure)
+    return solved(rows, needed, len(balance.components), values, simple=simple, last=last, sure=sure,
+                  tests=pushes)  # fmt: skip
+
+
+def _pushes(balance: Balance, equation: BodyEquation) -> Combination:
+    """The coefficients of the components that rub as they would be without friction."""
+    link = balance.system.motion.index[equation.body]
+    rubbing = [j for j in equation.coefficients if balance.components[j].rubbing]
+    return {j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
+            for j in rubbing}  # fmt: skip
 
 
 def _is_product(a: Node, parameters: frozenset[Node]) -> bool:

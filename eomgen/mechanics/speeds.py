@@ -16,16 +16,18 @@ from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.integrals import energy_integral, momentum_integrals
+from eomgen.mechanics.linear_motion import Constants, Line, particular
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic import linear
 from eomgen.symbolic.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.evaluation import evaluate, fifty_digits, order
 from eomgen.symbolic.functions import function, over
-from eomgen.symbolic.graph import Node, Scalar, linear_terms
+from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.solving import vanishes
 from eomgen.symbolic.symbols import Symbols
 
 LONGEST = 20_000  # products of terms for making a speed readable
@@ -146,7 +148,7 @@ def speed_of(
         return _root_of_energy(difference, relations, sense, positive)
     if accelerations is None:
         return None
-    square = _square_by_path(assembly, relations, start, accelerations, sense)
+    square = _square_by_path(assembly, relations, start, accelerations, sense, positive)
     if square is None:
         return None
     return sense * function("sqrt", simplest(substituted((square,), at)[0], LONGEST, positive))
@@ -173,8 +175,8 @@ def _root_of_energy(energy: Scalar, relations: Relations, sense: int, positive: 
     slope = derivative(energy, s)
     C, B = substituted((energy, slope), {s: 0})
     A = over(derivative(slope, s), 2)
-    if holds_identically(B):
-        return 0 if holds_identically(C) else sense * function("sqrt", simplest(over(-C, A), LONGEST, positive))
+    if vanishes(B):
+        return 0 if vanishes(C) else sense * function("sqrt", simplest(over(-C, A), LONGEST, positive))
     inside = simplest(B * B - 4 * A * C, LONGEST, positive)
     return simplest(over(sense * function("sqrt", inside) - B, 2 * A), LONGEST, positive)
 
@@ -185,29 +187,41 @@ def _square_by_path(
     start: Mapping[Node, Scalar],
     accelerations: Sequence[Scalar],
     sense: int,
+    positive: frozenset[Node],
 ) -> Scalar | None:
     """y = u_s^2 as a function of q_s, from dy/dq_s = 2 F0 + 2 F2 y."""
     symbols, s = assembly.symbols, relations.speed
     assert s is not None
     q = next((q for q in symbols.q if q.name + "'" == s.name), None)
     (F,) = substituted((accelerations[symbols.u.index(s)],), relations.speeds)  # of all q: nothing is put in yet
-    F = _in_sense(F, s, sense)
+    F = _in_sense(F, s, sense, positive)
     if q is None or depends_on(F, (symbols.t, *symbols.inputs.values())):
         return None
     F = simplest(F, LONGEST)
     F0, F2 = substituted((F, over(derivative(derivative(F, s), s), 2)), {s: 0})
     others = tuple(x for x in symbols.q if x is not q)
-    if depends_on(F0, others) or depends_on(F2, others) or not holds_identically(F - F0 - F2 * s * s):
+    if depends_on(F0, others) or depends_on(F2, others) or not vanishes(F - F0 - F2 * s * s):
         return None
-    power = primitive(2 * F2, q) if type(F2) is Node or F2 else 0
+    solution = _of_first_order(2 * simplest(F0, LONGEST, positive), 2 * simplest(F2, LONGEST, positive), q)
+    if solution is None:
+        return None
+    growth, own = solution
+    at, first = substituted((own, growth), {q: start[q]})
+    return own + over(growth, first) * (start[s] * start[s] - at)
+
+
+def _of_first_order(f: Scalar, k: Scalar, q: Node) -> tuple[Scalar, Scalar] | None:
+    """(g, y): solutions of g' = k g and y' = k y + f; None where they have no closed form."""
+    power = 0 if is_zero(k) else primitive(k, q)
     if power is None:
         return None
     growth = exponential_of(power)
-    gained = primitive(over(2 * F0, growth), q)
-    if gained is None:
-        return None
-    first = substituted((over(start[s] * start[s], growth) - gained,), {q: start[q]})[0]
-    return growth * (gained + first)
+    if not is_zero(k) and not depends_on(k, (q,)):
+        constants = Constants(q, lambda x: None, lambda x: simplest(x, LONGEST))
+        second = particular(Line(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
+        return None if second is None else (growth, derivative(second, q))
+    gained = primitive(over(f, growth), q)
+    return None if gained is None else (growth, growth * gained)
 
 
 def exponential_of(x: Scalar) -> Scalar:
@@ -222,9 +236,16 @@ def exponential_of(x: Scalar) -> Scalar:
     return product * function("exp", rest)
 
 
-def _in_sense(F: Scalar, s: Node, sense: int) -> Scalar:
-    """F with sign(u_s) replaced by the sense."""
-    known: dict[Node, Scalar] = {node: sense for node in order((F,)) if node.op == "sign" and node.args[0] is s}
+def _in_sense(F: Scalar, s: Node, sense: int, positive: frozenset[Node]) -> Scalar:
+    """F with sign(k u_s) replaced by what it is in this sense, for every k that has a sign of its own."""
+    known: dict[Node, Scalar] = {}
+    for node in order((F,)):
+        if node.op != "sign":
+            continue
+        k = simplest(derivative(node.args[0], s), LONGEST, positive)
+        sign = sign_of_terms(k, positive)
+        if sign and vanishes(node.args[0] - k * s):
+            known[node] = sense * sign
     return substituted((F,), known)[0] if known else F
 
 

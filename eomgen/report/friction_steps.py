@@ -10,16 +10,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
-from eomgen.report.reading import TRIED, WORK, Reader, length_in_print, readable_value
+from eomgen.report.reaction_values import Readings, readings_of
+from eomgen.report.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.report.statements import Formula, Prose, Step
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.text import text_size
 
 LONGEST = 240  # characters of an acceleration in print
@@ -49,15 +48,15 @@ class Friction:
 
 def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     """The friction of every contact by its normal reaction, and that by the bodies' balance."""
-    letters = lettered(reactions_of(system, short=True), system.scope.names)
+    readings = readings_of(system, reader, assembly)
+    letters = lettered(readings.ways[0], system.scope.names)
     senses = _senses(letters, system)
-    accelerations = dict(zip(assembly.symbols.a, assembly.accelerations or (), strict=False))
     forces: list[Scalar] = [0] * len(system.symbols.u)
     definitions = [(symbol, function("sign", readable_value(reader, x.args[0]))) for x, symbol in senses.items()]
     statements = [*map(Formula, definitions)]
     for rub, friction in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
-        value = _shorter(reader, letters.reactions.value(rub.component), accelerations, senses)
+        value = _normal(readings, rub.component, assembly, senses)
         factor, *row = substituted((rub.factor, *rub.force), senses)
         definitions.append((normal, value))
         statements += [Formula((normal, value)), Formula((friction, reader.shown(factor) * normal))]
@@ -66,30 +65,34 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
 
 
-def _shorter(reader: Reader, value: Scalar, a: Mapping[Node, Scalar], senses: Mapping[Node, Node]) -> Scalar:
+def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node, Node]) -> Scalar:
     """A normal reaction with its accelerations, or with those of the equations of motion where that is shorter."""
-    with_a = readable_value(reader, substituted((value,), senses)[0])
-    whole = _sliding(substituted((value,), a)[0])
-    if whole is None:
-        return with_a
-    whole = readable_value(reader, substituted((whole,), senses)[0])
-    return whole if length_in_print(whole) <= length_in_print(with_a) else with_a
+    reader, positive = readings.reader, readings.positive
+    values = [way.value(j) for way in readings.ways]
+    accelerations = dict(zip(assembly.symbols.a, assembly.accelerations or (), strict=False))
+    moving = [_sliding(reader, substituted((x,), accelerations)[0]) for x in values if text_size(x) <= TRIED]
+    forms = [x for x in (*values, *moving) if x is not None]
+    shown = [readable_value(reader, x, positive) for x in substituted(tuple(forms), senses)]
+    return min(shown, key=length_in_print)
 
 
-def _sliding(x: Scalar) -> Scalar | None:
+def _sliding(reader: Reader, x: Scalar) -> Scalar | None:
     """x while the one contact in it slides, sign^2 = 1; None where there are several, or x is long."""
+    for condition in conditions_in(x)[:1]:
+        cases = [_sliding(reader, decided(x, condition, holds)) for holds in (True, False)]
+        return None if None in cases else condition.graph.select(condition, *cases)
     signs = [node for node in order((x,)) if node.op == "sign"]
     if text_size(x) > TRIED or len(signs) > 1:
         return None
     for sign in signs:
-        up, down = (simplest(substituted((x,), {sign: one})[0], WORK) for one in (1, -1))
-        x = simplest(HALF * (up + down) + HALF * sign * (up - down), WORK)
+        up, down = (readable_value(reader, substituted((x,), {sign: one})[0]) for one in (1, -1))
+        x = readable_value(reader, HALF * (up + down) + HALF * sign * (up - down))
     return x
 
 
 def _solved(reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
     """The accelerations while one contact slides, where they are short."""
-    found = [_sliding(x) for x in assembly.accelerations or ()]
+    found = [_sliding(reader, x) for x in assembly.accelerations or ()]
     shown = [None if x is None else readable_value(reader, x) for x in found]
     if not shown or any(x is None or length_in_print(x) > LONGEST for x in shown):
         return ()

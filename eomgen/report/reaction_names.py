@@ -132,6 +132,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]
     component = next((c for c in mine if c.side == side), mine[0])
     on = _on(balance, component)
+    if kind == "t":
+        return f"friction {on}, along the contact"
     if kind.startswith("couple_"):
         return f"couple {on}, about {axis}"
     return f"force {on}, along {axis}"

@@ -23,13 +23,12 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import holds_identically
 from eomgen.simulation.arrival import first_arrival
 from eomgen.simulation.configurations import Configurations
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.solving import roots
+from eomgen.symbolic.solving import roots, vanishes
 
 RESTING = 1e-11  # of the rates at the start, against those of a configuration nearby
 TOLERANCE = 1e-12  # of the integration to a given time
@@ -164,7 +163,7 @@ class Locating:
             found = relations_of(self.system, self.assembly, self._exact_start)
         except DerivationError:  # a start without values
             return None
-        if found is None or found.speed is None or not all(map(holds_identically, found.constants.values())):
+        if found is None or found.speed is None or not all(map(vanishes, found.constants.values())):
             return None
         return found
 

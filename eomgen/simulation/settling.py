@@ -2,7 +2,7 @@
 
 Of all configurations that the positions and velocities allow, the first whose forces and accelerations agree with it:
 
-    closed   N >= 0              sticks   |F| <= mu |N|
+    closed   N >= 0              sticks   |F| <= mu |N|, and F can hold it: v' = 0
     open     gap'' >= 0          slides from rest along its sense   sense v' >= 0
 """
 
@@ -86,7 +86,7 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
 
 
 def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
-    """Whether forces and accelerations are such as the configuration says; what has no single value denies nothing."""
+    """Whether forces and accelerations are such as the configuration says; an N without one value denies nothing."""
     x = stage.state(values)
     found = stage.look(t, x)
     forces, accelerations = stage.sizes(t, x)
@@ -109,6 +109,7 @@ def _signs(
     if contact.unilateral or mode.sense != 0:
         yield from ((mode.push * N, 0.0) for (owner, what), N in found.items() if owner == name and what[0] == "N")
     if mode.sense == 0:
-        yield found[name, "mu"] * abs(found[name, "N"]) - abs(found[name, "hold"]), 0.0
+        grip = found[name, "mu"] * abs(found[name, "N"]) - abs(found[name, "hold"])
+        yield grip if np.isfinite(found[name, "hold"]) else -np.inf, -abs(found[name, "slide'"])  # at a dead centre
     elif mode.sense is not None and sense == 0:
         yield 0.0, mode.sense * found[name, "slide'"]

@@ -4,14 +4,14 @@ A pivot must not vanish where the equations hold. Whether an entry does is read 
 the shadow, which is carried through the elimination beside the expressions. What has pivots that vanish at special
 states alone (the sine of an angle) is left to the normal equations
 
-    A^T A x = A^T b,
+    W^T A x = W^T b,   W = A where nothing better is known,
 
-which for equations without contradiction have the same solution, and no other singular states than A itself.
+which for equations without contradiction have the same solution, and with W = A no other singular states than A.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,17 +50,18 @@ class Solution:
 
 @dataclass
 class _Line:
-    """One row under elimination: its entries, their shadows, and its right side."""
+    """One row under elimination: its entries, their shadows, its right side, and its row of W."""
 
     entries: Row
     shadow: dict[int, Any]
     right: Scalar
+    test: Row
 
 
 def solved(
     rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int, values: Values,
     *, simple: Callable[[Scalar], int] | None = None, tolerance: float = 1e-20, last: Sequence[int] = (),
-    sure: int | None = None,
+    sure: int | None = None, tests: Sequence[Mapping[int, Scalar]] = (),
 ) -> Solution:  # fmt: skip
     """The solution of sparse linear equations, sum over j of rows[i][j] x_j = right[i].
 
@@ -74,13 +75,14 @@ def solved(
         last: unknowns that are taken as pivots only where there is no other.
         sure: the largest rank of a pivot that vanishes nowhere; the others wait for the normal equations (None: all
             are taken as they come).
+        tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
     """
-    lines = _lines(rows, right, values, tolerance)
+    lines = _lines(rows, right, values, tolerance, tests or [{}] * len(rows))
     simple, late = simple or _number_first, frozenset(last)
     order: list[tuple[int, _Line]] = []
     if sure is not None:
         _eliminate(lines, order, lambda line, j, x: (simple(x), j in late), tolerance, worst=(sure, True))
-        _normal(lines, order)
+        _normal(lines, order, values)
     _eliminate(lines, order, lambda line, j, x: (j in late, simple(x)), tolerance)
     free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, tolerance)
@@ -88,16 +90,18 @@ def solved(
 
 
 def _lines(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], values: Values, tolerance: float
-) -> list[_Line]:
+    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], values: Values, tolerance: float,
+    tests: Sequence[Mapping[int, Scalar]],
+) -> list[_Line]:  # fmt: skip
     flat = [entry for row in rows for entry in row.values()]
     shadows = iter(values(flat))
     lines = []
-    for row, b in zip(rows, right, strict=True):
+    for row, b, test in zip(rows, right, tests, strict=True):
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
         kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > tolerance * largest}
-        lines.append(_Line(kept, {j: shadow[j] for j in kept}, b))
+        own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
+        lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines
 
 
@@ -138,22 +142,36 @@ def _pivot(lines: list[_Line], rank: Callable[[_Line, int, Scalar], tuple[int, i
     return found
 
 
-def _normal(lines: list[_Line], order: list[tuple[int, _Line]]) -> None:
+def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: Values) -> None:
     """Solve the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
     for group, unknowns in _groups(lines):
         A = np.array([[float(line.shadow.get(j, 0)) for j in unknowns] for line in group])
         if len(unknowns) > min(len(group), TOGETHER) or not _independent(A):
             continue
-        square = len(group) == len(unknowns)
-        taken = [line.entries for line in group] if square else [_gram(group, j, unknowns) for j in unknowns]
-        right = [line.right for line in group] if square else [_sum(group, j) for j in unknowns]
-        values = cramer.solved([dict(zip(range(len(unknowns)), (row.get(j, 0) for j in unknowns), strict=True))
-                                for row in taken], [(b,) for b in right])[0]  # fmt: skip
+        rows, right = _tested(group, unknowns, A, values)
+        found = cramer.solved(rows, [(b,) for b in right])[0]
         for line in group:
             lines.remove(line)
-        known = {j: value for j, (value,) in zip(unknowns, values, strict=True)}
-        order += [(j, _Line({j: 1}, {j: 1}, value)) for j, value in known.items()]
-        lines += [_Line({}, {}, _rest(line, known)) for line in group[len(unknowns) :]]
+        known = {j: value for j, (value,) in zip(unknowns, found, strict=True)}
+        order += [(j, _Line({j: 1}, {j: 1}, value, {})) for j, value in known.items()]
+        lines += [_Line({}, {}, _rest(line, known), {}) for line in group[len(unknowns) :]]
+
+
+def _tested(group: list[_Line], unknowns: list[int], A: np.ndarray, values: Values) -> tuple[list[Row], list[Scalar]]:
+    """(W^T A, W^T b), and (A, b) itself where it is square; unknowns counted from 0."""
+    if len(group) == len(unknowns):
+        return [_numbered(line.entries, unknowns) for line in group], [line.right for line in group]
+    W = [line.test for line in group]
+    flat = iter(values([row.get(j, 0) for row in W for j in unknowns]))
+    if not _independent(np.array([[float(next(flat)) for _ in unknowns] for _ in W]).T @ A):
+        W = [line.entries for line in group]
+    rows = [{k: _sum(row.get(i, 0) * line.entries.get(j, 0) for row, line in zip(W, group, strict=True))
+             for k, j in enumerate(unknowns)} for i in unknowns]  # fmt: skip
+    return rows, [_sum(row[i] * line.right for row, line in zip(W, group, strict=True) if i in row) for i in unknowns]
+
+
+def _numbered(entries: Row, unknowns: list[int]) -> Row:
+    return {k: entries[j] for k, j in enumerate(unknowns) if j in entries}
 
 
 def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
@@ -172,23 +190,17 @@ def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
 
 def _independent(A: np.ndarray) -> bool:
     """Whether the columns are independent."""
-    sizes = np.linalg.svd(A / np.linalg.norm(A, axis=0), compute_uv=False)
-    return bool(sizes[-1] > RANK)
+    lengths = np.linalg.norm(A, axis=0)
+    return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > RANK)
 
 
-def _gram(group: list[_Line], j: int, unknowns: list[int]) -> Row:
-    """Row j of A^T A."""
-    return {k: sum((line.entries.get(j, 0) * line.entries.get(k, 0) for line in group), start=0) for k in unknowns}
-
-
-def _sum(group: list[_Line], j: int) -> Scalar:
-    """Entry j of A^T b."""
-    return sum((line.entries[j] * line.right for line in group if j in line.entries), start=0)
+def _sum(terms: Iterable[Scalar]) -> Scalar:
+    return sum(terms, start=0)
 
 
 def _rest(line: _Line, known: Mapping[int, Scalar]) -> Scalar:
     """b - A x of a line: zero where the equations hold."""
-    return line.right - sum((x * known[j] for j, x in line.entries.items()), start=0)
+    return line.right - _sum(x * known[j] for j, x in line.entries.items())
 
 
 def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
@@ -196,6 +208,7 @@ def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
     factor = _quotient(other.entries.pop(j), line.entries[j])
     shadow = other.shadow.pop(j) / line.shadow[j]
     other.right = other.right - factor * line.right
+    other.test = {k: other.test.get(k, 0) - factor * line.test.get(k, 0) for k in {**other.test, **line.test} if k != j}
     for k, entry in line.entries.items():
         if k == j:
             continue

@@ -24,6 +24,7 @@ from eomgen.symbolic.factoring import factored, square_root
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.signs import sign_of_terms
 from eomgen.symbolic.terms import Terms, common_monomial, plus, scaled, tidy
 
 LIMIT = 50_000  # products of terms
@@ -53,7 +54,17 @@ def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = ()) -> t
 def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
     """Whether equation(x + period) is the same function as equation(x)."""
     (shifted,) = substituted((equation,), {unknown: unknown + period})
-    return shifted is equation or equal_at_random_states([(shifted, equation)]).equal
+    return shifted is equation or vanishes(shifted - equation)
+
+
+def vanishes(x: Scalar) -> bool:
+    """Whether x is 0 at all values of its symbols; not so where it has a value at no state that was tried."""
+    if type(x) is not Node:
+        return x == 0
+    try:
+        return equal_at_random_states([(x, 0)]).equal
+    except DerivationError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -132,8 +143,9 @@ class _Search:
         graph = self.x.graph
         if k == 1:
             yield y
-        elif k == 2 and (type(y) is Node or y >= 0):
-            yield from (graph.sqrt(y), -graph.sqrt(y))
+        elif k == 2:
+            if sign_of_terms(y, self.positive) != -1:
+                yield from (graph.sqrt(y), -graph.sqrt(y))
         elif k > 2:
             yield graph.pow(y, Fraction(1, k))
             yield -graph.pow(-y if k % 2 else y, Fraction(1, k))
@@ -211,7 +223,10 @@ def _in_exponentials(equation: Node, x: Node) -> Scalar:
 
 def _may_be_root(equation: Scalar, unknown: Node, x: Scalar) -> bool:
     """False where numbers show that x is no root: values of the residual, and none of them zero."""
-    (residual,) = substituted((equation,), {unknown: x})
+    try:
+        (residual,) = substituted((equation,), {unknown: x})
+    except DerivationError:  # a division by zero
+        return False
     rng = Random(1)
     symbols = symbols_of((residual,))
     states = ({symbol: rng.uniform(0.5, 2.0) for symbol in symbols} for _ in range(TRIES))

@@ -25,7 +25,7 @@ def _functions() -> dict[str, Signature]:
     table = {name: point for name in ("x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "speed", "acceleration")}
     turning = ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y")
     table |= {name: pair for name in (*turning, *(f"{n}_{axis}" for n in ("omega", "epsilon") for axis in "xyz"))}
-    reactions = [f"reaction_{c}" for c in ("x", "y", "z", "n", "couple", "couple_x", "couple_y", "couple_z")]
+    reactions = [f"reaction_{c}" for c in ("x", "y", "z", "n", "t", "couple", "couple_x", "couple_y", "couple_z")]
     table |= {name: Signature(("reaction", "body"), 1) for name in reactions}
     table |= {name: Signature(("coordinate", "coordinate"), 2) for name in ("mass", "damping", "stiffness")}
     table |= {f"inertia_{name}": Signature(("any",) * 6, 0) for name in ("point", "axis", "product", "tensor")}

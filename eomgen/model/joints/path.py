@@ -1,6 +1,6 @@
 """Path: a point on pieces of lines and arcs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -152,11 +152,15 @@ class Path(Joint):
 
     def _along(self, s: Any, value: Value, what: Callable[[Stretch, Any], Vector]) -> Vector:
         """Place or direction at s, of the piece on which s is."""
-        *before, last = self.stretches(value)
-        here = what(last, s)
-        for stretch in reversed(before):
-            there = what(stretch, s)
-            here = tuple(chosen(s, stretch.end, a, b) for a, b in zip(there, here, strict=True))  # type: ignore[assignment]
+        there = [what(stretch, s) for stretch in self.stretches(value)]
+        x, y, z = (self.of_its_piece(s, value, entries) for entries in zip(*there, strict=True))
+        return x, y, z
+
+    def of_its_piece(self, s: Any, value: Value, values: Sequence[Any]) -> Any:
+        """Of the values that the pieces have, that of the piece on which s is."""
+        *before, here = values
+        for stretch, there in zip(reversed(self.stretches(value)[:-1]), reversed(before), strict=True):
+            here = chosen(s, stretch.end, there, here)
         return here
 
 

@@ -1,0 +1,358 @@
+"""First integrals stay constant; the speeds that follow from them, and laws of motion, are those of the motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import eomgen
+from eomgen.codegen.program import right_hand_side
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.articulated import with_accelerations
+from eomgen.mechanics.integrals import first_integrals
+from eomgen.mechanics.laws import laws_of_motion
+from eomgen.mechanics.speeds import rates_of
+from eomgen.model.values import numeric_parameters, start_values
+from eomgen.situation import Situation, situation_of
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expressions import parse
+
+HEAD = """
+eomgen = 1
+name = "system"
+space = "plane"
+[parameters]
+m = 1.3
+l = 0.7
+g = 9.81
+k = 20
+c = 1.1
+F = 3.1
+mu = 0.2
+v = 2.1
+"""
+WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
+PARTICLE = 'shape = { kind = "particle", mass = "m" }\n'
+
+PENDULUM = HEAD + """
+[coordinates]
+theta = { start = 0.4, speed = 1.5 }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", at = [0, 0], angle = "theta - pi/2" }
+""" + WEIGHT
+
+FALLING_BAR = HEAD + """
+[coordinates]
+x = { start = 0, speed = "v" }
+theta = { start = 0.3, speed = 0.2 }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "2*l" }
+joint = { kind = "placed", point = "center", at = ["x", "l*cos(theta)"], angle = "theta + pi/2" }
+[constraints.floor]
+kind = "support"
+point = "bar.start"
+normal = [0, 1]
+""" + WEIGHT
+
+ORBIT = HEAD + """
+[coordinates]
+r = { start = "l", speed = 0.3 }
+phi = { start = 0, speed = 2.9 }
+[points]
+O = [0, 0]
+[bodies.ball]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["r*cos(phi)", "r*sin(phi)"] }
+[forces.attraction]
+kind = "between"
+points = ["O", "ball.center"]
+pull = "k/r^2"
+"""
+
+LADDER_OF_THREE = HEAD + """
+[coordinates]
+x = { start = "2*l*sin(0.3)" }
+y = { start = "2*l*cos(0.3)" }
+theta = 0.3
+[bodies.foot]
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "2*l" }
+joint = { kind = "revolute", on = "foot", angle = "theta + pi/2" }
+[bodies.slide]
+joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+[constraints.top]
+kind = "pin"
+points = ["bar.end", "slide.origin"]
+""" + WEIGHT
+
+PUSHED = HEAD + """
+[coordinates]
+theta = { start = 0.4, speed = 0.5 }
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", at = [0, 0], angle = "theta", torque = "c" }
+[forces.dead]
+kind = "force"
+point = "bar.end"
+force = ["F", "2*F"]
+""" + WEIGHT
+
+FOLLOWER = PUSHED.replace('["F", "2*F"]', '["-F*sin(theta)", "F*cos(theta)"]').replace(', torque = "c"', "")
+
+INCLINE = HEAD + """
+[coordinates]
+x = { start = 0, speed = "v" }
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x*cos(pi/6)", "x*sin(pi/6)"] }
+[constraints.plane]
+kind = "support"
+point = "block.center"
+normal = ["-sin(pi/6)", "cos(pi/6)"]
+friction = "mu"
+""" + WEIGHT
+
+ROUGH_RING = HEAD + """
+[coordinates]
+theta = { start = 0.2, speed = 6 }
+[bodies.bead]
+shape = { kind = "particle", mass = "m" }
+[bodies.bead.joint]
+kind = "path"
+along = "theta"
+at = [0, 0]
+heading = 0
+pieces = [{ arc = 1, turn = "ccw", angle = 3, friction = "mu" }]
+""" + WEIGHT
+
+ONE_WAY = {  # name -> (model, how far along the motion is followed)
+    "pendulum": (PENDULUM, 0.3),
+    "falling bar": (FALLING_BAR, 0.2),
+    "orbit": (ORBIT, 0.02),
+    "ladder": (LADDER_OF_THREE, 0.3),
+    "dead force": (PUSHED, 0.2),
+    "follower force": (FOLLOWER, 0.2),
+    "block on a rough plane": (INCLINE, 0.2),
+    "bead on a rough ring": (ROUGH_RING, 0.1),
+}
+
+
+def situation(text: str) -> Situation:
+    return situation_of(eomgen.loads(text))
+
+
+def motion(each: Situation, end: float) -> tuple[np.ndarray, list[dict]]:
+    """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
+    system = each.system
+    rhs = compiled(right_hand_side(with_accelerations(system, each.assembly), system.inputs), "numpy")
+    parameters = numeric_parameters(each.model)
+    p = np.array(list(parameters.values()))
+    q, u = start_values(each.model)
+    nodes = (*system.symbols.q, *system.symbols.u)
+    x0 = [(q | u)[node.name] for node in nodes]
+    times = np.linspace(0.0, end, 7)
+    run = solve_ivp(lambda t, x: rhs(t, x, p), (0.0, end), x0, method="DOP853", rtol=1e-11, atol=1e-11, t_eval=times)
+    fixed = {system.symbols.parameters[name]: value for name, value in parameters.items()}
+    return times, [
+        fixed | {system.symbols.t: t} | dict(zip(nodes, map(float, x), strict=True))
+        for t, x in zip(times, run.y.T, strict=True)
+    ]
+
+
+def exact_start(each: Situation) -> dict:
+    scope = each.system.scope
+    part = each.model.coordinates
+    start = {q: scope.value(part[q.name].start) for q in scope.symbols.q}
+    return start | {u: scope.value(part[u.name[:-1]].speed) for u in scope.symbols.u}
+
+
+@pytest.mark.parametrize("name", ONE_WAY)
+def test_first_integrals_stay_constant(name):
+    """E and p_k - integral of Q_k dt at seven instants of a motion."""
+    text, end = ONE_WAY[name]
+    each = situation(text)
+    _, states = motion(each, end)
+    for integral in first_integrals(each.system, each.assembly):
+        values = [evaluate((integral.expression,), state, FLOAT)[0] for state in states]
+        assert np.ptp(values) < 1e-8 * (1 + max(map(abs, values))), integral.name
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    {
+        "pendulum": {"energy"},
+        "falling bar": {"energy", "momentum(x)"},
+        "orbit": {"energy", "momentum(phi)"},
+        "ladder": {"energy"},
+        "dead force": {"energy"},
+        "follower force": set(),
+        "block on a rough plane": set(),
+        "bead on a rough ring": set(),
+    }.items(),
+)
+def test_the_integrals_of_a_system_are_found(name, expected):
+    """Cyclic coordinates have momenta; energy stays where no force without potential works."""
+    each = situation(ONE_WAY[name][0])
+    assert {integral.name for integral in first_integrals(each.system, each.assembly)} == expected
+
+
+def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
+    """m x' - (F/w)(1 - cos(w t)) is constant where F sin(w t) acts."""
+    text = HEAD + '[coordinates]\nx = { start = 0, speed = "v" }\n[bodies.b]\n' + PARTICLE + (
+        'joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F*sin(c*t)" }\n'
+    )
+    each = situation(text)
+    (integral,) = first_integrals(each.system, each.assembly)
+    symbols = each.system.symbols
+    names = {**symbols.parameters, "t": symbols.t, "x'": symbols.u[0]}
+    expected = parse("m*x' - F/c*(1 - cos(c*t))").evaluate(names)
+    assert equal_at_random_states([(integral.expression, expected)]).equal
+
+
+@pytest.mark.parametrize("name", ONE_WAY)
+def test_speeds_by_the_integrals_are_those_of_the_motion(name):
+    """u(q) of the energy theorem and the momenta against u(t) at q(t)."""
+    text, end = ONE_WAY[name]
+    each = situation(text)
+    rates = rates_of(each.system, each.assembly, exact_start(each), accelerations=each.accelerations)
+    assert rates is not None
+    _, states = motion(each, end)
+    for state in states[1:]:
+        for u, rate in rates.items():
+            assert not depends_on(rate, (*each.system.symbols.u, each.system.symbols.t))
+            assert abs(evaluate((rate,), state, FLOAT)[0]) == pytest.approx(abs(state[u]), rel=1e-7, abs=1e-8)
+
+
+def test_two_freedoms_without_momenta_have_no_speeds():
+    """A double pendulum's speeds are no functions of its angles."""
+    each = situation_of(eomgen.load("models/double_pendulum.toml"))
+    assert rates_of(each.system, each.assembly, exact_start(each)) is None
+
+
+def test_an_energy_with_an_unknown_start_is_refused():
+    """V at a start that is not known exactly must not cancel against V."""
+    each = situation(PENDULUM)
+    start = {node: x for node, x in exact_start(each).items() if node.name != "theta"}
+    with pytest.raises(eomgen.EomgenError, match="no closed form: theta"):
+        rates_of(each.system, each.assembly, start)
+
+
+# -- laws of motion ----------------------------------------------------------------------------------
+
+BLOCK = HEAD + """
+[coordinates]
+x = { start = "l", speed = "v" }
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", FORCES }
+"""
+FORCES = {
+    "nothing": "angle = 0",
+    "constant force": 'force = "F"',
+    "force of time": 'force = "F*sin(3*t) + F*t^2"',
+    "linear drag": 'damping = "c"',
+    "linear drag and weight": 'damping = "c", force = "F"',
+    "spring": 'stiffness = "k"',
+    "spring and constant force": 'stiffness = "k", force = "F"',
+    "weak damping": 'stiffness = "k", damping = "c"',
+    "critical damping": 'stiffness = "k", damping = "sqrt(4*k*m)"',
+    "strong damping": 'stiffness = "k", damping = "30*c"',
+    "repulsion": 'force = "k*x"',
+    "driven oscillator": 'stiffness = "k", damping = "c", force = "F*sin(2*t) + F*exp(-t) + F*t^3"',
+    "drag, force of time": 'damping = "c", force = "F*t + F*cos(2*t)"',
+}
+TWO_MASSES = """
+[coordinates]
+x = { start = "l", speed = "v" }
+y = { start = 0.1, speed = -1 }
+[bodies.A]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", FORCES }
+[bodies.B]
+shape = { kind = "particle", mass = "2*m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "y", force = "F" }
+[forces.between]
+kind = "spring"
+points = ["A.center", "B.center"]
+stiffness = "k"
+length = "l"
+along = [1, 0]
+"""
+LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()} | {
+    "two masses and a spring": HEAD + TWO_MASSES.replace("FORCES", "angle = 0"),
+    "two masses, one to the ground": HEAD + TWO_MASSES.replace("FORCES", 'stiffness = "3*k"'),
+    "throw with linear drag": HEAD
+    + '[coordinates]\nx = { start = 0, speed = "v" }\ny = { start = "l", speed = "2*v" }\n[bodies.ball]\n' + PARTICLE
+    + 'joint = { kind = "placed", at = ["x", "y"] }\n[forces.drag]\nkind = "force"\npoint = "ball.center"\n'
+    + "force = [\"-c*x'\", \"-c*y'\"]\n" + WEIGHT,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_laws_of_motion_are_the_motion(name):
+    """q(t) and u(t) in closed form against an integration in time."""
+    each = situation(LAWS[name])
+    laws = laws_of_motion(each.system, each.accelerations, exact_start(each))
+    symbols = each.system.symbols
+    assert {*symbols.q, *symbols.u} <= laws.keys()
+    _, states = motion(each, 1.3)
+    for state in states:
+        fixed = {node: value for node, value in state.items() if node not in laws}
+        for node, law in laws.items():
+            assert evaluate((law,), fixed, FLOAT)[0] == pytest.approx(state[node], rel=1e-8, abs=1e-8)
+
+
+def test_a_law_from_a_later_start_counts_time_from_there():
+    """x = x0 + v (t - t0) + F (t - t0)^2/(2 m)"""
+    each = situation(LAWS["constant force"])
+    symbols = each.system.symbols
+    start = {**exact_start(each), symbols.t: symbols.parameters["c"]}
+    laws = laws_of_motion(each.system, each.accelerations, start)
+    names = {**symbols.parameters, "t": symbols.t}
+    expected = parse("l + v*(t - c) + F*(t - c)^2/(2*m)").evaluate(names)
+    assert equal_at_random_states([(laws[symbols.q[0]], expected)]).equal
+
+
+@pytest.mark.parametrize("name", ["pendulum", "orbit", "bead on a rough ring"])
+def test_what_is_not_linear_has_no_law(name):
+    """No law is made up."""
+    each = situation(ONE_WAY[name][0])
+    assert laws_of_motion(each.system, each.accelerations, exact_start(each)) == {}
+
+
+def test_friction_by_its_law_has_no_law_of_motion_before_its_sense_is_chosen():
+    """x'' = -g (sin + mu cos sign(x')) is not linear in x'."""
+    each = situation(INCLINE)
+    assert laws_of_motion(each.system, each.accelerations, exact_start(each)) == {}
+
+
+def test_dependent_coordinates_follow_by_integration():
+    """A rolling disc's angle is -x/R where x is known as a function of time."""
+    text = HEAD + """
+[coordinates]
+x = { start = 0, speed = "v" }
+phi = { dependent = true, start = 0.2 }
+[bodies.disc]
+shape = { kind = "disc", mass = "m", radius = "l" }
+joint = { kind = "placed", at = ["x", "l"], angle = "phi" }
+[constraints.floor]
+kind = "rolling"
+body = "disc"
+line = { at = [0, 0], normal = [0, 1] }
+[forces.push]
+kind = "force"
+point = "disc.center"
+force = ["F", 0]
+"""
+    each = situation(text)
+    symbols = each.system.symbols
+    start = exact_start(each) | {q: each.system.scope.value(each.model.coordinates[q.name].start) for q in symbols.q}
+    laws = laws_of_motion(each.system, each.accelerations, start)
+    x, phi = symbols.q
+    (difference,) = substituted((phi - start[phi] + x / symbols.parameters["l"],), laws)
+    assert equal_at_random_states([(difference, 0)]).equal

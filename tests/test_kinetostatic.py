@@ -1,0 +1,242 @@
+"""D'Alembert's derivation is true: printed balances hold along every motion, printed reactions solve them."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from derivations import by_every_method, equations, model_called, read_back
+
+from eomgen.equations import Equations
+from eomgen.errors import DerivationError
+from eomgen.mechanics.explicit import short_accelerations
+from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.model.reader import loads
+from eomgen.pipeline import derive
+from eomgen.report import rendered
+from eomgen.report.payload import equations_payload
+from eomgen.report.reaction_names import Lettered
+from eomgen.report.reaction_steps import letters_of
+from eomgen.report.statements import Derivation, Formula, Step
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.graph import Node, Scalar
+
+GOLDEN = Path(__file__).parent / "golden"
+TREES = tuple(
+    name for name, method in by_every_method()
+    if method == "kinetostatic" and not (e := equations(name, method)).graph.J and e.system.free is None
+    and short_accelerations(e.system, e.graph) is not None and e.reactions.components
+)  # fmt: skip
+CLOSED = ("loop", "four_cranks", "andrews_squeezer")
+LADDER = """
+eomgen = 1
+name = "Rough ladder"
+space = "plane"
+[parameters]
+m = 10
+l = 3
+mu = 0.2
+g = 9.81
+[coordinates]
+theta = { start = 0.6, unit = "rad" }
+[bodies.ladder]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "placed", at = [0, "l*cos(theta)"], angle = "theta - pi/2" }
+[constraints]
+wall = { kind = "support", point = "ladder.start", normal = [1, 0], friction = "mu" }
+floor = { kind = "support", point = "ladder.end", normal = [0, 1], friction = "mu" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def derived_from(name: str) -> Equations:
+    return derive(loads(LADDER), "kinetostatic") if name == "ladder" else equations(name, "kinetostatic")
+
+
+def letters(derived: Equations) -> Lettered:
+    found = letters_of(derived.system)
+    assert isinstance(found, Lettered)
+    return found
+
+
+def along_motion(derived: Equations) -> dict[Node, Scalar]:
+    """The accelerations of the equations of motion."""
+    found = short_accelerations(derived.system, derived.graph)
+    assert found is not None
+    return dict(zip(derived.graph.symbols.a, found, strict=True))
+
+
+def reactions_along_motion(derived: Equations) -> dict[Node, Scalar]:
+    """What the symbols of the reactions and of friction stand for, no acceleration left in it."""
+    named, motion = letters(derived), along_motion(derived)
+    values = dict(zip(named.symbols, substituted([x for x in derived.reactions.values if x is not None], motion),
+                      strict=True))  # fmt: skip
+    for rub, friction in zip(named.rubs, named.frictions, strict=True):
+        values[friction] = rub.factor * values[named.symbols[rub.component]]
+    return values
+
+
+def formulas(derivation: Derivation, key: str) -> list[Formula]:
+    steps = [step for step in derivation.steps if step.key.startswith(key)]
+    return [f for step in steps for f in step.statements if isinstance(f, Formula)]
+
+
+def whole(derivation: Derivation, x: Scalar) -> Scalar:
+    """x with everything that has a name written out."""
+    known: dict[Node, Scalar] = {}
+    for symbol, value in derivation.definitions:
+        known[symbol] = substituted((value,), known)[0]
+    return substituted((x,), known)[0]
+
+
+@pytest.mark.parametrize("name", [*TREES, "ladder"])
+def test_the_printed_equations_of_every_body_hold_along_every_motion(name):
+    """sum F + F_in = 0, sum M + M_in = 0 with the reactions and accelerations that the equations give"""
+    derived = derived_from(name)
+    motion, known = along_motion(derived), reactions_along_motion(derived)
+    balances = [f.sides[0] for f in formulas(derived.derivation, "body_") if f.sides[-1] == 0 and len(f.sides) == 2
+                and not hasattr(f.sides[0], "letter")]  # fmt: skip
+    assert len(balances) == len(derived.reactions.balance.equations)
+    left = substituted(substituted([whole(derived.derivation, x) for x in balances], known), motion)
+    assert equal_at_random_states([(x, 0) for x in left]).equal
+
+
+@pytest.mark.parametrize("name", [*TREES, "ladder"])
+def test_printed_inertia_forces_are_what_is_missing_in_the_balance_of_the_bodies(name):
+    """F_in = -m a_C, M_in = -d/dt (I omega)"""
+    derived = derived_from(name)
+    shown = [f.sides[1] for f in formulas(derived.derivation, "body_") if hasattr(f.sides[0], "letter")]
+    inertia = [e.inertia for e in derived.reactions.balance.equations if not (type(e.inertia) is int and e.inertia == 0)]
+    pairs = [(whole(derived.derivation, x), -y) for x, y in zip(shown, inertia, strict=True)]
+    assert equal_at_random_states(pairs).equal
+
+
+@pytest.mark.parametrize("method", ["lagrange", "projection", "kinetostatic"])
+@pytest.mark.parametrize("name", TREES)
+def test_printed_reactions_are_those_of_the_balance_by_every_method(name, method):
+    """bar_x = -1/2*M*l*(...) = -1/4*M*(...): every side, along every motion"""
+    derived = equations(name, method)
+    motion, known = along_motion(derived), reactions_along_motion(derived)
+    shown = formulas(derived.derivation, "reactions")
+    rubbing = {letters(derived).symbols[rub.component] for rub in letters(derived).rubs}
+    assert {f.sides[0] for f in shown} == set(letters(derived).symbols) - rubbing
+    pairs = [(substituted((whole(derived.derivation, x),), motion)[0], known[f.sides[0]])
+             for f in shown for x in f.sides[1:]]  # fmt: skip
+    assert not pairs or equal_at_random_states(pairs).equal
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_multipliers_are_the_reactions_that_they_are_said_to_be(name):
+    """lam(B, 1) = B_x, sign included: M a + c - Q = J^T lam and the balance of the bodies, at the same state"""
+    derived = equations(name)
+    system, named = derived.system, letters(derived)
+    if isinstance(named, str):
+        pytest.skip(named)
+    rng = random.Random(5)
+    symbols, graph = system.symbols, derived.graph
+    state = {x: rng.uniform(0.4, 1.1) for x in (*symbols.q, *symbols.u, *symbols.parameters.values(), symbols.t,
+                                                *symbols.inputs.values())}  # fmt: skip
+    M, J = (np.array(evaluate([x for row in rows for x in row], state, FLOAT)) for rows in (graph.M, graph.J))
+    n, k = len(graph.M), len(graph.J)
+    M, J = M.reshape(n, n), J.reshape(k, n)
+    right = np.array(evaluate((*graph.forcing, *(-x for x in graph.gamma)), state, FLOAT))
+    solution = np.linalg.solve(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right)
+    state |= dict(zip(symbols.a, solution[:n], strict=True))
+    values = dict(zip(named.symbols, named.reactions.values, strict=True))
+    told = 0
+    for row, lam in zip(system.ties.closing, solution[n:], strict=True):
+        reaction = named.of_row(row)
+        if reaction is None or values[symbols_of((reaction,))[0]] is None:
+            continue
+        (found,) = evaluate(substituted((reaction,), values), state, FLOAT)
+        assert found == pytest.approx(lam, rel=1e-7, abs=1e-7)
+        told += 1
+    assert told or name == "four_cranks"
+
+
+def test_indeterminate_reactions_are_said_with_what_they_leave_open():
+    """the null space: sum of coefficient * change = 0 in every equation of every body"""
+    derived = equations("four_cranks", "kinetostatic")
+    data = equations_payload(derived)
+    assert None in data["reactions"].values() and len(data["reaction_null_space"]) == 2
+    names = [c.name for c in derived.reactions.components]
+    for space in data["reaction_null_space"]:
+        change = {names.index(name): read_back(text, derived) for name, text in space.items() if name in names}
+        sums = [sum((e.coefficients[j] * change[j] for j in e.coefficients if j in change), start=0)
+                for e in derived.reactions.balance.equations]  # fmt: skip
+        assert equal_at_random_states([(x, 0) for x in sums]).equal
+    text = " ".join(rendered(derived.derivation, "text").split())
+    assert "are statically indeterminate: rigid bodies in balance leave them open" in text
+    assert "Delta(P_y) = -2*k1" in text
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
+    """{name: text}: the values that an output of that name has, accelerations as theta''"""
+    derived = equations(name)
+    data = json.loads(json.dumps(equations_payload(derived)))
+    motion, also = along_motion(derived), {}
+    for symbol, text in [*data.get("definitions", []), *data.get("reaction_definitions", [])]:
+        also[symbol] = read_back(text, derived, also)
+    reactions = reactions_of(derived.system)
+    asked = {named.name: named for named in named_reactions(reactions.balance)}
+    assert list(data["reactions"]) == list(asked)
+    pairs = [(read_back(text, derived, also), reactions.combined(asked[n].combination, n) + asked[n].given)
+             for n, text in data["reactions"].items() if text is not None]  # fmt: skip
+    assert equal_at_random_states([substituted(pair, motion) for pair in pairs]).equal
+
+
+def test_reactions_along_the_motion_are_those_of_the_energy_theorem():
+    """bar released from the horizontal: theta'^2 = 3 g sin/l, 5/2 M g below the hinge"""
+    text = rendered(equations("ch17_p3", "kinetostatic").derivation, "text")
+    assert "    theta'^2 = 3*g*sin(theta)/l\n" in text
+    assert "    bar_x = -9/4*M*g*cos(theta)*sin(theta)\n" in text
+    assert "    bar_y = 1/4*M*g*(1 + 9*sin(theta)^2)\n" in text
+
+
+def test_friction_is_shown_by_its_normal_reaction_against_the_sliding():
+    """F = -mu N sign(v), N with the accelerations that friction itself makes"""
+    text = rendered(derive(loads(LADDER), "lagrange").derivation, "text")
+    assert "    F_wall = -mu*N_wall*s_wall\n" in text and "    s_floor = sign(l*cos(theta)*theta')\n" in text
+    block = rendered(equations("ch16_p6").derivation, "text")
+    assert "    N_plane = m*g*cos(alpha)\n    F_plane = -mu*N_plane*sign(x')\n" in block
+
+
+def test_a_path_of_pieces_is_read_piece_by_piece():
+    """m g cos(alpha) on the line, + m v^2/R on the arc"""
+    text = rendered(equations("ch16_p5").derivation, "text")
+    assert "N_ball = select(less_equal(s, L), m*g*cos(alpha), m*s'^2/R + m*g*cos(alpha - s/R + L/R))" in text
+    forcing = equations_payload(equations("ch16_p5"))["forcing"][0]
+    assert "select" not in forcing and "sign(s - L)" in forcing
+
+
+@pytest.mark.parametrize(("name", "word"), [("atwood", "body 'left' is held by nothing along y"),
+                                            ("loop", "'eq' acts on coordinates and at no place")])  # fmt: skip
+def test_what_nothing_holds_is_told_and_has_no_kinetostatics(name, word):
+    """one sentence in other derivations, an error by this method"""
+    text = " ".join(rendered(equations(name).derivation, "text").split())
+    assert "The reactions do not follow: " in text and word in text
+    assert word in equations_payload(equations(name))["reactions_message"]
+    with pytest.raises(DerivationError, match=word):
+        derive(model_called(name), "kinetostatic")
+
+
+def test_long_reactions_are_counted_and_not_printed():
+    """chain20: no formula, no table of symbols that stand nowhere"""
+    text = " ".join(rendered(equations("chain20").derivation, "text").split())
+    assert "All of them are too long to print here: `eomgen reactions MODEL` evaluates them" in text
+    assert "rod1_x" not in text
+
+
+def test_the_kinetostatic_text_is_the_golden_one():
+    """tests/golden: read it, and write it anew where a change is meant"""
+    text = rendered(equations("ch22_p1", "kinetostatic").derivation, "text")
+    assert text == (GOLDEN / "ch22_p1_kinetostatic.txt").read_text()
