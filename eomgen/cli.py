@@ -200,7 +200,8 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
 
 @main.command()
 @_common
-@click.option("--method", type=click.Choice(["lagrange", "projection", "kinetostatic"]), default="lagrange", show_default=True)
+@click.option("--method", type=click.Choice(["lagrange", "projection", "kinetostatic"]), default="lagrange",
+              show_default=True, help="By energies, by projection, or body by body with every reaction.")  # fmt: skip
 @click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
               help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
@@ -232,12 +233,16 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
 
 @main.command()
 @_common
-@click.option("--at", metavar="EQUATION", help='The instant: the first time after the start at which "theta=pi/2" holds.')
+@click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 def reactions(
     model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...]
 ) -> int:
-    """Give every reaction: symbolic, or at an instant exactly and in numbers."""
+    """Give every reaction, as formulas or at an instant.
+
+    Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
+    coordinates and rates with its number at the start; with --at, exactly and as a number at that instant.
+    """
     from eomgen.verbs.reactions import reactions as found
 
     with _reading(model) as declared:
@@ -258,7 +263,10 @@ def reactions(
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
 def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -> int:
-    """Integrate the motion from the start values."""
+    """Integrate the motion from the start values.
+
+    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns.
+    """
     from eomgen.verbs.simulate import simulate as simulated
 
     with _reading(model) as declared:
@@ -275,7 +283,7 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
 @click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True)
 @click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
 def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
-    """Write the equations as code, with test vectors."""
+    """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem

@@ -22,10 +22,11 @@ from eomgen.version import __version__
 ROOT = Path(__file__).parent.parent
 MODELS = ROOT / "models"
 PENDULUM = str(MODELS / "double_pendulum.toml")
+PARALLELOGRAM = str(MODELS / "parallelogram_reactions.toml")
 TRUSS = str(ROOT / "tests" / "truss.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = str(MODELS / "seeds" / "ch22_p3.toml")  # asks for its linearization too, which comes later
-VERBS = ["new", "check", "derive", "solve", "simulate", "codegen", "schema", "doctor"]
+VERBS = ["new", "check", "derive", "solve", "reactions", "simulate", "codegen", "schema", "doctor"]
 
 FALL = """
 eomgen = 1
@@ -71,7 +72,7 @@ def test_help_answers_in_a_fifth_of_a_second_of_cpu():
         spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
         assert result.returncode == 0
     assert min(spent) < 0.2
-    assert [line.split()[0] for line in result.stdout.splitlines()[-8:]] == VERBS
+    assert [line.split()[0] for line in result.stdout.splitlines()[-len(VERBS) :]] == VERBS
 
 
 def test_importing_eomgen_and_its_command_line_imports_nothing_heavy():
@@ -107,7 +108,8 @@ def test_the_version_is_told_once_and_everywhere_the_same():
     "words",
     [
         ("check", PENDULUM), ("check", TRUSS), ("derive", SEED), ("derive", SEED, "--no-certify"), ("solve", SEED),
-        ("simulate", PENDULUM, "--time", "0.1"), ("schema",), ("doctor",), ("check", "no/such/file"), ("nonsense",),
+        ("reactions", SEED), ("simulate", PENDULUM, "--time", "0.1"), ("schema",), ("doctor",),
+        ("check", "no/such/file"), ("nonsense",),
         ("simulate", PENDULUM, "--set", "q=1"), ("derive", TRUSS),
     ],
     ids=lambda words: " ".join(Path(word).stem for word in words),
@@ -155,6 +157,13 @@ def test_only_the_result_is_on_stdout():
         (("simulate", PENDULUM, "--rtol", "-1"), 2, "tolerances"),
         (("simulate", PENDULUM, "-o", "run.xlsx"), 2, "endings are .csv, .npz"),
         (("derive", TRUSS), 3, "truss"),
+        (("reactions", PARALLELOGRAM, "--at", "theta"), 2, "write left = right"),
+        (("reactions", PARALLELOGRAM, "--at", "phi=pi"), 2, "unknown name 'phi'"),
+        (("reactions", PARALLELOGRAM, "--from-rest", "thet=0"), 2, "did you mean 'theta'?"),
+        (("reactions", PARALLELOGRAM, "--from-rest", "theta"), 2, "write --from-rest"),
+        (("reactions", PARALLELOGRAM, "--from-rest", "theta=a"), 2, "unknown name 'a'"),
+        (("reactions", PARALLELOGRAM, "--from-rest", "theta=1+"), 2, "--from-rest theta=1+"),
+        (("reactions", PARALLELOGRAM, "--at", "theta=-1", "--from-rest", "theta=0"), 3, "not answered"),
         (("simulate", TRUSS), 3, "truss"),
         *((((verb, PENDULUM)), 2, "comes with a later version") for verb in LATER),
     ],
@@ -335,6 +344,42 @@ def test_solve_gives_every_output_in_the_fixed_shape():
     assert outputs["Q_theta"]["exact"] == "6*M*R*g*sin(theta)"
     assert (others["K11"]["exact"], others["K11"]["value"]) == (None, None)
     assert "linearization" in others["K11"]["message"]
+
+
+def test_reactions_at_an_instant_are_exact_and_numbers():
+    """79/6 M g on each crank when they hang down, from rest in line: through unstable rest and a singular position"""
+    result = run("reactions", PARALLELOGRAM, "--at", "theta=pi/2", "--from-rest", "theta=0", "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)["reactions"]
+    assert found["reaction_y(OA)"]["exact"] == "79/6*M*g" and found["reaction_y(B)"]["exact"] == "20/3*M*g"
+    assert found["reaction_y(OA)"]["value"] == pytest.approx(79 / 6 * 9.81) and found["reaction_x(OA)"]["value"] == 0
+    assert {(answer["unit"], answer["method"]) for answer in found.values()} == {("N", "energy theorem")}
+    text = run("reactions", PARALLELOGRAM, "--at", "theta=pi/2", "--from-rest", "theta=0").stdout
+    assert "reaction_y(B): force on AB at B, from CB, along y\n    = 20/3*M*g\n    = 65.4 N" in text
+
+
+def test_reactions_from_rest_are_functions_of_the_coordinates():
+    """bar from the horizontal: 9/4 M g cos sin towards the hinge; from another place another start"""
+    bar = str(MODELS / "seeds" / "ch17_p3.toml")
+    found = json.loads(run("reactions", bar, "--from-rest", "theta=0", "--json").stdout)["reactions"]
+    assert found["reaction_x(bar)"]["exact"] == "-9/4*M*g*cos(theta)*sin(theta)"
+    other = json.loads(run("reactions", bar, "--from-rest", "theta=pi/2", "--at", "theta=0", "--json").stdout)
+    assert other["reactions"].keys() == found.keys()
+
+
+def test_reactions_as_formulas_say_what_accelerates_and_what_has_no_single_value():
+    """15 M R (cos theta'' - ...) by the equations of motion; in line the parallelogram is indeterminate"""
+    found = json.loads(run("reactions", PARALLELOGRAM, "--json").stdout)["reactions"]
+    assert "theta''" not in found["reaction_x(OA)"]["exact"]
+    assert found["reaction_x(OA)"]["value"] is None
+    assert found["reaction_x(OA)"]["message"] == "it has no single value at the start"
+    assert found["reaction_y(OA)"]["value"] == pytest.approx(11 / 12 * 9.81)
+    cranks = run("reactions", str(MODELS / "four_cranks.toml"))
+    assert cranks.exit_code == 0 and "statically indeterminate, see below" in cranks.stdout
+    assert "reaction_y(P): -2*k1" in cranks.stdout
+    chain = json.loads(run("reactions", str(MODELS / "chain20.toml"), "--json").stdout)["reactions"]
+    assert len(chain) == 40 and all(answer["value"] is not None for answer in chain.values())
+    assert "operations" in chain["reaction_x(rod1)"]["message"]
 
 
 def test_simulate_summarises_on_stdout_or_writes_files(tmp_path):

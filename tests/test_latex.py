@@ -86,13 +86,17 @@ def test_documents_are_balanced(name):
 
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no LaTeX on this machine")
 @pytest.mark.parametrize(
-    ("name", "full"),
-    [("double_pendulum", False), ("loop", False), ("arm3", False), ("andrews_squeezer", False), ("arm7", True)],
-)
-def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, full, tmp_path):
+    ("name", "method", "full"),
+    [
+        ("double_pendulum", "lagrange", False), ("loop", "lagrange", False), ("andrews_squeezer", "lagrange", False),
+        ("arm7", "lagrange", True), ("arm3", "kinetostatic", False), ("four_cranks", "kinetostatic", False),
+        ("ch16_p7", "kinetostatic", False),
+    ],
+)  # fmt: skip
+def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, method, full, tmp_path):
     """pdflatex ends without an error, whatever stands in the user's names and remarks, and no line is too wide"""
-    derived = equations(name)
-    derivation = derivation_of(derived.system, derived.graph, "lagrange", full=full)
+    derived = equations(name, method)
+    derivation = derivation_of(derived.system, derived.graph, method, full=full)
     (tmp_path / "a.tex").write_text(rendered(derivation, "latex"))
     run = subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "a.tex"],

@@ -21,6 +21,7 @@ from eomgen.symbolic.normal_form import (
     normal_form,
     readable,
     readable_all,
+    simplest,
 )
 from eomgen.symbolic.text import to_text
 
@@ -46,6 +47,16 @@ def sin(a):
 
 def cos(a):
     return a.graph.call("cos", a)
+
+
+def test_a_common_sine_is_cancelled_though_its_square_is_written_by_the_cosine(graph, the):
+    """(c s x + c s^2 y)/s = c x + c s y"""
+    x, y, theta = the("x y theta")
+    c, s = cos(theta), sin(theta)
+    found = simplest(graph.div(c * s * x + c * s * s * y, s))
+    assert equal_at_random_states([(found, c * x + c * s * y)]).equal
+    assert "/" not in to_text(found)
+    assert "/" not in to_text(simplest(graph.div(s * s * s * x + s * (1 - c * c) * y, s * s)))
 
 
 # -- equality -------------------------------------------------------------------------------------

@@ -368,7 +368,7 @@ def test_json_steps_carry_every_formula_as_text():
     assert data["schema_version"] == 1 and data["method"] == "lagrange"
     keys = [part["key"] for part in data["steps"]]
     assert keys == ["data", "freedom", "coordinates", "positions", "velocities", "constraints", "kinetic_energy",
-                    "work", "derivatives", "equations", "solved", "reactions", "notation"]  # fmt: skip
+                    "work", "derivatives", "equations", "solved", "integrals", "reactions", "notation"]  # fmt: skip
     equation = data["equations"][0]
     assert equation["divisor"] == "3*M*R" and equation["right"] == "2*g*sin(theta)"
 

@@ -27,16 +27,18 @@ SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration i
 State = dict[Node, Any]
 
 
-def generic_state(ties: Ties, rng: Random | None = None) -> State:
+def generic_state(ties: Ties, rng: Random | None = None, *, shaken: bool = False) -> State:
     """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
 
-    Parameters without a value get one. Driven coordinates and inputs are as at t = 0.
+    Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
 
+    Args:
+        shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
     Raises:
         MissingValues, DerivationError: the ties do not close there.
     """
     rng = rng or Random(1)
-    state, q = _still(ties, rng)
+    state, q = _still(ties, rng, shaken=shaken)
     for spread in SPREADS:
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
@@ -51,12 +53,14 @@ def scattered_state(ties: Ties) -> State:
     return state | _scattered(ties, q, SPREADS[0], rng)
 
 
-def _still(ties: Ties, rng: Random) -> tuple[State, dict[str, float]]:
+def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
     """(values of every symbol but the coordinates, where the coordinates start)."""
     scope = ties.motion.scope
     model, symbols = scope.model, scope.symbols
     known = exact_parameters(model)
     p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
+    if shaken:
+        p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
     given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
     given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
     state = {node: number(value) for node, value in given.items()}
@@ -66,18 +70,15 @@ def _still(ties: Ties, rng: Random) -> tuple[State, dict[str, float]]:
 
 
 def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -> State:
-    """Coordinates that lie about those given."""
-    scope = ties.motion.scope
-    return {node: number(q[node.name] + _shift(scope, node, spread, rng)) for node in scope.symbols.q}
+    """Coordinates that lie about those given, soon after t = 0."""
+    symbols = ties.motion.scope.symbols
+    shifted = {node: number(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
+    return shifted | {symbols.t: number(rng.uniform(0, spread))}
 
 
 def number(value: float) -> Any:
     """A float as a number of 50 digits."""
     return fifty_digits().number(1) * value
-
-
-def _shift(scope: Scope, node: Node, spread: float, rng: Random) -> float:
-    return 0.0 if scope.model.coordinates[node.name].driven else rng.uniform(-spread, spread)
 
 
 def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:

@@ -106,19 +106,20 @@ def effects_at_joint(axes: Axes, link: Link, force: Vector, couple: Vector) -> l
 
 def joint_effects(system: System) -> list[Effect]:
     """What drives, springs, dampers and rotors of all joints do, on both bodies of each."""
-    axes = Axes(system.motion)
-    effects = [e for effort in system.loads.efforts for e in _effort_effects(axes, effort)]
-    for link in axes.motion.links:
-        for k, armature in _armatures(axes.motion, link):
-            rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
-            effects += effects_at_joint(axes, link, *scaled(axes, link.name, k, -armature * rate))
-    return effects
+    return [effect for link in system.motion.links for effect in efforts_of(system, link.name)]
 
 
 def efforts_of(system: System, body: str) -> list[Effect]:
-    """What drive, spring and damper of a body's joint do, on the body first."""
+    """What drive, spring, damper and rotor of a body's joint do, on the body first; a tie has none."""
+    if body not in system.motion.index:
+        return []
     axes = Axes(system.motion)
-    return [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
+    effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
+    link = axes.motion.link(body)
+    for k, armature in _armatures(axes.motion, link):
+        rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
+        effects += effects_at_joint(axes, link, *scaled(axes, body, k, -armature * rate))
+    return effects
 
 
 def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:

@@ -31,7 +31,7 @@ class NamedReaction:
         owner: the tie, or the body whose joint it is.
         unit: FORCE or COUPLE.
         combination: {index of the component: factor}.
-        given: what drive, spring and damper of the joint do.
+        given: what drive, spring, damper and rotor of the joint do.
     """
 
     name: str

@@ -109,6 +109,9 @@ class Quantities:
         if call.name == "drive":
             return drive(self.system, owner)
         owner, _, side = owner.partition(".")
+        if side and call.name in ("reaction_n", "reaction_t"):
+            mend = f"ask {call.name}({owner}), at an instant where it is meant"
+            raise DerivationError(f"'{call}': normal force and friction are on the body named first", mend=mend)
         if call.name == "reaction_n":
             return self.reactions.normal(owner)
         if call.name == "reaction_t":

@@ -293,17 +293,9 @@ def _is_product(a: Node, parameters: frozenset[Node]) -> bool:
 
 
 def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
-    """Values at the first generic state at which all entries have one.
-
-    Parameters have values of their own, so that nothing vanishes for the model's numbers alone; where ties close they
-    have the model's, with which the ties can hold.
-    """
-    closes = any(row.status != "identical" and row.gap is not None for row in system.ties.rows)
+    """Values at the first generic state at which all entries have one."""
     for seed in range(1, TRIES):
-        rng = Random(seed)
-        state = generic_state(system.ties, rng)
-        if not closes:
-            state |= {p: state[p] * _near_one(rng) for p in system.symbols.parameters.values()}
+        state = _generic_state(system, seed)
         try:
             evaluate(entries, state, fifty_digits())
         except NoValue:
@@ -312,8 +304,23 @@ def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
     raise DerivationError(f"no state with values for the reactions was found in {TRIES} tries")
 
 
-def _near_one(rng: Random) -> Any:
-    return fifty_digits().number(1) * rng.randint(80_000, 120_000) / 100_000
+def _generic_state(system: System, seed: int) -> dict[Node, Any]:
+    """A state off any special position, parameters off any special value unless the ties are redundant for these alone.
+
+    Two cranks are a parallelogram only where they have one length: then the values are the model's.
+    """
+    own = generic_state(system.ties, Random(seed))
+    try:
+        shaken = generic_state(system.ties, Random(seed), shaken=True)
+        return shaken if _rank(system, shaken) == _rank(system, own) else own
+    except (DerivationError, NoValue):
+        return own
+
+
+def _rank(system: System, state: Mapping[Node, Any]) -> int:
+    """Of J."""
+    J = [[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J]
+    return int(np.linalg.matrix_rank(np.array(J), tol=HELD * np.max(np.abs(J)))) if system.symbols.u and J else 0
 
 
 # -- bodies that nothing holds ---------------------------------------------------------------------

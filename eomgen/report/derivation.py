@@ -12,6 +12,7 @@ from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import reactions_table_step
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, equations_of, multiplier_forces, sides_of
+from eomgen.report.integral_steps import integral_steps
 from eomgen.report.kinetostatic_steps import kinetostatic_steps
 from eomgen.report.maggi_steps import MAGGI, maggi_equations
 from eomgen.report.naming import Written, with_parts_named, with_roots_named
@@ -56,6 +57,7 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
     last = reactions_step(system, reader, assembly, letters, table=not known)
     if method == "kinetostatic" and not isinstance(letters, str):
         last = (*last, *along_the_motion(system, reader, assembly, letters))
+    last = (*integral_steps(system, reader, assembly), *last)
     written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
     graph, taken = assembly.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names

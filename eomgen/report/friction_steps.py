@@ -67,13 +67,12 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
 
 def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node, Node]) -> Scalar:
     """A normal reaction with its accelerations, or with those of the equations of motion where that is shorter."""
-    reader, positive = readings.reader, readings.positive
+    reader = readings.reader
     values = [way.value(j) for way in readings.ways]
     accelerations = dict(zip(assembly.symbols.a, assembly.accelerations or (), strict=False))
     moving = [_sliding(reader, substituted((x,), accelerations)[0]) for x in values if text_size(x) <= TRIED]
-    forms = [x for x in (*values, *moving) if x is not None]
-    shown = [readable_value(reader, x, positive) for x in substituted(tuple(forms), senses)]
-    return min(shown, key=length_in_print)
+    forms = readings.forms(substituted(tuple(x for x in (*values, *moving) if x is not None), senses))
+    return min(forms, key=length_in_print)
 
 
 def _sliding(reader: Reader, x: Scalar) -> Scalar | None:

@@ -6,18 +6,20 @@ few equations as can be, or by all of them, projected on the reaction. The short
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.explicit import short_accelerations
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import Combination, Reactions, reactions_of
 from eomgen.mechanics.system import System
-from eomgen.report.reading import TRIED, Reader, length_in_print, readable_value
+from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, length_in_print, readable_value
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.text import text_size
 
 LONGEST = 3000  # characters of accelerations that are put into reactions
@@ -71,12 +73,29 @@ class Readings:
 
     def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
         """The shortest of the values after a replacement; None where all of them are long."""
-        short = [y for x in values if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED]
+        short = [simplest(y, WORK, self.positive) if not conditions_in(y) else y
+                 for x in values if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED]  # fmt: skip
         return self._shortest(short) if short else None
 
     def _shortest(self, values: list[Scalar]) -> Scalar:
-        forms = [readable_value(self.reader, x, self.positive) for x in values]
-        return min(forms, key=length_in_print)
+        return min(self.forms(values), key=length_in_print)
+
+    def forms(self, values: Sequence[Scalar]) -> list[Scalar]:
+        """The values in readable form; without those that divide by zero in one of their cases.
+
+        Raises:
+            DerivationError: all of them do.
+        """
+        found: list[Scalar] = []
+        failed: DerivationError | None = None
+        for x in values:
+            try:
+                found.append(readable_value(self.reader, x, self.positive))
+            except DerivationError as error:
+                failed = error
+        if failed is not None and not found:
+            raise failed
+        return found
 
 
 def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: bool = False) -> Readings:

@@ -49,22 +49,23 @@ def vanishing_angles(
 
     Args:
         f: wave-free; irreducible as a polynomial in C, S and the other atoms.
-        fresh: what C and S stand for.
+        fresh: what C and S stand for, pair by pair.
         holders: those of them that are in question.
     """
-    angles = {_angle(fresh[h]) for h in holders}
-    if len(angles) != 1:
-        return
-    angle = next(iter(angles))
-    C, S = (next((s for s, x in fresh.items() if x is expansion.graph.call(n, angle)), None) for n in ("cos", "sin"))
-    assert C is not None and S is not None, "both are made together"
-    for value in _values(expansion, f, (C, S), fresh, powers):
-        yield angle, value
+    symbols = iter(fresh)
+    pairs = [(C, S) for C, S in zip(symbols, symbols, strict=True) if holders & {C, S}]
+    angle = _angle(fresh[pairs[0][0]], fresh[pairs[0][1]]) if len(pairs) == 1 else None
+    if angle is not None:
+        for value in _values(expansion, f, pairs[0], fresh, powers):
+            yield angle, value
 
 
-def _angle(x: Scalar) -> Node:
-    assert type(x) is Node and x.op in ("sin", "cos"), "a fresh symbol stands for a sine or cosine"
-    return x.args[0]
+def _angle(cosine: Scalar, sine: Scalar) -> Scalar | None:
+    """The angle that both are of; the sine of -x is kept as -sin(x)."""
+    if type(cosine) is not Node or cosine.op != "cos":
+        return None
+    angle = cosine.args[0]
+    return next((x for x in (angle, -angle) if sine is x.graph.call("sin", x)), None)
 
 
 def _values(

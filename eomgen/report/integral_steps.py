@@ -1,0 +1,95 @@
+"""System, Assembly -> the steps after the equations of motion: cyclic coordinates, energy, laws of motion."""
+
+from __future__ import annotations
+
+from eomgen.errors import EomgenError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.explicit import short_accelerations
+from eomgen.mechanics.integrals import Integral, energy_integral, momentum_integrals
+from eomgen.mechanics.laws import laws_of_motion
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.system import System
+from eomgen.report.bounded import page
+from eomgen.report.reading import Reader
+from eomgen.report.setting_steps import listed
+from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Statement, Step
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.text import text_size
+
+MOST_SPEEDS = 6  # of a system whose laws of motion are sought
+LONGEST_LAW = 400  # characters of a law that is printed
+
+ENERGY = Law("T + V", "T + V")
+ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
+
+
+def integral_steps(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+    """First integrals, and laws of motion from the model's start; no step where there are none."""
+    return (*_integrals(system, reader, assembly), *_laws(system, reader, assembly))
+
+
+def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+    symbols = assembly.symbols
+    cyclic = [each for each in momentum_integrals(system, assembly) if not depends_on(each.expression, (symbols.t,))]
+    statements: list[Statement] = []
+    if cyclic:
+        moving = {q.name: q for q in symbols.q}
+        statements.append(_cyclic(tuple(moving[each.coordinate] for each in cyclic)))
+        rates = {u.name: u for u in symbols.u}
+        pairs = [(Partial(Name("T"), rates[each.coordinate + "'"]), each.expression) for each in cyclic]
+        statements += page(reader, pairs)
+    for energy in energy_integral(system, assembly):
+        statements += _energy(reader, assembly, energy)
+    return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
+
+
+def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
+    many = len(coordinates) > 1
+    verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
+    return Prose((f"The coordinate{verb[0]}", *listed(coordinates), f"{verb[1]} constant:"))
+
+
+def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statement]:
+    """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
+    law, words = ENERGY, ("The energy ", ENERGY, " stays constant")
+    if energy.expression is not assembly.T + assembly.V:
+        law = ENERGY_AND_WORK
+        words = ("The energy less the work of the constant forces, ", law, ", stays constant")
+    if any(node.op == "select" for node in order((energy.expression,))):
+        return [Prose((*words, "."))]
+    return [Prose((*words, ":")), *page(reader, [(law, energy.expression)])]
+
+
+def _laws(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+    """q(t) of the coordinates whose equations are solved in closed form."""
+    symbols = system.symbols
+    start = _start(system)
+    if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or start is None:
+        return ()
+    accelerations = short_accelerations(system, assembly)
+    laws = {} if accelerations is None else laws_of_motion(system, accelerations, start)
+    free = {u.name.removesuffix("'") for u in symbols.u}
+    found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
+    if not found:
+        return ()
+    words = Prose(("From the start values, in closed form:",))
+    return (Step("laws", "Laws of motion", (words, *(Formula((q, _law(reader, x))) for q, x in found))),)
+
+
+def _law(reader: Reader, x: Scalar) -> Scalar:
+    """A law as it was found, which is shorter than multiplied out, with symbols for its roots."""
+    return reader.with_symbols((x,))[0]
+
+
+def _start(system: System) -> dict[Node, Scalar] | None:
+    """q and u at the start; None where a dependent coordinate is sought by the ties."""
+    scope, parts = system.scope, system.scope.model.coordinates
+    if system.free is not None:
+        return None
+    try:
+        start = {q: start_value(scope, parts[q.name]) for q in scope.symbols.q}
+    except EomgenError:
+        return None
+    return start | {u: scope.value(parts[u.name.removesuffix("'")].speed) for u in scope.symbols.u}
