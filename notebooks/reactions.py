@@ -39,13 +39,16 @@ joint = { kind = "revolute", at = [0, 0], angle = "-theta" }
 kind = "gravity"
 acceleration = [0, "-g"]
 """)
-equations = eomgen.derive(model)
+equations = eomgen.derive(model, method="kinetostatic")
 equations
 
 # %% [markdown]
+# The method is D'Alembert's: the rod is cut free, and its weight, the force of the hinge, the inertia force and the
+# inertia couple are in balance. What the hinge has no part in is the equation of motion.
+#
 # ## As expressions
 #
-# D'Alembert: the hinge makes up what weight and inertia force leave over. They are linear in the accelerations.
+# The hinge makes up what weight and inertia force leave over. They are linear in the accelerations.
 
 # %%
 import sympy
@@ -64,6 +67,19 @@ m, l, g, theta, w, e = (s[name] for name in ("m", "l", "g", "theta", "theta'", "
 sin, cos = sympy.sin(theta), sympy.cos(theta)
 by_hand = sympy.Matrix([-m * l / 2 * (e * sin + w**2 * cos), m * g - m * l / 2 * (e * cos - w**2 * sin)])
 assert (hinge - by_hand).applyfunc(sympy.expand) == sympy.zeros(2, 1)
+
+# %% [markdown]
+# ## At an instant
+#
+# The energy theorem gives the speed where the rod hangs, so the force there is exact and needs no integration in time.
+
+# %%
+import dataclasses
+
+below = {"value": "reaction_y(rod)", "at": "theta = pi/2", "from": "rest"}
+answer = eomgen.solve(dataclasses.replace(model, outputs={"below": below}))["below"]
+assert answer.exact == "5/2*m*g" and answer.method == "energy theorem"
+answer
 
 # %% [markdown]
 # ## Along the motion
@@ -100,3 +116,34 @@ reactions = equations.reaction_rhs("numpy")
 value = dict(zip(reactions.names, reactions(0.0, [0.0, 0.0], [2.0, 0.6, 9.81]), strict=True))
 assert abs(value["reaction_y(rod)"] - weight / 4) < 1e-12
 value
+
+# %% [markdown]
+# ## A contact that ends
+#
+# A ladder slides down a smooth wall. The wall can only push: the ladder leaves it where the force has become 0, and the
+# run goes on without the wall. It lets go at two thirds of the height from which it started.
+
+# %%
+from pathlib import Path
+
+here = Path(__file__).parent if "__file__" in globals() else Path.cwd()
+ladder = eomgen.load(here.parent / "models" / "sliding_ladder.toml")
+answers = eomgen.solve(ladder)
+assert answers["cos_leaves"].exact == "2/3*cos(theta_0)"
+answers["N_wall"]
+
+# %%
+run = eomgen.simulate(ladder, time=0.9, samples=451)
+for phase in run.phases:
+    print(f"from {phase.start:.4f} s: {phase.ended_by}")
+assert abs(run.phases[0].end - answers["t_leaves"].value) < 1e-9
+
+# %%
+figure, axes = plt.subplots(figsize=(7, 3))
+for name in run.reactions:
+    axes.plot(run.t, run[name], label=name)
+axes.axvline(run.phases[0].end, color="grey", linewidth=0.8)
+axes.set_xlabel("t [s]")
+axes.set_ylabel("reaction [N]")
+axes.legend()
+figure

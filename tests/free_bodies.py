@@ -230,7 +230,8 @@ class Tree:
             own = joint.get("angle", 0)
             angle += self.q[own] if own in self.q else self.number(own)
             angle += self.number(joint.get("turned", {"angle": 0})["angle"])
-        yield body, np.zeros(3), -self.number(force["stiffness"]) * (angle - self.number(force["rest"])) * Z, np.zeros(3)
+        couple = -self.number(force["stiffness"]) * (angle - self.number(force["rest"]))
+        yield body, np.zeros(3), couple * Z, np.zeros(3)
 
     def _torsion_damper(self, force: dict[str, Any]) -> Iterator[Wrench]:
         body = self.names.index(force["body"])
@@ -360,9 +361,7 @@ class Tree:
     def joint_wrenches(self, body: str) -> list[tuple[np.ndarray, np.ndarray]]:
         """(force, couple) of each reaction that the joint can carry, drives of given motions included, ground axes."""
         joint = self.table["bodies"][body]["joint"]
-        i = self.names.index(body)
-        parent = self.parents[i]
-        R = (np.eye(3) if parent < 0 else self.here[parent].R) @ self._turned(joint)
+        R = self.parent(self.names.index(body)).R @ self._turned(joint)
         free = [(R @ axis, np.zeros(3)) for axis, _ in self._slides(joint)]
         free = [f for f, (_, s) in zip(free, self._slides(joint), strict=True) if s in self.free]
         if joint["kind"] != "prismatic" and joint.get("angle") in self.free:
@@ -375,13 +374,18 @@ class Tree:
         held[:, used] = V[len(sizes) :]
         return [(row[:3], row[3:]) for row in held]
 
+    def parent(self, i: int) -> Place:
+        return AT_REST if self.parents[i] < 0 else self.here[self.parents[i]]
+
+    def carried(self, what: str, k: int) -> bool:
+        """Whether forces (couples) along the ground's axis k belong to the model's space."""
+        return not self.plane or (k < 2) == (what == "force")
+
     def axis(self, body: str) -> np.ndarray:
         """Of a hinge."""
         joint = self.table["bodies"][body]["joint"]
-        i = self.names.index(body)
-        parent = AT_REST if self.parents[i] < 0 else self.here[self.parents[i]]
         axis = self.vector(joint["axis"]) if joint["kind"] == "revolute" and "axis" in joint else Z
-        return parent.R @ self._turned(joint) @ axis / np.linalg.norm(axis)
+        return self.parent(self.names.index(body)).R @ self._turned(joint) @ axis / np.linalg.norm(axis)
 
     def on_both(self, body: str, force: np.ndarray, couple: np.ndarray) -> list[Wrench]:
         """Force and couple of a joint, on the body and opposite on its parent."""

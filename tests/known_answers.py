@@ -84,6 +84,12 @@ CLASSICS = {
             ),
         ),
     ),
+    "sliding_ladder": Known("m*l^2/6*theta'^2", (("theta'' - 3*g/(2*l)*sin(theta)", "m*l^2/3"),)),
+    "rough_incline": Known("m/2*s'^2", (("s'' + g*sin(alpha) + mu*g*cos(alpha)*sign(s')", "m"),)),
+    "loop_the_loop": Known(
+        "m/2*s'^2",
+        (("s'' - g*sin(alpha - min(max(0, s - L), R*(alpha + 2*pi))/R)", "m"),),
+    ),
     "parallelogram_reactions": Known("12*M*l^2*theta'^2", (("theta'' - 7/12*g/l*cos(theta)", "24*M*l^2"),)),
 }
 

@@ -121,16 +121,12 @@ def test_a_driving_law_holds_time_and_parameters_only(law, name):
         written(GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0", coordinate=text))
 
 
-def test_eliminated_coordinates_and_declared_speeds_wait_for_a_later_version():
+def test_declared_speeds_wait_for_a_later_version():
     """Never a wrong answer: exit 3."""
-    dependent = GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0",
-                                coordinate="r = { dependent = true }")  # fmt: skip
-    tie = '[constraints.c]\nkind = "equation"\ngap = "r - q"\n'
     declared = "r = 0.1\n[speeds]\nw1 = \"q' + r'\"\nw2 = \"r'\""
-    for text in (dependent + tie, dependent.replace("r = { dependent = true }", declared)):
-        with pytest.raises(NotYet) as caught:
-            written(text)
-        assert caught.value.exit_code == 3 and caught.value.mend
+    with pytest.raises(NotYet) as caught:
+        written(GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0", coordinate=declared))
+    assert caught.value.exit_code == 3 and caught.value.mend
 
 
 MOVING_POINT = """

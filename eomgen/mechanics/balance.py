@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from eomgen.errors import DerivationError
 from eomgen.mechanics.components import Component, components_of
 from eomgen.mechanics.effects import Axes, effects_of_load, joint_effects, turned
+from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically, slide_power
 from eomgen.model.forces.load import PointForce
-from eomgen.symbolic.derivative import gradient
+from eomgen.symbolic.derivative import depends_on, gradient
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, apply, cross, plus, times, vector_of
 
@@ -95,11 +96,28 @@ def refuse_placeless(system: System) -> None:
                                   f"constraints.{row.tie}", "give it as a tie between bodies")  # fmt: skip
         if row.pushes and _pushes_along(system, row.direct):
             raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
+    for link in system.motion.links:
+        if _seat_moves_others(system, link):
+            raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
 
 
 def _pushes_along(system: System, power: Scalar) -> bool:
     """Whether a force does work on a coordinate by the slide of its point alone."""
     return any(not holds_identically(x) for x in gradient(power, system.symbols.u))
+
+
+def _seat_moves_others(system: System, link: Link) -> bool:
+    """Whether a free coordinate moves the seat of a joint and something else: what joins the two acts at no place."""
+    table = system.scope.model.coordinates
+    free = [q for q in system.symbols.q if not table[q.name].driven]
+    seat = (*link.before.p, *link.point)
+    for q in free:
+        if any(depends_on(x, (q,)) for x in seat):
+            others = [x for other in system.motion.links for x in other.s]
+            others += [x for other in system.motion.links if other is not link for x in (*other.before.p, *other.point)]
+            if any(depends_on(x, (q,)) for x in others):
+                return True
+    return False
 
 
 def _moved_inside(what: str, where: str) -> DerivationError:

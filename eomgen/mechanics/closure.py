@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues
-from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.derivative import jacobian

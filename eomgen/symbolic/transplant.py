@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -30,7 +31,9 @@ def transplanted(scalars: Sequence[Scalar], graph: Graph, meanings: Mapping[str,
         if symbol.name not in meanings:
             raise DerivationError(f"'{symbol.name}' has no meaning here")
         values[symbol] = meanings[symbol.name]
-    onto = Arithmetic("graph", lambda c: c, _RING | _FUNCTIONS | {"pi": lambda: graph.pi}, _refused)
+    own: dict[str, Callable[..., Any]] = {"pi": lambda: graph.pi, "select": graph.select}
+    own |= {name: partial(graph.call, name) for name in ("less", "less_equal")}
+    onto = Arithmetic("graph", lambda c: c, _RING | _FUNCTIONS | own, _refused)
     return tuple(evaluate(tuple(scalars), values, onto))
 
 
