@@ -16,7 +16,6 @@ import numpy as np
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.proven import proven_places
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
@@ -328,15 +327,8 @@ def placed(situation: Situation, known: Mapping[Node, Scalar], numbers: Mapping[
     if not unknown or not gaps or not numbers:
         return dict(known)
     located = Located({**_parameters(situation), **numbers}, situation.positive)
-    found = dict(known)
-    for _ in unknown:
-        equations = [x for x in substituted(tuple(gaps), found) if depends_on(x, unknown)]
-        more = places_of(equations, [q for q in unknown if q not in found], located)
-        more = more or proven_places(system, found, numbers)
-        if not more:
-            break
-        found |= more
-    return found
+    equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
+    return {**known, **places_of(equations, unknown, located)}
 
 
 def _parameters(situation: Situation) -> dict[Node, float]:
