@@ -14,12 +14,13 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
-from eomgen.journey import Journey, Moment
+from eomgen.journey import Journey
 from eomgen.mechanics.outputs import later
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
+from eomgen.moments import Moment
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate

@@ -8,52 +8,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
-from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.places import Located
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
+from eomgen.moments import Moment, carried, parameters_of, placed
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.course import Course, at_start, course_of
-from eomgen.simulation.phases import Plan, passed
+from eomgen.simulation.course import Situation as Beginning
+from eomgen.simulation.history import Passage, history
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Stepping
-from eomgen.simulation.stretch import Stretch
 from eomgen.situation import Situation, situation_of, start_of
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.transplant import transplanted
 
 HORIZONS = (10.0, 100.0, 1000.0, 10000.0)  # s, for conditions that are met late
 FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)
-HOLDS = 1e-8  # of a condition against its change along the phase
-SAME_TIME = 1e-8  # of instants, relative to them and 1 s
-
-
-@dataclass(frozen=True)
-class Moment:
-    """One instant of a motion.
-
-    Args:
-        situation: the equations of the phase.
-        exact: t, q and u as scalars of the parameters, those that are known so.
-        numbers: t, q and u as numbers; {} where parameters are missing.
-        method: how it was found.
-    """
-
-    situation: Situation
-    exact: Mapping[Node, Scalar]
-    numbers: Mapping[Node, float]
-    method: str
+HOLDS = 1e-8  # of a bound against its size at the start
+SAME = 1e-8  # of a velocity on both sides of an instant, relative to it and 1
 
 
 @dataclass(frozen=True)
@@ -81,11 +64,16 @@ class Journey:
             return None
 
     @cached_property
-    def _first(self):
+    def _first(self) -> Beginning:
         """Where the phases begin."""
         assert self.course is not None
-        rates = {f"{q}'": 0.0 for q, part in self.model.coordinates.items() if not part.driven and not part.dependent}
-        return at_start(self.course, 0.0, None, rates if self.at_rest else None)
+        return at_start(self.course, 0.0, None, self._start_rates)
+
+    @property
+    def _start_rates(self) -> dict[str, float] | None:
+        """The speeds at the start that replace the model's."""
+        free = (q for q, part in self.model.coordinates.items() if not part.driven and not part.dependent)
+        return {f"{q}'": 0.0 for q in free} if self.at_rest else None
 
     @cached_property
     def situation(self) -> Situation:
@@ -142,9 +130,7 @@ class Journey:
             return Moment(self.situation, self.start, self.numbers, "at the start")
         if self.course is None or self._starts_in_balance(self.situation):
             return self._within(self.situation, condition, self.start, self.numbers)
-        stretches = self._stretches(condition)
-        moment = self._exactly(stretches, condition)
-        return self._after(moment, stretches) if side == "after" else moment
+        return self._through(self._passages(condition), side)
 
     def _is_start(self, condition: Equation) -> bool:
         """Whether an instant is asked for by the time t = 0."""
@@ -187,7 +173,7 @@ class Journey:
             DerivationError: a contact is named.
         """
         stage = self._stage_of_first
-        values = {**_parameters(moment.situation), **moment.numbers}
+        values = {**parameters_of(moment.situation), **moment.numbers}
         for bound in stage.bounds:
             if bound.value is None or bound.kind not in ("ends", "turns", "closes"):
                 continue
@@ -199,87 +185,67 @@ class Journey:
 
     # -- through several phases -------------------------------------------------------------------
 
-    def _stretches(self, condition: Equation) -> list[Stretch]:
-        """The phases up to the one in which the condition is met."""
-        assert self.course is not None
+    def _passages(self, condition: Equation) -> tuple[Passage, ...]:
+        """The phases up to the one in which the condition is met.
+
+        Raises:
+            RunFailed: it is not met.
+        """
+        p = np.array(list(numeric_parameters(self.model).values()), dtype=float)
 
         def until(stage: Stage) -> Scalar:
-            situation = Situation(stage.system)
-            return _difference(situation, condition)
+            return _difference(Situation(stage.system), condition)
 
         for horizon in HORIZONS:
-            found: list[Stretch] = []
-            for stretch in passed(self.course, self._first, Plan(horizon, FINE, until=until)):
-                found.append(stretch)
-                crossing = stretch.run.crossing
-                if crossing is not None and crossing.index == len(stretch.stage.bounds):
-                    return found
-                if stretch.bound is not None and self._holds_at_end(stretch, until(stretch.stage)):
-                    return found
-            if found[-1].run.status != "finished":
-                raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].run.message}")
+            found = history(self.model, p, self._start_rates, until=until, time=horizon, how=FINE)
+            if found[-1].kind == "condition":
+                return found
+            if found[-1].kind == "failure":
+                raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].message}")
         raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
 
-    def _holds_at_end(self, stretch: Stretch, scalar: Scalar) -> bool:
-        """Whether the condition is met at the very instant at which a phase ends."""
-        run = stretch.run
-        if run.end <= stretch.here.t:
-            return False
-        t, x = np.append(run.t, run.end), np.vstack([run.x, run.last])
-        size = np.abs(stretch.stage.evaluated(t, x, (scalar,))[:, 0])
-        return bool(size[-1] <= HOLDS * max(np.max(size), 1e-12))
-
-    def _exactly(self, stretches: list[Stretch], condition: Equation) -> Moment:
+    def _through(self, passages: tuple[Passage, ...], side: str | None) -> Moment:
         """The end of the last phase, every end before it sought in closed form."""
-        moment: Moment | None = None
-        for stretch in stretches:
-            situation = Situation(stretch.stage.system)
-            start = self._carried_start(situation) if moment is None else _carried(moment, situation)
-            last = stretch is stretches[-1]
-            scalar = _difference(situation, condition) if last else stretch.bound.value if stretch.bound else None
-            moment = self._end_of(situation, stretch, scalar, start)
-            if stretch.after is not None and stretch.after.impact:
-                moment = replace(moment, exact={})
-        assert moment is not None, "there is at least one phase"
-        return moment
+        moment = Moment(self.situation, self.start, {}, "")
+        for k, passage in enumerate(passages):
+            situation = Situation(passage.stage.system)
+            exact = {} if k and _jumps(passages[k - 1].end, passage.start) else carried(moment, situation)
+            moment = _end_of(situation, passage, exact)
+        after = passages[-1].after
+        if side != "after" or after is None:
+            return moment
+        stage, values = after
+        situation = Situation(stage.system)
+        exact = {} if _jumps(passages[-1].end, values) else carried(moment, situation)
+        return Moment(situation, exact, _numbers(situation, passages[-1].t_1, values), moment.method)
 
-    def _carried_start(self, situation: Situation) -> dict[Node, Scalar]:
-        """The exact start in the symbols of the first phase."""
-        return _carried(Moment(self.situation, self.start, {}, ""), situation) if self.start else {}
 
-    def _end_of(
-        self, situation: Situation, stretch: Stretch, scalar: Scalar | None, start: Mapping[Node, Scalar]
-    ) -> Moment:
-        """The end of a phase: in numbers as it was run, exact where that agrees."""
-        symbols = situation.system.symbols
-        values = stretch.stage.values(stretch.run.end, stretch.run.last)
-        numbers = {symbols.t: stretch.run.end} | {node: values[node.name] for node in (*symbols.q, *symbols.u)}
-        if not start or scalar is None:
-            return Moment(situation, {}, numbers, "integration in time")
-        begin = {symbols.t: stretch.here.t}
-        begin |= {node: stretch.here.values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
-        try:
-            instant = _reached(situation, situation.eliminated(scalar), start, begin)
-        except EomgenError:
-            return Moment(situation, {}, numbers, "integration in time")
-        located = Located({**_parameters(situation), **numbers}, situation.positive)
-        exact = {node: x for node, x in instant.exact.items() if located.agrees(x, node)}
-        return Moment(situation, placed(situation, exact, numbers), numbers, instant.method)
+def _end_of(situation: Situation, passage: Passage, start: Mapping[Node, Scalar]) -> Moment:
+    """The end of a phase: in numbers as it was run, exact where that agrees."""
+    numbers = _numbers(situation, passage.t_1, passage.end)
+    by_time = Moment(situation, {}, numbers, "integration in time")
+    if not start or passage.value is None:
+        return by_time
+    begin = _numbers(situation, passage.t_0, passage.start)
+    try:
+        instant = _reached(situation, situation.eliminated(passage.value), start, begin)
+    except EomgenError:
+        return by_time
+    located = Located({**parameters_of(situation), **numbers}, situation.positive)
+    exact = {node: x for node, x in instant.exact.items() if located.agrees(x, node)}
+    return Moment(situation, placed(situation, exact, numbers), numbers, instant.method)
 
-    def _after(self, moment: Moment, stretches: list[Stretch]) -> Moment:
-        """The same instant in the phase that begins there, if one does."""
-        assert self.course is not None
-        end = stretches[-1].run.end
-        within = SAME_TIME * (1 + end)
-        for stretch in passed(self.course, self._first, Plan(end + 100 * within, FINE)):
-            after = stretch.after
-            if after is not None and abs(after.t - end) <= within and not after.failure:
-                situation = Situation(self.course.stages.of(after.configuration).system)
-                symbols = situation.system.symbols
-                numbers = {symbols.t: end} | {x: after.values.get(x.name, 0.0) for x in (*symbols.q, *symbols.u)}
-                exact = {} if after.impact else _carried(moment, situation)
-                moment = Moment(situation, exact, numbers, moment.method)
-        return moment
+
+def _numbers(situation: Situation, t: float, values: Mapping[str, float]) -> dict[Node, float]:
+    """A state by the symbols of a phase; a displacement that does not exist yet is 0."""
+    symbols = situation.system.symbols
+    return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
+
+
+def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
+    """Whether a velocity jumps between two phases: an impact."""
+    common = [name for name in end if name in start]
+    return any(abs(end[name] - start[name]) > SAME * (1 + abs(end[name])) for name in common)
 
 
 def _difference(situation: Situation, condition: Equation) -> Scalar:
@@ -292,46 +258,4 @@ def _reached(
 ) -> Instant:
     return reached(situation.system, situation.assembly, situation.accelerations, condition, start, numbers)
 
-
-def _carried(moment: Moment, situation: Situation) -> dict[Node, Scalar]:
-    """The exact end of a phase as the start of the next; a displacement that did not exist is 0. {}: not exact."""
-    symbols = situation.system.symbols
-    known = {node.name: x for node, x in moment.exact.items()}
-    old = {x.name for x in (*moment.situation.system.symbols.q, *moment.situation.system.symbols.u)}
-    wanted = [symbols.t, *symbols.q, *symbols.u]
-    if any(node.name not in known and (node.name in old or node is symbols.t) for node in wanted):
-        known = _with_rates(moment, known)
-    if any(node.name not in known and (node.name in old or node is symbols.t) for node in wanted):
-        return {}
-    meanings = dict(symbols.parameters)
-    values = transplanted([known.get(node.name, 0) for node in wanted], symbols.graph, meanings)
-    return dict(zip(wanted, values, strict=True))
-
-
-def _with_rates(moment: Moment, known: dict[str, Scalar]) -> dict[str, Scalar]:
-    """The rates of coordinates that were dependent, too."""
-    scope = moment.situation.system.scope
-    rates = substituted(scope.rates, dict(moment.exact))
-    return {f"{q.name}'": rate for q, rate in zip(scope.symbols.q, rates, strict=True)} | known
-
-
-def placed(situation: Situation, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
-    """What is known of a state, and the coordinates that the ties then fix, where they have a closed form.
-
-    Args:
-        numbers: the same state in numbers, by which one of several places is chosen; {}: nothing is added.
-    """
-    system = situation.system
-    unknown = [q for q in system.symbols.q if q not in known]
-    gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
-    if not unknown or not gaps or not numbers:
-        return dict(known)
-    located = Located({**_parameters(situation), **numbers}, situation.positive)
-    equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
-    return {**known, **places_of(equations, unknown, located)}
-
-
-def _parameters(situation: Situation) -> dict[Node, float]:
-    values = numeric_parameters(situation.model)
-    return {situation.system.symbols.parameters[name]: float(x) for name, x in values.items()}
 

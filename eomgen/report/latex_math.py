@@ -146,7 +146,7 @@ class Setter:
         if op in RELATIONS:
             return Set(f" {RELATIONS[op]} ".join(a.tex for a in arguments), width + 2, SUM)
         if op == "select":
-            return _cases(arguments)
+            return self._cases(node)
         if op == "pow":
             base = arguments[0] if arguments[0].hold == ATOM else bracketed(arguments[0])
             return Set(f"{base.tex}^{{{arguments[1].tex}}}", width, TALL)
@@ -154,6 +154,21 @@ class Setter:
         if plain:
             return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), width + len(op), TALL)
         return Set(rf"{FUNCTIONS[op]}\left({inside}\right)", width + len(op) + 1, TALL)
+
+
+    def _cases(self, node: Node) -> Set:
+        """Cases below one another: what is chosen where a condition fails is no case of its own."""
+        rows: list[str] = []
+        width = 9.0
+        last: Scalar = node
+        while type(last) is Node and last.op == "select":
+            condition, if_true, last = last.args
+            value, where = self.set(if_true), self.set(condition)
+            rows.append(f"{value.tex} & {where.tex}")
+            width = max(width, value.width + where.width)
+        rows.append(rf"{self.set(last).tex} & \text{{otherwise}}")
+        width = max(width, self.set(last).width + 9) + 3
+        return Set(r"\begin{cases} " + r" \\ ".join(rows) + r" \end{cases}", width)
 
 
 def width_of(tex: str) -> float:
@@ -186,13 +201,6 @@ def _between(before: str, after: str) -> str:
     if after[0].isdigit():
         return r" \cdot "
     return r" \, " if r"\mathrm" in before or r"\mathrm" in after else " "
-
-
-def _cases(arguments: list[Set]) -> Set:
-    condition, if_true, if_false = arguments
-    rows = rf"{if_true.tex} & {condition.tex} \\ {if_false.tex} & \text{{otherwise}}"
-    width = max(if_true.width, if_false.width) + max(condition.width, 9) + 3
-    return Set(rf"\begin{{cases}} {rows} \end{{cases}}", width)
 
 
 def is_sum(node: Node) -> bool:

@@ -152,8 +152,15 @@ class Reader:
 
 
 def conditions_in(x: Scalar) -> list[Node]:
-    """The conditions of the cases in x, each once."""
-    return list(dict.fromkeys(node.args[0] for node in order((x,)) if node.op == "select"))
+    """The conditions of the cases in x, each once, outer ones first."""
+    around: dict[Node, set[Node]] = {}  # the conditions on one of whose sides it stands
+    for node in order((x,)):
+        if node.op == "select":
+            around.setdefault(node.args[0], set())
+            for inner in order(node.args[1:]):
+                if inner.op == "select" and inner.args[0] is not node.args[0]:
+                    around[inner.args[0]].add(node.args[0])
+    return sorted(around, key=lambda condition: len(around[condition]))
 
 
 def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
