@@ -16,8 +16,10 @@ from eomgen.report.reading import (
     WORK,
     Reader,
     Shortened,
+    conditions_in,
     free_names,
     length_in_print,
+    readable_value,
     shortened,
 )
 from eomgen.report.setting_steps import moved_coordinates
@@ -214,6 +216,8 @@ def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -
 
 def _quotient(reader: Reader, graph: Graph, above: Scalar, below: Scalar) -> Scalar:
     """above / below in its shorter form: as one quotient without common factors, or as a sum."""
+    if conditions_in(above):
+        return readable_value(reader, graph.div(above, below))
     one = cancelled(graph.div(above, below), WORK)
     several = reader.shown(one) if reader.roots else one
     return one if isinstance(several, Omitted) or length_in_print(one) <= length_in_print(several) else several

@@ -93,12 +93,14 @@ def spins(system: System, body: str, spin: Vector) -> list[Pair]:
 
 def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
     """The constraints: those that the coordinates satisfy, the gaps that must stay zero, and the dependent rates."""
-    if not system.ties.rows:
+    away = [tie for tie, mode in system.modes.items() if not mode.closed]
+    if not system.ties.rows and not away:
         return ()
     satisfied = [row for row in system.ties.rows if row.identical]
     statements: list[Statement] = [
         Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)) for row in satisfied
     ]
+    statements += [Prose((f"{tie}: open at the start, and left out.",)) for tie in away]
     held = _held(system)
     if held:
         statements += [Prose(("These must vanish along the motion:",)), *page(reader, held, then=(0,))]

@@ -152,15 +152,20 @@ class Reader:
 
 
 def conditions_in(x: Scalar) -> list[Node]:
-    """The conditions of the cases in x, each once, outer ones first."""
-    around: dict[Node, set[Node]] = {}  # the conditions on one of whose sides it stands
+    """The conditions of the cases in x, each once; before those that are asked only where it fails."""
+    deep: dict[Node, int] = {}
     for node in order((x,)):
         if node.op == "select":
-            around.setdefault(node.args[0], set())
-            for inner in order(node.args[1:]):
-                if inner.op == "select" and inner.args[0] is not node.args[0]:
-                    around[inner.args[0]].add(node.args[0])
-    return sorted(around, key=lambda condition: len(around[condition]))
+            deep[node.args[0]] = max(deep.get(node.args[0], 0), _chain(node))
+    return sorted(deep, key=lambda condition: -deep[condition])
+
+
+def _chain(node: Scalar) -> int:
+    """How many conditions are asked one after the other."""
+    length = 0
+    while type(node) is Node and node.op == "select":
+        length, node = length + 1, node.args[2]
+    return length
 
 
 def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:

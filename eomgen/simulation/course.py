@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
+from eomgen.model.values import numeric_parameters
 from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces, paths_of
 from eomgen.simulation.events import Crossing
 from eomgen.simulation.impact import Loose
@@ -177,3 +178,20 @@ def _contact(
 def _jammed(standing: Configuration) -> str:
     names = ", ".join(f"'{name}'" for name in standing.modes)
     return f"no forces of the contacts {names} agree with their state (rigid bodies with so much friction jam)"
+
+
+def open_at_start(model: Model) -> dict[str, Mode]:
+    """The contacts that the start values leave open: their gaps are not 0; {} where that cannot be told.
+
+    What the coordinates satisfy by themselves is closed, whatever its force.
+    """
+    if not any(contact.unilateral for contact in contacts_of(model)):
+        return {}
+    try:
+        p = np.array(list(numeric_parameters(model).values()), dtype=float)
+        course = course_of(model, p, "numpy")
+        here = at_start(course, 0.0, None, None)
+        gaps = course.loose.gaps(0.0, here.values)
+    except EomgenError:  # a missing value, a start that does not hold: said by whoever needs them
+        return {}
+    return {name: Mode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
