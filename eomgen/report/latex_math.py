@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import pairwise
 
 from eomgen.report.latex_names import symbol_latex
@@ -99,10 +100,10 @@ class Setter:
         hold = body.hold if not sign else SUM
         return Set(f"{sign} {body.tex}".strip(), body.width + (3 if sign else 0), hold)
 
-    def product(self, product: Product) -> Set:
-        """|coefficient| * numerator / denominator."""
+    def product(self, product: Product, *, one_fraction: bool = False) -> Set:
+        """|coefficient| * numerator / denominator; the number beside it has a fraction of its own, or none."""
         c = max(product.coefficient, -product.coefficient)
-        if not product.denominator and not is_part_of_turn(product):
+        if not product.denominator and not one_fraction and not is_part_of_turn(product):
             return self._juxtaposed(c, product.numerator)
         whole = decimal_of(c) is not None
         above = self._juxtaposed(c if whole else c.numerator, product.numerator)
@@ -139,6 +140,8 @@ class Setter:
             tex = r"\pi" if op == "pi" else self.notation.get(node.name) or symbol_latex(node.name)
             return Set(tex, width_of(tex))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
+        if op == "sqrt":
+            arguments = [self._under_root(node.args[0])]
         inside = ", ".join(a.tex for a in arguments)
         width = sum(a.width + 1 for a in arguments)
         if op in WRAPPED:
@@ -155,6 +158,11 @@ class Setter:
             return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), width + len(op), TALL)
         return Set(rf"{FUNCTIONS[op]}\left({inside}\right)", width + len(op) + 1, TALL)
 
+    def _under_root(self, x: Scalar) -> Set:
+        """x, a product with a broken number as one fraction: 14 l/3."""
+        if type(x) is Node and x.op == "mul" and type(x.args[0]) is Fraction and decimal_of(x.args[0]) is None:
+            return self.product(self.summands(x)[0], one_fraction=True)
+        return self.set(x)
 
     def _cases(self, node: Node) -> Set:
         """Cases below one another: what is chosen where a condition fails is no case of its own."""

@@ -42,7 +42,8 @@ def to_text(x: Scalar, names: Mapping[Node, str] | None = None) -> str:
         if missing:
             stack += missing
         else:
-            printed[stack.pop()] = _sum_text(plans[node], printed) if plans[node] else _base_text(node, printed)
+            stack.pop()
+            printed[node] = _sum_text(plans[node], printed) if plans[node] else _base_text(node, printed, plans)
     return printed[x][0]
 
 
@@ -64,8 +65,8 @@ def _sum_text(products: list[Product], printed: Printed) -> tuple[str, int]:
     return "".join(pieces), LOOSE
 
 
-def _product_text(product: Product, printed: Printed) -> tuple[str, int]:
-    """The text of |coefficient| * numerator / denominator."""
+def _product_text(product: Product, printed: Printed, *, one_line: bool = False) -> tuple[str, int]:
+    """The text of |coefficient| * numerator / denominator; 14*l/3 rather than 14/3*l where `one_line`."""
     c = product.coefficient
     c = -c if c < 0 else c
     above = [_power_text(factor, printed) for factor in product.numerator]
@@ -75,7 +76,10 @@ def _product_text(product: Product, printed: Printed) -> tuple[str, int]:
         return number_text(c), ATOM if plain else LOOSE
     if is_part_of_turn(product):
         return f"{'pi' if c.numerator == 1 else f'{c.numerator}*pi'}/{c.denominator}", LOOSE
-    if above:
+    if above and one_line and not plain:
+        above = above if c.numerator == 1 else [str(c.numerator), *above]
+        below = [str(c.denominator), *below]
+    elif above:
         above = above if c == 1 else [number_text(c), *above]
     else:
         above = [number_text(c) if plain else str(c.numerator)]
@@ -95,11 +99,13 @@ def _power_text(factor: Factor, printed: Printed) -> str:
     return text if exponent == 1 else f"{text}^{exponent}"
 
 
-def _base_text(node: Node, printed: Printed) -> tuple[str, int]:
+def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]) -> tuple[str, int]:
     if node.op in ("symbol", "pi"):
         return (node.name if node.op == "symbol" else "pi"), ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
+    if node.op == "sqrt" and len(products := plans.get(node.args[0], ())) == 1 and products[0].coefficient > 0:
+        return f"sqrt({_product_text(products[0], printed, one_line=True)[0]})", ATOM
     inside = (printed[a][0] if type(a) is Node else number_text(a) for a in node.args)
     return f"{node.op}({', '.join(inside)})", ATOM
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -122,3 +123,19 @@ def test_the_outputs_of_every_classic_are_answered(path):
     """All but those of the linearization, which a later version brings."""
     left = {name: answer.message for name, answer in eomgen.solve(eomgen.load(path)).items() if not answer.answered}
     assert all("linearization" in message for message in left.values()), left
+
+
+def test_a_four_bar_keeps_its_energy_to_another_position():
+    """T + V at alpha = pi is that of the start, though its loop closes in no short formula there."""
+    energy = "kinetic_energy() + potential_energy()"
+    asked = {"before": {"value": energy, "at": "t = 0"}, "there": {"value": energy, "at": "alpha = pi"}}
+    answers = eomgen.solve(replace(loaded("four_bar")[0], outputs=asked))
+    assert answers["there"].method == "energy theorem", answers["there"].message
+    assert answers["there"].value == pytest.approx(answers["before"].value, rel=1e-12)
+
+
+def test_a_normal_force_is_not_asked_of_a_piece_or_a_side():
+    """reaction_n(bead.loop) would be a force that the bead has somewhere else: it is refused, with what to ask."""
+    model = replace(loaded("loop_the_loop")[0], outputs={"N": "reaction_n(bead.loop)"})
+    message = eomgen.solve(model)["N"].message
+    assert message is not None and "ask reaction_n(bead), at an instant" in message
