@@ -133,12 +133,19 @@ class Journey:
         return self._through(self._passages(condition), side)
 
     def _is_start(self, condition: Equation) -> bool:
-        """Whether an instant is asked for by the time t = 0."""
+        """Whether an instant is asked for by the time t = 0.
+
+        Raises:
+            RunFailed: nothing that moves stands in the condition.
+        """
         symbols = self.situation.system.symbols
         scalar = _difference(self.situation, condition)
         if depends_on(scalar, (*symbols.q, *symbols.u)):
             return False
-        return depends_on(scalar, (symbols.t,)) and holds_identically(substituted((scalar,), {symbols.t: 0})[0])
+        if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
+            raise RunFailed(f"'{condition.text}' names no instant: nothing in it moves",
+                            mend="write an equation in coordinates, rates or t")  # fmt: skip
+        return holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
     def _within(
         self, situation: Situation, condition: Equation, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]

@@ -32,8 +32,10 @@ from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import readable_all, simplest
+from eomgen.symbolic.text import text_size
 
 WORK = 50_000  # products of terms for making one formula readable
+LONG = 400  # characters from which a formula is no easier to read than it came
 State = Mapping[Node, Scalar]
 
 
@@ -101,8 +103,10 @@ class Situation:
         return substituted((scalar,), self.unknowns)[0]
 
     def simple(self, scalar: Scalar) -> Scalar:
-        """A scalar in its most readable form."""
-        return simplest(scalar, WORK, self.positive)
+        """A scalar in its most readable form; as it came where multiplying out made it longer still."""
+        found = simplest(scalar, WORK, self.positive)
+        size = text_size(found)
+        return scalar if size > LONG and text_size(scalar) < size else found
 
     # -- at an instant ---------------------------------------------------------------------------
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from eomgen.errors import EomgenError, NotYet
 from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.scope import scope_of
@@ -62,9 +63,11 @@ class Freedom:
     not_counted: str = ""
 
 
-def freedom_of(model: Model) -> Freedom:
+def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
     """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
 
+    Args:
+        modes: how contacts are that can end; what is not named is closed.
     Raises:
         DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
     """
@@ -72,7 +75,7 @@ def freedom_of(model: Model) -> Freedom:
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
     try:
-        ties = ties_of(motion_of(scope_of(model)))
+        ties = ties_of(motion_of(scope_of(model)), modes=modes)
     except NotYet as error:
         return Freedom(not_counted=error.what)
     if dependent_coordinates(ties.motion.scope):

@@ -225,6 +225,24 @@ def rebuilt_as_written(x: Scalar) -> Scalar:
     return total
 
 
+def has_nested_quotient(x: Scalar) -> bool:
+    """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
+    stack: list[tuple[Scalar, bool]] = [(x, False)]
+    seen = set()
+    while stack:
+        entry = stack.pop()
+        node, within = entry
+        if not isinstance(node, Node) or is_base(node) or entry in seen:
+            continue
+        seen.add(entry)
+        for product in _products(node):
+            if within and (product.denominator or product.coefficient.denominator > 1):
+                return True
+            sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
+            stack += [(base, within or bool(product.denominator)) for base in sums]
+    return False
+
+
 def is_part_of_turn(product: Product) -> bool:
     """True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4."""
     lone = len(product.numerator) == 1 and not product.denominator and product.numerator[0][1] == 1

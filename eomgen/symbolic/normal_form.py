@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.derivative import depends_on, substituted, tangent
@@ -17,9 +16,10 @@ from eomgen.symbolic.evaluation import united
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion, expanded
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
-from eomgen.symbolic.layout import rebuilt_as_written
+from eomgen.symbolic.layout import has_nested_quotient, rebuilt_as_written
 from eomgen.symbolic.quotient import reduced
-from eomgen.symbolic.terms import ONE, Key, Monomial, Terms, TooLarge, common_monomial, inverse, scaled, tidy, times
+from eomgen.symbolic.radicals import one_root
+from eomgen.symbolic.terms import ONE, Key, Terms, TooLarge, common_monomial, scaled, tidy
 from eomgen.symbolic.text import text_size
 from eomgen.symbolic.writing import Writer, is_rate
 
@@ -203,12 +203,8 @@ def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) ->
     """
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
-        numerator, denominator = reduced(expansion, terms)
         writer = Writer(expansion)
-        numerator, denominator = _whole(writer, numerator, denominator)
-        if len(denominator) == 1:
-            return writer.sum(expansion.product(numerator, expansion.reciprocal(denominator)))
-        return expansion.graph.div(_factored(writer, numerator), _factored(writer, denominator))
+        return _quotients(expansion, writer, terms)[-1]
     except TooLarge:
         return x
 
@@ -217,15 +213,32 @@ def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> 
     """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside."""
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
-        above, below = reduced(expansion, terms)
         writer = Writer(expansion)
-        above, below = _whole(writer, above, below)
-        forms = [writer.sum(terms), expansion.graph.div(_factored(writer, above), _factored(writer, below))]
-        if len(below) == 1:
-            forms.append(writer.sum(expansion.product(above, expansion.reciprocal(below))))
+        forms = [writer.sum(terms), *_quotients(expansion, writer, terms)]
     except TooLarge:
         return x
-    return rebuilt_as_written(min(forms, key=text_size))
+    return rebuilt_as_written(min(forms, key=_length))
+
+
+def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
+    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
+    above, below = _whole(writer, *reduced(expansion, terms))
+    forms = [expansion.graph.div(writer.in_factors(above), writer.in_factors(below))]
+    common = common_monomial(above)
+    roots = tuple((atom, e) for atom, e in common if expansion.atoms.is_a(atom, "sqrt"))
+    if roots and len(above) * len(below) > 1:
+        found = [expansion.atoms.opaque[atom].arguments[0] for atom, _ in roots]
+        rest = {(tuple(item for item in monomial if item not in roots), w): c for (monomial, w), c in above.items()}
+        radical = one_root(expansion, rest, below, found)
+        forms += [] if radical is None else [writer.radical(radical)]
+    if len(below) == 1:
+        forms.append(writer.sum(expansion.product(above, expansion.reciprocal(below))))
+    return forms
+
+
+def _length(x: Scalar) -> float:
+    """Of the text; a quotient within a quotient counts as half as long again."""
+    return text_size(x) * (1.5 if has_nested_quotient(x) else 1)
 
 
 def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
@@ -234,11 +247,3 @@ def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms,
     ratio = above / below
     sign = -1 if writer.leads_with_minus(denominator) else 1
     return scaled(numerator, sign * ratio.numerator / above), scaled(denominator, sign * ratio.denominator / below)
-
-
-def _factored(writer: Writer, terms: Terms) -> Scalar:
-    """The terms with their common monomial outside: l*(M + m*sin(theta)^2)."""
-    common: Monomial = common_monomial(terms)
-    inverted, factor = inverse(common)
-    number = writer.content(terms) if len(terms) > 1 else Fraction(1)
-    return tidy(number) * writer.factored(common, times(terms, {(inverted, ()): tidy(Fraction(factor) / number)}))

@@ -8,7 +8,7 @@ look at, but s^2 + m^2 s^2 + 2 m s c is s^2 (1 + m^2) + 2 m s c.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -73,9 +73,14 @@ class Polynomials:
             total = plus(total, part)
         return total
 
-    def forms(self) -> Sequence[Callable[[Element], Element]]:
-        """The ways to other forms of the same function."""
-        return (self.in_sines, self.of_one_degree) if 0 < len(self._axes) <= MOST_AXES else ()
+    def without_common_divisor(self, above: Element, below: Element) -> tuple[Element, Element]:
+        """(above, below) of the same quotient, without what they have in common in any of the forms."""
+        _, above, below = above.cofactors(below)
+        if 0 < len(self._axes) <= MOST_AXES:
+            for form in (self.in_sines, self.of_one_degree):
+                if not below.is_ground:
+                    _, above, below = form(above).cofactors(form(below))
+        return above, below
 
     def in_sines(self, element: Element) -> Element:
         """The same function with c^2 = 1 - s^2 used: a common factor s shows."""

@@ -15,7 +15,7 @@ def reduced(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     Raises:
         TooLarge: the expansion's limit is reached.
     """
-    numerator, denominator = _fraction(expansion, terms)
+    numerator, denominator = fraction_of(expansion, terms)
     if not numerator:
         return {}, constant(1)
     if len(denominator) > 1 or any(w for _, w in denominator):
@@ -23,8 +23,8 @@ def reduced(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
     return numerator, denominator
 
 
-def _fraction(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
-    """(numerator, denominator) without negative powers."""
+def fraction_of(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
+    """(numerator, denominator) without negative powers, common factors left where they are."""
     numerator, powers = expansion.cleared(terms)
     denominator = constant(1)
     for atom, e in powers.items():
@@ -47,7 +47,5 @@ def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator:
         return numerator, denominator
     if len(above) * len(below) > LARGEST_PRODUCT:
         return numerator, denominator
-    _, above, below = above.cofactors(below)
-    for form in () if below.is_ground else ring.forms():
-        _, above, below = form(above).cofactors(form(below))
+    above, below = ring.without_common_divisor(above, below)
     return ring.terms(above), ring.terms(below)

@@ -6,8 +6,20 @@ from fractions import Fraction
 
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Node, Number, Scalar
+from eomgen.symbolic.radicals import Radical, one_root
 from eomgen.symbolic.shortest import Factors, shortest
-from eomgen.symbolic.terms import Monomial, Terms, Wave, common_number, scaled, tidy
+from eomgen.symbolic.terms import (
+    Monomial,
+    Terms,
+    Wave,
+    common_monomial,
+    common_number,
+    constant,
+    inverse,
+    tidy,
+    times,
+)
+from eomgen.symbolic.text import text_size
 
 
 class Writer:
@@ -15,7 +27,9 @@ class Writer:
 
     def __init__(self, expansion: Expansion) -> None:
         self.atoms, self.graph, self.positive = expansion.atoms, expansion.graph, expansion.positive
+        self._expansion = expansion
         self._written_atoms: dict[int, Scalar] = {}
+        self._roots: dict[tuple, Scalar] = {}
 
     def sum(self, terms: Terms) -> Scalar:
         """The terms added up; those over one divisor share one fraction."""
@@ -31,7 +45,7 @@ class Writer:
 
     def _quotient(self, above: Terms, below: Monomial) -> Scalar:
         """The terms over sums; a single one with the root of such a sum under one root: sqrt(g/(M + m))."""
-        if self.positive and len(above) == 1:
+        if len(above) == 1:
             ((monomial, w), c), *_ = above.items()
             merged, root = self._one_root(tuple(sorted((*monomial, *below))))
             if root != 1:
@@ -41,9 +55,25 @@ class Writer:
         return self.graph.div(self._polynomial(above), self._divisor(below))
 
     def factored(self, common: Monomial, rest: Terms) -> Scalar:
-        """common * (rest)"""
+        """common * (rest), sines and cosines that every term of the rest holds in front of it."""
         above, below = self._monomial(common)
-        return self.graph.div(self.graph.mul(above, self.sum(rest)), below)
+        return self.graph.div(self.graph.mul(above, self._by_common_waves(rest)), below)
+
+    def _by_common_waves(self, terms: Terms) -> Scalar:
+        """sin(theta)*(3*g + 20*R*cos(theta)*theta'^2)"""
+        written = self._written(terms)
+        divided = any(e < 0 and self.atoms.is_a(atom, "sum") for monomial, _ in terms for atom, e in monomial)
+        powers = [{(kind, angle): e for kind, angle, e in factors} for _, _, factors in written]
+        common = {} if divided or len(powers) < 2 else {
+            key: e for key in powers[0] if (e := min(each.get(key, 0) for each in powers))
+        }  # fmt: skip
+        if not common:
+            return self.sum(terms)
+        total: Scalar = 0
+        for c, monomial, factors in written:
+            rest = tuple((kind, angle, left) for kind, angle, e in factors if (left := e - common.get((kind, angle), 0)))
+            total = self.graph.add(total, self._term(c, monomial, rest))
+        return self._term(1, (), tuple((*key, e) for key, e in common.items())) * total
 
     def content(self, *sums: Terms) -> Fraction:
         """The rational number common to every coefficient as written (27/2 cos^2, not 27/4 + 27/4 cos(2 theta))."""
@@ -94,47 +124,76 @@ class Writer:
 
     def _monomial(self, monomial: Monomial) -> tuple[Scalar, Scalar]:
         """(numerator, denominator)"""
-        monomial, root = self._one_root(monomial) if self.positive else (monomial, 1)
+        monomial, root = self._one_root(monomial)
         above, below = self.atoms.monomial_nodes(
             monomial, {atom: self._atom(atom) for atom, _ in monomial if atom >= 0}
         )
         return self.graph.mul(above, root), below
 
     def _one_root(self, monomial: Monomial) -> tuple[Monomial, Scalar]:
-        """The roots of positive symbols and sums and of the number as one: sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l)."""
+        """(the rest, all roots as one): sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l), sqrt(4 a + 2 b) = sqrt(2 (2 a + b))."""
         exponents = dict(monomial)
-        roots = {atom: inside for atom in exponents if (inside := self._under(atom)) is not None}
-        sums = [atom for atom in exponents if self.atoms.is_a(atom, "sqrt") and atom not in roots]
-        if not roots and not sums:
+        roots = [atom for atom in exponents if self.atoms.is_a(atom, "sqrt")]
+        if not roots:
             return monomial, 1
-        above: Scalar = 1
-        below: Scalar = 1
-        beside: Scalar = 1
-        for atom in sums:  # sqrt(2) sqrt(4 a + 2 b) = 2 sqrt(2 a + b)
-            f = self.atoms.opaque[atom].arguments[0]
-            number = self.content(f)
-            above = self.graph.mul(above, tidy(number))
-            beside = self.graph.mul(beside, self.graph.sqrt(self.sum(scaled(f, 1 / number))))
-            del exponents[atom]
-        for atom in [*(a for a in exponents if a < 0), *roots]:
-            del exponents[atom]
-            under = roots.get(atom)
-            if under is not None and exponents.get(under, 0) < 0:
-                exponents[under] += 1
-                below = self.graph.mul(below, self._atom(under))
-            else:
-                above = self.graph.mul(above, -atom if under is None else self._atom(under))
-        rest = tuple((atom, e) for atom, e in sorted(exponents.items()) if e)
-        return rest, self.graph.mul(self.graph.sqrt(self.graph.div(above, below)), beside)
+        found: list[Terms] = [constant(-atom) for atom in exponents if atom < 0]
+        for atom in roots:
+            inside = self.atoms.opaque[atom].arguments[0]
+            under = self.atoms.nodes[atom].args[0]
+            if type(under) is Node and exponents.get(under.index, 0) < 0 and self._may_divide_root(under.index):
+                exponents[under.index] += 1
+                inside = self._expansion.reciprocal(inside)
+            found.append(inside)
+        rest = tuple((atom, e) for atom, e in sorted(exponents.items()) if e and atom >= 0 and atom not in roots)
+        return rest, self._root(tuple(found))
 
-    def _under(self, atom: int) -> int | None:
-        """The positive symbol, or the sum that one divides by, whose root the atom is."""
-        if not self.atoms.is_a(atom, "sqrt"):
-            return None
-        inside = self.atoms.nodes[atom].args[0]
-        if type(inside) is not Node or not (inside.index in self.positive or self.atoms.is_a(inside.index, "sum")):
-            return None
-        return inside.index
+    def _may_divide_root(self, atom: int) -> bool:
+        """Whether sqrt(f)/f may be written 1/sqrt(f): f is a positive symbol, or a sum."""
+        return atom in self.positive or self.atoms.is_a(atom, "sum")
+
+    def _root(self, found: tuple[Terms, ...]) -> Scalar:
+        """The square roots of all these as one, squares taken out."""
+        key = tuple(tuple(sorted(f.items())) for f in found)
+        if key not in self._roots:
+            radical = one_root(self._expansion, constant(1), constant(1), found)
+            self._roots[key] = self._apart(found) if radical is None else self.radical(radical)
+        return self._roots[key]
+
+    def _apart(self, found: tuple[Terms, ...]) -> Scalar:
+        product: Scalar = 1
+        for f in found:
+            product = self.graph.mul(product, self.graph.sqrt(self.sum(f)))
+        return product
+
+    def radical(self, x: Radical) -> Scalar:
+        """above/below |bare| sqrt(...)"""
+        graph = self.graph
+        bare = graph.call("abs", graph.div(self.in_factors(x.bare_above), self.in_factors(x.bare_below)))
+        above, below = self._product(x.under_above), self._product(x.under_below)
+        number = Fraction(x.number)
+        if above == 1 and number.numerator == 1 and type(below) is Node:
+            root = graph.div(1, graph.sqrt(graph.mul(number.denominator, below)))
+        else:
+            root = graph.sqrt(graph.mul(tidy(number), graph.div(above, below)))
+        outside = graph.mul(self.in_factors(x.above), graph.mul(bare, root))
+        return graph.div(outside, self.in_factors(x.below))
+
+    def _product(self, parts: tuple[Terms, ...]) -> Scalar:
+        """The product, or what comes of multiplying it out where that is shorter."""
+        product: Scalar = 1
+        total = constant(1)
+        for part in parts:
+            product = self.graph.mul(product, self.in_factors(part))
+            total = self._expansion.product(total, part)
+        whole = self.in_factors(total)
+        return whole if text_size(whole) <= text_size(product) else product
+
+    def in_factors(self, terms: Terms) -> Scalar:
+        """The terms with what they have in common outside: l*(M + m*sin(theta)^2)."""
+        common = common_monomial(terms)
+        inverted, factor = inverse(common)
+        number = self.content(terms) if len(terms) > 1 else Fraction(1)
+        return tidy(number) * self.factored(common, times(terms, {(inverted, ()): tidy(Fraction(factor) / number)}))
 
     def _applied(self, op: str, arguments: list[Scalar]) -> Scalar:
         if op == "select":

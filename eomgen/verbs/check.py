@@ -6,12 +6,14 @@ from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
+from eomgen.simulation.course import open_at_start
 from eomgen.verbs.outcome import Outcome, listed
 
 
 def check(model: Model) -> Outcome:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
-    freedom = freedom_of(model)
+    away = open_at_start(model)
+    freedom = freedom_of(model, away)
     waiting = unbuilt(model)
     missing = [name for name in model.parameters if name not in exact_parameters(model)]
     driven = [name for name, coordinate in model.coordinates.items() if coordinate.driven]
@@ -21,13 +23,14 @@ def check(model: Model) -> Outcome:
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
     lines += _freedom_lines(model, freedom)
+    lines += [f"open at the start: {listed(away)}"] if away else []
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
     payload = {
         "ok": True, "name": model.name, "space": model.space, "bodies": list(model.bodies),
         "coordinates": list(model.coordinates), "driven": driven, "dependent": dependent, "missing_values": missing,
         "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
         "not_counted": freedom.not_counted or None,
-        "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
+        "open_at_start": list(away), "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip

@@ -1,0 +1,126 @@
+"""A quotient times square roots -> the same with one root: what is square outside, all else under it.
+
+    above/below sqrt(f1) sqrt(f2) ... = above'/below' |a/b| sqrt(n/d)
+
+Wherever the left side has a value both sides have the same one. By factors p of n/d: p^2 leaves the root as |p|, as p
+where its sign is known; sqrt(p)/p is 1/sqrt(p) where p > 0, and an f of which the root is taken is positive itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from eomgen.symbolic.expansion import Expansion
+from eomgen.symbolic.graph import Number
+from eomgen.symbolic.polynomials import Element, Polynomials
+from eomgen.symbolic.quotient import fraction_of
+from eomgen.symbolic.terms import Terms, TooLarge, constant, scaled, tidy
+
+LARGEST_DEGREE = 24
+MOST_TERMS = 120  # of what is factored
+
+Powers = dict[Any, int]  # exponent of each irreducible factor
+
+
+@dataclass(frozen=True)
+class Radical:
+    """above/below |bare_above/bare_below| sqrt(number * product of under_above / product of under_below)"""
+
+    above: Terms
+    below: Terms
+    bare_above: Terms
+    bare_below: Terms
+    number: Number
+    under_above: tuple[Terms, ...]
+    under_below: tuple[Terms, ...]
+
+
+def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[Terms]) -> Radical | None:
+    """above/below times the square roots of all `roots`, as one root; None where that takes too much work."""
+    fractions = [fraction_of(expansion, f) for f in roots]
+    try:
+        ring = Polynomials(expansion, [above, below, *(part for pair in fractions for part in pair)])
+        return _Roots(expansion, ring, above, below, fractions).joined()
+    except TooLarge:
+        return None
+
+
+class _Roots:
+    """The polynomials of above/below and of the product under the roots."""
+
+    def __init__(self, expansion, ring: Polynomials, above: Terms, below: Terms, fractions) -> None:
+        self.expansion, self.ring = expansion, ring
+        self.above, self.below = self._element(above), self._element(below)
+        self.number, self.powers = Fraction(1), {}
+        for n, d in fractions:
+            self._gather(n, 1)
+            self._gather(d, -1)
+        self.positive = {p for n, d in fractions for p in (*self._sure(n, d), *self._sure(d, n))}
+
+    def _element(self, terms: Terms) -> Element:
+        return self.ring.of_one_degree(self.ring.of(terms))
+
+    def _gather(self, terms: Terms, sign: int) -> None:
+        """The factors of one numerator (1) or denominator (-1) of what stands under the roots."""
+        for p, e in self._factors(terms):
+            if p.is_ground:
+                self.number *= Fraction(int(p.LC.numerator), int(p.LC.denominator)) ** sign
+            else:
+                self.powers[p] = self.powers.get(p, 0) + sign * e
+
+    def _factors(self, terms: Terms) -> list[tuple[Element, int]]:
+        """The irreducible factors with their powers, the number among them."""
+        element = self._element(terms)
+        if len(element) > MOST_TERMS or max(map(sum, element.monoms())) > LARGEST_DEGREE:
+            raise TooLarge(f"a polynomial of more than {MOST_TERMS} terms or degree {LARGEST_DEGREE}")
+        number, parts = element.factor_list()
+        found = [(self.ring.ring.ground_new(number), 1)]
+        for p, e in parts:
+            turned = self._is_positive(-p)
+            found += [(-p if turned else p, e)]
+            found[0] = (found[0][0] * (-1) ** e if turned else found[0][0], 1)
+        return found
+
+    def _sure(self, n: Terms, d: Terms) -> list[Element]:
+        """The one factor of n that holds a sign, where n/d > 0 tells that it is positive."""
+        if not self.expansion.all_positive(d):
+            return []
+        number, *rest = self._factors(n)
+        unsure = [(p, e) for p, e in rest if e % 2 and not self._is_positive(p)]
+        return [p for p, _ in unsure] if len(unsure) == 1 and number[0].LC > 0 else []
+
+    def _is_positive(self, p: Element) -> bool:
+        return self.expansion.all_positive(self.ring.terms(p))
+
+    def joined(self) -> Radical:
+        bare: list[Element] = [self.ring.ring.one, self.ring.ring.one]
+        under: list[list[Element]] = [[], []]
+        for p, m in self.powers.items():
+            sure = p in self.positive or self._is_positive(p)
+            side, outside = int(m < 0), abs(m) // 2
+            if not sure:
+                bare[side] *= p**outside
+            elif side:
+                self.below *= p**outside
+            else:
+                self.above *= p**outside
+            if m % 2:
+                under[self._moved(p, side) if sure else side].append(p)
+        self.above, self.below = self.ring.without_common_divisor(self.above, self.below)
+        above, below, bare_above, bare_below = map(self.ring.terms, (self.above, self.below, *bare))
+        numerators, denominators = (tuple(map(self.ring.terms, parts)) for parts in under)
+        return Radical(above, below, bare_above, bare_below, tidy(self.number), numerators, denominators)
+
+    def _moved(self, p: Element, side: int) -> int:
+        """The side of the line under the root on which p > 0 stands: sqrt(p)/p = 1/sqrt(p), p/sqrt(p) = sqrt(p)."""
+        quotient, rest = divmod(self.above if side else self.below, p)
+        if rest:
+            return side
+        if side:
+            self.above = quotient
+        else:
+            self.below = quotient
+        return 1 - side
