@@ -37,6 +37,7 @@ HORIZONS = (10.0, 100.0, 1000.0, 10000.0)  # s, for conditions that are met late
 FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)
 HOLDS = 1e-8  # of a bound against its size at the start
 SAME = 1e-8  # of a velocity on both sides of an instant, relative to it and 1
+RESTING = 1e-9  # of an acceleration, below which a start is one of rest
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,13 @@ class Journey:
 
     @property
     def sense(self) -> int:
-        """The sign of the first speed that is not 0 at the start."""
-        moving = [self.numbers[u] for u in self.situation.system.symbols.u if self.numbers.get(u, 0.0) != 0]
+        """The sign of the first speed that is not 0 at the start, or of the first acceleration where all are."""
+        symbols, values = self.situation.system.symbols, {**parameters_of(self.situation), **self.numbers}
+        moving = [self.numbers[u] for u in symbols.u if self.numbers.get(u, 0.0) != 0]
+        if not moving and self.numbers:
+            own = {node: self.situation.system.inputs[name] for name, node in symbols.inputs.items()}
+            accelerations = evaluate(substituted(self.situation.accelerations, own), values, FLOAT)
+            moving = [a for a in accelerations if abs(a) > RESTING]
         return -1 if moving and moving[0] < 0 else 1
 
     # -- on the way ------------------------------------------------------------------------------
@@ -160,13 +166,13 @@ class Journey:
     def _starts_in_balance(self, situation: Situation) -> bool:
         """Whether time does not lead away from the start."""
         symbols = situation.system.symbols
-        if any(self.numbers[u] != 0 for u in symbols.u):
-            return False
         stage = self._stage_of_first
+        if any(self.numbers[u] != 0 for u in symbols.u) or _is_moved_by_time(stage, situation):
+            return False
         x = stage.state({node.name: value for node, value in self.numbers.items()})
         with np.errstate(all="ignore"):
             rates = stage.rate(0.0, x)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
-        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < 1e-9
+        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < RESTING
 
     @property
     def _stage_of_first(self) -> Stage:
@@ -253,6 +259,14 @@ def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
     """Whether a velocity jumps between two phases: an impact."""
     common = [name for name in end if name in start]
     return any(abs(end[name] - start[name]) > SAME * (1 + abs(end[name])) for name in common)
+
+
+def _is_moved_by_time(stage: Stage, situation: Situation) -> bool:
+    """Whether given motions, or forces that change with time, can end a rest."""
+    symbols, coordinates = situation.system.symbols, situation.model.coordinates
+    moving = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
+    bounds = (situation.eliminated(bound.value) for bound in stage.bounds if bound.value is not None)
+    return any(depends_on(scalar, moving) for scalar in (*situation.accelerations, *bounds))
 
 
 def _difference(situation: Situation, condition: Equation) -> Scalar:

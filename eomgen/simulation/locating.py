@@ -146,8 +146,17 @@ class Locating:
             usual = self._motion(self.t0, aside)
         if not np.all(np.isfinite(dx)):
             return True
+        if self._is_moved_by_time:
+            return False
         size = float(np.max(np.abs(usual), initial=0.0)) if np.all(np.isfinite(usual)) else 1.0
         return float(np.max(np.abs(dx), initial=0.0)) <= RESTING * size
+
+    @property
+    def _is_moved_by_time(self) -> bool:
+        """Whether given motions, or forces that change with time, can end a rest."""
+        symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
+        moving = (symbols.t, *(q for q in symbols.q if coordinates[q.name].driven))
+        return any(depends_on(a, moving) for a in self.accelerations)
 
     def _is_singular(self) -> bool:
         """Whether the ties do not determine which way the start is left."""

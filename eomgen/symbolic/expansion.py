@@ -105,7 +105,19 @@ class Expansion:
             return self._root(parts[0])
         if op == "pow" and type(x.args[1]) is int:
             return self.power(parts[0], x.args[1])
+        if op in ("abs", "sign"):
+            return self._of_sign(op, parts[0])
         return self._function(op, tuple(parts))
+
+    def _of_sign(self, op: str, f: Terms) -> Terms:
+        """abs(f) or sign(f), the positive number and symbols that all terms hold taken out of it."""
+        if op == "abs" and self.all_positive(f):
+            return f
+        powers = tuple((atom, e) for atom, e in common_monomial(f) if self._is_positive(atom))
+        inverted, _ = inverse(powers)
+        number = content(f)
+        inside = self._function(op, (times(f, {(inverted, ()): tidy(1 / number)}),))
+        return inside if op == "sign" else self.product({(powers, ()): tidy(number)}, inside)
 
     def product(self, a: Terms, b: Terms) -> Terms:
         """a b, with atom^2 = f for atoms sqrt(f)."""

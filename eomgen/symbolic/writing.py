@@ -9,6 +9,7 @@ from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.radicals import Radical, one_root
 from eomgen.symbolic.shortest import Factors, shortest
 from eomgen.symbolic.terms import (
+    ONE,
     Monomial,
     Terms,
     Wave,
@@ -169,8 +170,9 @@ class Writer:
         """above/below |bare| sqrt(...)"""
         graph = self.graph
         bare = graph.call("abs", graph.div(self.in_factors(x.bare_above), self.in_factors(x.bare_below)))
-        above, below = self._product(x.under_above), self._product(x.under_below)
-        number = Fraction(x.number)
+        sign = -1 if x.number < 0 else 1
+        above, below = self._product(({ONE: sign}, *x.under_above)), self._product(x.under_below)
+        number = abs(Fraction(x.number))
         if above == 1 and number.numerator == 1 and type(below) is Node:
             root = graph.div(1, graph.sqrt(graph.mul(number.denominator, below)))
         else:
@@ -179,7 +181,7 @@ class Writer:
         return graph.div(outside, self.in_factors(x.below))
 
     def _product(self, parts: tuple[Terms, ...]) -> Scalar:
-        """The product, or what comes of multiplying it out where that is shorter."""
+        """The product, or what comes of multiplying it out where that is no longer."""
         product: Scalar = 1
         total = constant(1)
         for part in parts:
