@@ -23,7 +23,7 @@ from eomgen.model.values import exact_parameters
 from eomgen.moments import Moment
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size, to_text
@@ -141,7 +141,11 @@ class _Solver:
         situation = self.situation
         scalar = situation.of_state(output.value)
         method = situation.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
-        return self._started(situation.simple(self._in_unit(scalar, output)), method)
+        answer = self._started(situation.simple(self._in_unit(scalar, output)), method)
+        failure = self.journeys[False].failure
+        if failure and any(node.op == "sign" for node in order((scalar,))):
+            return replace(answer, value=None, message=f"no number: at the start {failure}")
+        return answer
 
     def _of_configuration(self, output: Output) -> Answer:
         """A function of the coordinates, rates eliminated by the energy theorem."""
@@ -154,7 +158,7 @@ class _Solver:
         if not journey.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
         rates = rates_of(
-            situation.system, situation.assembly, journey.start, journey.sense, accelerations=situation.accelerations
+            situation.system, situation.assembly, journey.start, accelerations=situation.accelerations
         )
         if rates is None:
             raise DerivationError("no integrals of the motion give the rates as functions of the coordinates",

@@ -22,7 +22,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
 
-TRIALS = 6  # sets of values for parameters that have none
+TRIALS = (1.3, 3, 8, 8, 20, 20)  # how far from 1 values are tried for parameters that have none
 
 
 @dataclass(frozen=True)
@@ -94,15 +94,16 @@ class _Search:
         """
         rng = Random(1)
         reason: EomgenError = RunFailed("the start has no closed form, and no numbers")
-        for _ in range(TRIALS):
-            values = {node: rng.uniform(0.7, 1.3) for node in self.system.symbols.parameters.values()} | known
+        for spread in TRIALS:
+            values = {node: spread ** rng.uniform(-1, 1) for node in self.system.symbols.parameters.values()} | known
             try:
                 numbers = evaluate(tuple(self.start.values()), values, FLOAT)
                 start = {self.system.symbols.t: 0.0, **dict(zip(self.start, map(float, numbers), strict=True))}
                 return replace(self.at(start, values, None), numbers={})
             except EomgenError as error:
                 reason = error
-        raise reason
+        tried = "at the values tried for parameters without one"
+        raise RunFailed(f"{reason.what} ({tried})", mend="give the parameters values")
 
     def _exact(self, numbers: Numbers, values: Numbers) -> tuple[State, str]:
         """(t, q and u in closed form, by which way); the way is "" where the numbers' own is the better word."""

@@ -23,8 +23,7 @@ from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.moments import Moment, carried, parameters_of, placed
 from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.course import Course, at_start, course_of
-from eomgen.simulation.course import Situation as Beginning
+from eomgen.simulation.course import Course, Standing, at_start, course_of
 from eomgen.simulation.history import Passage, history
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Stepping
@@ -33,7 +32,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
 
-HORIZONS = (10.0, 100.0, 1000.0, 10000.0)  # s, for conditions that are met late
+HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
 FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)
 HOLDS = 1e-8  # of a bound against its size at the start
 SAME = 1e-8  # of a velocity on both sides of an instant, relative to it and 1
@@ -65,7 +64,7 @@ class Journey:
             return None
 
     @cached_property
-    def _first(self) -> Beginning:
+    def _first(self) -> Standing:
         """Where the phases begin."""
         assert self.course is not None
         return at_start(self.course, 0.0, None, self._start_rates)
@@ -82,6 +81,11 @@ class Journey:
         if self.course is None:
             return situation_of(self.model)
         return Situation(self.course.stages.of(self._first.configuration).system)
+
+    @property
+    def failure(self) -> str:
+        """Why no phase begins at the start; "" where one does."""
+        return "" if self.course is None else self._first.failure
 
     @cached_property
     def numbers(self) -> dict[Node, float]:
@@ -100,17 +104,6 @@ class Journey:
         known = placed(self.situation, start_of(self.situation, at_rest=self.at_rest), self.numbers)
         return known if all(q in known for q in self.situation.system.symbols.q) else {}
 
-    @property
-    def sense(self) -> int:
-        """The sign of the first speed that is not 0 at the start, or of the first acceleration where all are."""
-        symbols, values = self.situation.system.symbols, {**parameters_of(self.situation), **self.numbers}
-        moving = [self.numbers[u] for u in symbols.u if self.numbers.get(u, 0.0) != 0]
-        if not moving and self.numbers:
-            own = {node: self.situation.system.inputs[name] for name, node in symbols.inputs.items()}
-            accelerations = evaluate(substituted(self.situation.accelerations, own), values, FLOAT)
-            moving = [a for a in accelerations if abs(a) > RESTING]
-        return -1 if moving and moving[0] < 0 else 1
-
     # -- on the way ------------------------------------------------------------------------------
 
     def until(self, condition: Equation, side: str | None = None) -> Moment:
@@ -123,12 +116,18 @@ class Journey:
         """
         asked = (condition.text, side or "")
         if asked not in self._moments:
-            self._moments[asked] = self._until(condition, side)
-        return self._moments[asked]
+            try:
+                self._moments[asked] = self._until(condition, side)
+            except EomgenError as error:
+                self._moments[asked] = error
+        found = self._moments[asked]
+        if isinstance(found, EomgenError):
+            raise found
+        return found
 
     @cached_property
-    def _moments(self) -> dict[tuple[str, str], Moment]:
-        """Those that were sought already."""
+    def _moments(self) -> dict[tuple[str, str], Moment | EomgenError]:
+        """Those that were sought already, and why some are never reached."""
         return {}
 
     def _until(self, condition: Equation, side: str | None) -> Moment:

@@ -22,7 +22,7 @@ from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.course import open_at_start
+from eomgen.simulation.course import modes_at_start
 from eomgen.simulation.independence import Independence
 from eomgen.simulation.integrate import SAMPLES, integrate
 from eomgen.simulation.phases import run_phases
@@ -37,7 +37,7 @@ METHODS = ("lagrange", "projection", "kinetostatic")
 def derive(model: Model, method: str = "lagrange") -> Equations:
     """The equations of motion of a model; no certificate is made.
 
-    Contacts that can end are closed, but those that are open at the start.
+    Contacts that can end are closed, but those that are open at the start; what rubs pushes as it does at the start.
 
     Args:
         method: by which the derivation is written, one of METHODS.
@@ -49,7 +49,7 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     """
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
-    system = system_of(model, open_at_start(model))
+    system = system_of(model, modes_at_start(model))
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
     return Equations(model, method, system, with_friction(system, recursive.assemble(system)))

@@ -8,21 +8,23 @@ are put into the equations first, and these are solved there: so nothing is divi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
 from eomgen.codegen.factorization import solved
-from eomgen.errors import DerivationError, MissingValues
+from eomgen.errors import MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.explicit import by_determinants, regular_rows
+from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.outputs import ASKING_REACTIONS, Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import values_at_a_state
+from eomgen.mechanics.start import fixed_by_position
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
@@ -30,6 +32,7 @@ from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
+from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import readable_all, simplest
 from eomgen.symbolic.text import text_size
@@ -172,18 +175,12 @@ class Situation:
             values = substituted(tuple(self.unknowns.values()), state)
             return dict(zip(self.unknowns, (self.simple(x) for x in values), strict=True))
         kept = regular_rows(self.system)
-        n = len(assembly.M)
-        rows: list[dict[int, Scalar]] = []
-        for i in range(n):
-            row = dict(enumerate(assembly.M[i]))
-            rows.append(row | {n + k: -assembly.J[m][i] for k, m in enumerate(kept)})
-        rows += [dict(enumerate(assembly.J[m])) for m in kept]
-        right = (*assembly.forcing, *(-assembly.gamma[m] for m in kept))
+        rows, right = bordered_rows(assembly, kept)
         entries = readable_all(substituted([x for row in rows for x in row.values()], state), WORK, self.positive)
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
         needed = readable_all(substituted(right, state), WORK, self.positive)
-        solution = linear.solved(rows, needed, n + len(kept), values_at_a_state(self.system, entries))
+        solution = linear.solved(rows, needed, len(right), values_at_a_state(self.system, entries))
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
         return {names[j]: self.simple(x) for j, x in solution.constants.items() if solution.determined(j)}
 
@@ -213,9 +210,9 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
     free = solved(assembly.M, assembly.forcing)
     J = [assembly.J[i] for i in kept]
     columns = [solved(assembly.M, row) for row in J]
-    S = [[_dot(row, column) for column in columns] for row in J]
-    lam = solved(S, [-(assembly.gamma[i] + _dot(row, free)) for i, row in zip(kept, J, strict=True)])
-    a = tuple(a + _dot(lam, [column[k] for column in columns]) for k, a in enumerate(free))
+    S = [[inner(row, column) for column in columns] for row in J]
+    lam = solved(S, [-(assembly.gamma[i] + inner(row, free)) for i, row in zip(kept, J, strict=True)])
+    a = tuple(a + inner(lam, [column[k] for column in columns]) for k, a in enumerate(free))
     multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
 
@@ -227,15 +224,11 @@ def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -
     kept = regular_rows(system)
     n = len(assembly.M)
     rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
-    right = [_dot(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
+    right = [inner(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
     entries = [x for row in rows for x in row.values()]
     solution = linear.solved(rows, right, len(kept), values_at_a_state(system, entries))
     found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
     return {x: found.get(x, 0) for x in system.symbols.lam}
-
-
-def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
-    return sum((x * y for x, y in zip(a, b, strict=True)), start=0)
 
 
 def exact_numbers(values: Mapping[Node, float]) -> dict[Node, Scalar]:
@@ -250,9 +243,6 @@ def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
         at_rest: all speeds are 0, whatever the model says.
     """
     scope, model = situation.system.scope, situation.model
-    from eomgen.mechanics.loads import start_value
-    from eomgen.mechanics.start import fixed_by_position
-
     sought = set(fixed_by_position(situation.system))
     start: dict[Node, Scalar] = {scope.symbols.t: 0}
     for q in scope.symbols.q:
@@ -262,8 +252,3 @@ def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
         start[u] = 0 if at_rest else scope.value(speed)
     return start
-
-
-def refuse_missing(missing: Sequence[str], what: str) -> DerivationError:
-    """The error for a quantity that an instant does not determine."""
-    return DerivationError(f"{what} does not determine {', '.join(missing)}")

@@ -14,8 +14,9 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.laws import laws_of_motion
 from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.relations import Relations, relations_of
 from eomgen.mechanics.scope import primitive
-from eomgen.mechanics.speeds import Relations, rates_of, relations_of
+from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -90,13 +91,8 @@ class ClosedInstant:
     def _rates(self, at: State) -> State:
         """The speeds as functions of the coordinates that are not in `at`."""
         try:
-            relations = self._relations(at)
-            if relations is None:
-                return {}
-            sense = 1
-            if relations.speed is not None and self.located.numbers.get(relations.speed, 1.0) < 0:
-                sense = -1
-            found = rates_of(self.system, self.assembly, self.start, sense, accelerations=self.accelerations, at=at)
+            found = rates_of(self.system, self.assembly, self.start,
+                             there=self.located.numbers, accelerations=self.accelerations, at=at)  # fmt: skip
             return dict(zip(found, substituted(tuple(found.values()), at), strict=True)) if found else {}
         except DerivationError:  # a division by 0 at this place
             return {}

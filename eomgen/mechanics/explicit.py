@@ -26,14 +26,20 @@ def by_determinants(assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scala
         DerivationError: too many unknowns hang together.
     """
     symbols, n = assembly.symbols, len(assembly.M)
+    rows, right = bordered_rows(assembly, kept)
+    values = [x for (x,) in cramer.solved(rows, [(x,) for x in right])[0]]
+    multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
+    return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def bordered_rows(assembly: Assembly, kept: Sequence[int]) -> tuple[list[dict[int, Scalar]], list[Scalar]]:
+    """(rows, right side) of the equations for a, and lam of the kept rows: {index of the unknown: coefficient}."""
+    n = len(assembly.M)
     rows = [_entries(row) for row in assembly.M]
     for i, row in enumerate(rows):
         row |= {n + k: -assembly.J[m][i] for k, m in enumerate(kept) if not is_zero(assembly.J[m][i])}
     rows += [_entries(assembly.J[m]) for m in kept]
-    found, _ = cramer.solved(rows, [(x,) for x in (*assembly.forcing, *(-assembly.gamma[m] for m in kept))])
-    values = [x for (x,) in found]
-    multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
-    return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+    return rows, [*assembly.forcing, *(-assembly.gamma[m] for m in kept)]
 
 
 def _entries(row: Row) -> dict[int, Scalar]:

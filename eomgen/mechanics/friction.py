@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.components import joint_friction
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.explicit import bordered_rows, regular_rows
 from eomgen.mechanics.reactions import Reactions, reactions_of, values_at_a_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
@@ -94,48 +94,56 @@ def rubbing_contacts(system: System, reactions: Reactions) -> list[Rub]:
 
 
 def _solved(system: System, assembly: Assembly, reactions: Reactions, found: Sequence[Rub]) -> tuple[Row, Row]:
-    """(a, N of every rub) from the equations of motion, the closing rows and the balance of the bodies."""
-    symbols = system.symbols
-    n, closing = len(assembly.M), system.ties.closing
-    dropped = {(r.tie, r.number) for r in redundant_rows(system.ties)}
-    kept = [i for i, row in enumerate(closing) if (row.tie, row.number) not in dropped]
-    place = {(closing[i].tie, closing[i].number): n + k for k, i in enumerate(kept)}
-    size = n + len(kept) + len(found)
-    of_rub = []
+    """(a, N of every rub) from the equations of motion, the closing rows and the balance of the bodies.
+
+    The unknowns: a, lam of the rows that do not follow from others, N of every rub.
+    """
+    kept = regular_rows(system)
+    rows, right = bordered_rows(assembly, kept)
+    n, first = len(assembly.M), len(right)
     for k, rub in enumerate(found):
-        c = reactions.components[rub.component]
-        if (c.owner, c.number) in dropped and c.kind == "tie":
-            raise DerivationError(f"the normal reaction of '{rub.name}', which rubs, is indeterminate")
-        of_rub.append(place.get((c.owner, c.number), n + len(kept) + k) if c.kind == "tie" else n + len(kept) + k)
-    rows: list[dict[int, Scalar]] = []
-    right: list[Scalar] = []
-    for i in range(n):
-        row = {j: assembly.M[i][j] for j in range(n)}
-        row |= {n + k: -assembly.J[m][i] for k, m in enumerate(kept)}
-        for rub, j in zip(found, of_rub, strict=True):
-            row[j] = row.get(j, 0) - rub.force[i]
-        rows.append(row)
-        right.append(assembly.forcing[i])
-    for m in kept:
-        rows.append(dict(enumerate(assembly.J[m])))
-        right.append(-assembly.gamma[m])
-    for k, rub in enumerate(found):
-        own = n + len(kept) + k
-        if of_rub[k] != own:
-            rows.append({own: 1, of_rub[k]: -1})
-            right.append(0)
-            continue
-        value = reactions.value(rub.component)
-        m_r = gradient(value, symbols.a)
-        (n_r,) = substituted((value,), {a: 0 for a in symbols.a})
-        rows.append({own: 1} | {j: -m for j, m in enumerate(m_r)})
-        right.append(n_r)
-    if size <= cramer.LARGEST_BLOCK:
-        values = [x for (x,) in cramer.solved(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
-        return tuple(values[:n]), tuple(values[n + len(kept) :])
+        multiplier = _multiplier(system, reactions, rub, kept)
+        normal = first + k if multiplier is None else n + multiplier
+        for row, force in zip(rows[:n], rub.force, strict=True):
+            row[normal] = row.get(normal, 0) - force
+        same: tuple[dict[int, Scalar], Scalar] = ({normal: -1}, 0)
+        known, value = _by_balance(system, reactions, rub) if multiplier is None else same
+        rows.append({first + k: 1} | known)
+        right.append(value)
+    values = _values(system, rows, right)
+    return tuple(values[:n]), tuple(values[first:])
+
+
+def _multiplier(system: System, reactions: Reactions, rub: Rub, kept: Sequence[int]) -> int | None:
+    """Which of the kept rows has the normal reaction for its multiplier; None where it follows from the balance.
+
+    Raises:
+        DerivationError: its row follows from others, so that it is indeterminate.
+    """
+    component, closing = reactions.components[rub.component], system.ties.closing
+    label = (component.owner, component.number)
+    rows = [i for i, row in enumerate(closing) if component.kind == "tie" and (row.tie, row.number) == label]
+    if not rows:
+        return None
+    if rows[0] not in kept:
+        raise DerivationError(f"the normal reaction of '{rub.name}', which rubs, is indeterminate")
+    return kept.index(rows[0])
+
+
+def _by_balance(system: System, reactions: Reactions, rub: Rub) -> tuple[dict[int, Scalar], Scalar]:
+    """(-m, n) of N = n + m a: the coefficients of the accelerations in N - m a = n, and its right side."""
+    a = system.symbols.a
+    value = reactions.value(rub.component)
+    slopes = gradient(value, a)
+    return {j: -slope for j, slope in enumerate(slopes)}, substituted((value,), dict.fromkeys(a, 0))[0]
+
+
+def _values(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) -> list[Scalar]:
+    """The unknowns: by determinants where they are few, else by elimination."""
+    if len(right) <= cramer.LARGEST_BLOCK:
+        return [x for (x,) in cramer.solved(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
     entries = [x for row in rows for x in row.values()]
-    solution = linear.solved(rows, right, size, values_at_a_state(system, entries))
+    solution = linear.solved(rows, right, len(right), values_at_a_state(system, entries))
     if solution.free:
         raise DerivationError("the equations with friction have no single solution")
-    a = tuple(solution.constants[i] for i in range(n))
-    return a, tuple(solution.constants[n + len(kept) + k] for k in range(len(found)))
+    return [solution.constants[i] for i in range(len(right))]

@@ -333,8 +333,8 @@ def _refuse_unheld(balance: Balance, solution: Solution) -> None:
         DerivationError: the body that moves most in it, and the direction.
     """
     system = balance.system
-    closing = len(system.ties.closing) - len(redundant_rows(system.ties))
-    if len(solution.left) <= len(system.symbols.u) - closing:
+    motions = len(system.symbols.u) - len(system.ties.closing) + len(redundant_rows(system.ties))
+    if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
         return
     free, allowed = _virtual_motions(balance)
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))

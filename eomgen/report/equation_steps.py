@@ -28,7 +28,7 @@ from eomgen.symbolic.decimals import number_text
 from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.layout import factors, summands
+from eomgen.symbolic.layout import factors, products_of
 from eomgen.symbolic.normal_form import cancelled, common_factor, readable
 from eomgen.symbolic.text import text_size
 
@@ -201,7 +201,7 @@ def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -
     if is_zero(determinant):
         return []
     quotients = [_quotient(reader, assembly.symbols.graph, x, determinant) for x in numerators]
-    apart = len(summands(determinant)) == 1  # each equation has its own acceleration
+    apart = len(products_of(determinant)) == 1  # each equation has its own acceleration
     if all(length_in_print(x) <= (LONGEST if apart else QUOTIENT) for x in quotients):
         return [Step("solved", "Accelerations", tuple(map(Formula, zip(a, quotients, strict=True))))]
     if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:

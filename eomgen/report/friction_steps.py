@@ -13,12 +13,13 @@ from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
-from eomgen.report.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
+from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.report.statements import Formula, Prose, Step
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.text import text_size
 
 LONGEST = 240  # characters of an acceleration in print
@@ -52,7 +53,8 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     letters = lettered(readings.ways[0], system.scope.names)
     senses = _senses(letters, system)
     forces: list[Scalar] = [0] * len(system.symbols.u)
-    definitions = [(symbol, function("sign", readable_value(reader, x.args[0]))) for x, symbol in senses.items()]
+    shown = {symbol: function("sign", readable_value(reader, x.args[0])) for x, symbol in senses.items()}
+    definitions = [(symbol, simplest(x, WORK, readings.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
     for rub, friction in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]

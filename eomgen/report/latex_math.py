@@ -15,7 +15,8 @@ from itertools import pairwise
 from eomgen.report.latex_names import symbol_latex
 from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
-from eomgen.symbolic.layout import SUMS, Factor, Product, is_base, is_part_of_turn, summands
+from eomgen.symbolic.layout import SUMS, Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.printed import summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}

@@ -18,7 +18,8 @@ from eomgen.report.equation_steps import Result, Sides, closing, multiplier_forc
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
 from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.functions import inner
+from eomgen.symbolic.graph import Node, Scalar
 
 MAGGI = Law(
     "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i) = sum_i N_ik*Q_i",
@@ -41,7 +42,7 @@ def maggi_equations(
     columns = list(zip(*N, strict=True))
     ties = multiplier_forces(assembly)
     sides = [
-        Sides(_dot(column, inertia), _dot(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
+        Sides(inner(column, inertia), inner(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
     ]
     equations = readable_equations(reader, assembly, sides)
     followers = _followers(system, free, N)
@@ -67,9 +68,5 @@ def _followers(system: System, free: System, N: Sequence[Row]) -> list[tuple[Nod
         bias = dict(zip(system.symbols.q, system.scope.nu, strict=True))
         own = next(x for q, x in bias.items() if f"{q.name}'" == free.symbols.u[k].name)
         *slopes, drift = free.scope.time_derivative((*N[k], own))
-        found.append((free.symbols.a[k], _dot(N[k], system.symbols.a) + _dot(slopes, system.symbols.u) + drift))
+        found.append((free.symbols.a[k], inner(N[k], system.symbols.a) + inner(slopes, system.symbols.u) + drift))
     return found
-
-
-def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
-    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)

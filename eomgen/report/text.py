@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from typing import TypeGuard
 
+from eomgen.report.reading import without_cases
 from eomgen.report.statements import (
     Code,
     Derivation,
@@ -22,11 +24,12 @@ from eomgen.report.statements import (
     Statement,
     Table,
 )
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import to_text
 
 name = "text"
 
+RELATIONS = {"less": "<", "less_equal": "<="}
 WIDTH = 100
 INDENT = "    "
 
@@ -54,6 +57,10 @@ def _statement_lines(statement: Statement) -> list[str]:
     if isinstance(statement, Prose):
         return textwrap.wrap(prose_text(statement), WIDTH)
     if isinstance(statement, Formula):
+        *left, last = statement.sides
+        if left and is_piecewise(last):
+            head = broken(f"{formula_text(Formula(tuple(left)))} =", INDENT, WIDTH)
+            return [*head, *(line for case in cases_text(last) for line in broken(case, 2 * INDENT, WIDTH))]
         return broken(formula_text(statement), INDENT, WIDTH)
     return _table_lines(statement)
 
@@ -87,7 +94,24 @@ def side_text(side: Side) -> str:
         return side.of.name + "'" if isinstance(side.of, Node) else f"d/dt({side_text(side.of)})"
     if isinstance(side, Omitted):
         return f"({side.operations} operations, not printed)"
-    return side.text if isinstance(side, Law) else to_text(side)
+    if isinstance(side, Law):
+        return side.text
+    return "; ".join(cases_text(side)) if is_piecewise(side) else to_text(without_cases((side,))[0])
+
+
+def is_piecewise(side: Side) -> TypeGuard[Node]:
+    """True for a quantity that has one formula in one case and another one in the next."""
+    return isinstance(side, Node) and side.op == "select"
+
+
+def cases_text(x: Scalar) -> list[str]:
+    """["m*g*sin(alpha) where s <= L", "0 otherwise"], each case asked where those before it do not hold."""
+    cases: list[str] = []
+    while is_piecewise(x):
+        condition, if_true, x = x.args
+        relation = f" {RELATIONS[condition.op]} ".join(to_text(a) for a in without_cases(condition.args))
+        cases.append(f"{to_text(without_cases((if_true,))[0])} {'else ' if cases else ''}where {relation}")
+    return [*cases, f"{to_text(without_cases((x,))[0])} otherwise"]
 
 
 def _name_text(quantity: Name) -> str:

@@ -1,4 +1,4 @@
-"""Model, start -> Situation: where a motion begins, and how it goes on after each event.
+"""Model, start -> Standing: where a motion begins, and how it goes on after each event.
 
 An event that closes a contact is an impact without rebound. Then the configuration is sought that agrees with the
 forces (`settling`).
@@ -26,7 +26,7 @@ from eomgen.simulation.stages import Stages
 
 
 @dataclass(frozen=True)
-class Situation:
+class Standing:
     """Where the motion is, and how it goes on.
 
     Args:
@@ -55,7 +55,7 @@ class Course:
         """The model without the contacts that can end."""
         return self.stages.loose
 
-    def after(self, stage: Stage, crossing: Crossing, ended: frozenset[Configuration]) -> Situation:
+    def after(self, stage: Stage, crossing: Crossing, ended: frozenset[Configuration]) -> Standing:
         """What follows the event that ended a phase."""
         bound = stage.bounds[crossing.index]
         pieces = dict(stage.configuration.pieces)
@@ -64,7 +64,7 @@ class Course:
         values = stage.values(crossing.t, crossing.x)
         if bound.row:
             what = f"strand {bound.row} of the string '{bound.owner}' goes slack alone, and what follows is not derived"
-            return Situation(crossing.t, values, stage.configuration, failure=what)
+            return Standing(crossing.t, values, stage.configuration, failure=what)
         return _decided(self, crossing.t, values, pieces, before=stage.configuration, ended=ended)
 
 
@@ -75,7 +75,7 @@ def course_of(model: Model, p: np.ndarray, target: str | None = None) -> Course:
 
 def at_start(
     course: Course, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
-) -> Situation:
+) -> Standing:
     """The state at the start; a contact that can end may be open there.
 
     Raises:
@@ -148,17 +148,17 @@ def _piece_at(course: Course, body: str, t: float, values: Values) -> int:
 def _decided(
     course: Course, t: float, values: Values, pieces: Mapping[str, int], *, before: Configuration,
     ended: frozenset[Configuration],
-) -> Situation:  # fmt: skip
+) -> Standing:  # fmt: skip
     """Velocities after an impact where there is one, and the configuration that then holds."""
     values, apart, hit = _contact(course, t, values, before) if before.open else (values, frozenset(), False)
     try:
         found = settled(course.stages, t, values, pieces=pieces, apart=apart, ended=ended, before=before)
     except DerivationError as error:  # a contact ends that nothing can leave
-        return Situation(t, values, before, hit, error.what)
+        return Standing(t, values, before, hit, error.what)
     if found is not None:
-        return Situation(t, values, found, hit)
+        return Standing(t, values, found, hit)
     standing = plain(course.model, pieces, tuple(apart))
-    return Situation(t, values, standing, hit, _jammed(standing))
+    return Standing(t, values, standing, hit, _jammed(standing))
 
 
 def _contact(
@@ -180,18 +180,20 @@ def _jammed(standing: Configuration) -> str:
     return f"no forces of the contacts {names} agree with their state (rigid bodies with so much friction jam)"
 
 
-def open_at_start(model: Model) -> dict[str, Mode]:
-    """The contacts that the start values leave open: their gaps are not 0; {} where that cannot be told.
+def modes_at_start(model: Model) -> dict[str, Mode]:
+    """The contacts that the start values leave open, their gaps not 0, and those that push against their normals there.
 
-    What the coordinates satisfy by themselves is closed, whatever its force.
+    What the coordinates satisfy by themselves is closed, whatever its force. {} where nothing can be told.
     """
-    if not any(contact.unilateral for contact in contacts_of(model)):
+    if not contacts_of(model):
         return {}
     try:
         p = np.array(list(numeric_parameters(model).values()), dtype=float)
         course = course_of(model, p, "numpy")
         here = at_start(course, 0.0, None, None)
-        gaps = course.loose.gaps(0.0, here.values)
+        gaps = course.loose.gaps(0.0, here.values) if here.configuration.open else {}
     except EomgenError:  # a missing value, a start that does not hold: said by whoever needs them
         return {}
-    return {name: Mode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
+    away = {name: Mode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
+    modes = here.configuration.modes.items()
+    return away | {name: Mode(push=mode.push) for name, mode in modes if mode.closed and mode.push < 0}

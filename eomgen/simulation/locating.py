@@ -21,12 +21,14 @@ from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closed_instant import position_equations
-from eomgen.mechanics.speeds import Relations, rates_of, relations_of
+from eomgen.mechanics.relations import Relations, relations_of
+from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.simulation.arrival import first_arrival
 from eomgen.simulation.configurations import Configurations
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.solving import roots, vanishes
 
@@ -194,7 +196,7 @@ class Locating:
             return None
         symbols, scope = self.system.symbols, self.system.scope
         shares = tuple(self._relations.shares.values())
-        direction = self._functions(tuple(_dot(row, shares) for row in scope.N))
+        direction = self._functions(tuple(inner(row, shares) for row in scope.N))
         rows = tuple(position_equations(self.system, self._exact_start))
         gaps = self._functions(rows)
         held = [k for k, q in enumerate(symbols.q) if any(depends_on(gap, (q,)) for gap in rows)]
@@ -259,10 +261,6 @@ class Locating:
             guess = None if near is None else evaluate((scope.value(near),), self.values, FLOAT)[0]
             found.append(self.start[q] if guess is None else float(guess))
         return np.array(found)
-
-
-def _dot(row: tuple[Scalar, ...], shares: tuple[Scalar, ...]) -> Scalar:
-    return sum((n * s for n, s in zip(row, shares, strict=True)), start=0)
 
 
 def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> Numbers:

@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.model.parts import Model
 from eomgen.simulation.contacts import Configuration
-from eomgen.simulation.course import Course, Situation, at_start, course_of
+from eomgen.simulation.course import Course, Standing, at_start, course_of
 from eomgen.simulation.events import Events
 from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.joined import joined
@@ -67,7 +67,7 @@ def run_phases(
     return joined(course, stretches, samples)
 
 
-def passed(course: Course, here: Situation, plan: Plan) -> Iterator[Stretch]:
+def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
     """The phases one after the other; the last is the one that ends with the time, the condition, or in failure."""
     ended: frozenset[Configuration] = frozenset()
     hasty = count = 0
@@ -90,7 +90,7 @@ def passed(course: Course, here: Situation, plan: Plan) -> Iterator[Stretch]:
         here = after
 
 
-def _run(stage: Stage, here: Situation, plan: Plan) -> Run:
+def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
     """One phase: to the end, to the condition, or to the first of its bounds."""
     x = stage.state(here.values)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
@@ -119,7 +119,7 @@ def _endless(stage: Stage, count: int, hasty: int) -> str:
     return f"after {count} phases the contacts {names} still change" if count == MOST_PHASES else ""
 
 
-def _standstill(stage: Stage, here: Situation, failure: str) -> Stretch:
+def _standstill(stage: Stage, here: Standing, failure: str) -> Stretch:
     """Where no phase follows."""
     x = stage.state(here.values)
     message = f"Stopped at t = {here.t:.6g} s: {failure}."

@@ -13,7 +13,9 @@ from itertools import islice, product
 
 import numpy as np
 
+from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
+from eomgen.mechanics.reactions import Indeterminate
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
 from eomgen.simulation.stage import FORCE, RATE, Stage, Values
@@ -34,28 +36,44 @@ def settled(
         apart: contacts that are open for certain: they do not touch, or move apart.
         ended: configurations that have just ended: taken only where there is no other.
         before: the configuration so far; contacts keep what they can of it.
+    Raises:
+        Indeterminate: something moves, and the balance does not tell how the contacts share what holds.
     """
     contacts = contacts_of(on_pieces(stages.model, pieces))
     still = Configuration(Table({c.name: OPEN if c.name in apart else STICKS if c.mu else Mode() for c in contacts}),
                           Table(pieces))  # fmt: skip
     sliding = _sliding(stages.of(still), t, values) if any(c.mu for c in contacts) else {}
     last: Configuration | None = None
+    open_: Indeterminate | None = None
     for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
         tried = Configuration(Table(modes), Table(pieces))
-        if not agrees(stages.of(tried), t, values, sliding=sliding, apart=apart):
+        try:
+            stage = stages.of(tried)
+        except DerivationError as error:  # nothing can leave a contact that is open in it
+            raise open_ or error from error
+        if stage.undetermined is not None:
+            open_ = open_ or stage.undetermined
             continue
+        if not agrees(stage, t, values, sliding=sliding, apart=apart):
+            continue
+        if open_ is not None and (standing := _standing(stage, t, values, sliding=sliding, apart=apart)):
+            held = {c.name: STICKS if c.mu else Mode() for c in contacts if c.name in standing}
+            tried = Configuration(Table({**modes, **held}), Table(pieces))
+            if not stages.of(tried).rests(t, values):
+                raise open_
         if tried not in ended:
             return tried
         last = last or tried
+    if last is None and open_ is not None:
+        raise open_
     return last
 
 
 def _sliding(stage: Stage, t: float, values: Values) -> dict[str, int]:
     """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
     x = stage.state(values)
-    found = stage.look(t, x)
     size = RATE * max(1.0, float(np.max(np.abs(x[len(stage.coordinates) :]), initial=0.0)))
-    return {owner: 0 if abs(v) <= size else 1 if v > 0 else -1 for (owner, what), v in found.items() if what == "slide"}
+    return {name: 0 if abs(v) <= size else 1 if v > 0 else -1 for name, v in stage.sliding(t, x).items()}
 
 
 def _choices(
@@ -96,6 +114,22 @@ def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int]
         force < -FORCE * forces or acceleration < -FORCE * accelerations
         for pairs in signs for force, acceleration in pairs
     )  # fmt: skip
+
+
+def _standing(
+    stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]
+) -> tuple[str, ...]:
+    """The contacts that are to begin sliding or to part, and do not: one way of many in which all of them hold."""
+    x = stage.state(values)
+    found, (_, size) = stage.look(t, x), stage.sizes(t, x)
+    accelerations = {}
+    for contact in stage.contacts:
+        mode, name = stage.mode(contact), contact.name
+        if mode.closed and mode.sense and not sliding[name]:
+            accelerations[name] = found[name, "slide'"]
+        elif not mode.closed and name not in apart:
+            accelerations[name] = found[name, "gap''"]
+    return tuple(name for name, a in accelerations.items() if abs(a) <= FORCE * size)
 
 
 def _signs(

@@ -23,12 +23,13 @@ from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.freedom import redundant_rows
-from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
 from eomgen.simulation.contacts import Configuration, Contact
 from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Scalar
 
@@ -169,6 +170,13 @@ class Stage:
             found[signal.owner, signal.what] = values
         return found
 
+    def sliding(self, t: float, x: np.ndarray) -> dict[str, float]:
+        """The sliding velocity at every closed contact that rubs by Coulomb's law; no force needs to be known."""
+        rubbing = [contact for contact in self.contacts if contact.mu is not None and self.mode(contact).closed]
+        velocities = self._kinematic(tuple(self._sliding(contact) for contact in rubbing))
+        found = velocities.many(np.array([t]), self.inner(x)[None, :], self.p)[0]
+        return {contact.name: float(v) for contact, v in zip(rubbing, found, strict=True)}
+
     def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
         """How large forces and accelerations are at one state, the latter at least 1 m/s^2."""
         forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
@@ -217,13 +225,40 @@ class Stage:
     def signals(self) -> tuple[Signal, ...]:
         found: list[Signal] = []
         for contact in self.contacts:
-            found += self._of_closed(contact) if self.mode(contact).closed else self._of_open(contact)
+            if not self.mode(contact).closed:
+                found += self._of_open(contact)
+            elif self.undetermined is None:
+                found += self._of_closed(contact)
         return tuple(found)
+
+    @cached_property
+    def undetermined(self) -> Indeterminate | None:
+        """Why the forces at the closed contacts do not follow from the balance; None where they do."""
+        try:
+            for contact in self.contacts:
+                if self.mode(contact).closed:
+                    self._of_closed(contact)
+        except Indeterminate as error:
+            return error
+        return None
+
+    def rests(self, t: float, values: Values) -> bool:
+        """Whether nothing moves, and nothing is given that could move it later."""
+        symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
+        given = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
+        needed = (equation.needed for equation in self.reactions.balance.equations)
+        if any(depends_on(x, given) for x in (*self.assembly.forcing, *needed)):
+            return False
+        x = self.state(values)
+        _, size = self.sizes(t, x)
+        return bool(np.max(np.abs(self.rate(t, x)), initial=0.0) <= RATE * size)
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
         found: list[Bound] = []
         for contact in self.contacts:
+            if self.mode(contact).closed and self.undetermined is not None:
+                continue  # at rest: nothing is watched
             signals = {s.what: s.value for s in self.signals if s.owner == contact.name}
             found += self._bounds(contact, signals)
         return (*found, *self._ends_of_pieces)
@@ -231,7 +266,8 @@ class Stage:
     @cached_property
     def loose(self) -> tuple[str, ...]:
         """The open strings whose slack no formula gives: it is integrated."""
-        return tuple(s.owner for s in self.signals if s.what == "gap" and s.value is None)
+        apart = (contact for contact in self.contacts if not self.mode(contact).closed)
+        return tuple(contact.name for contact in apart if self._of_open(contact)[0].value is None)
 
     def mode(self, contact: Contact) -> Mode:
         return self.configuration.modes[contact.name]

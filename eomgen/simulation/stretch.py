@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.simulation.course import Situation
+from eomgen.simulation.course import Standing
 from eomgen.simulation.stage import Bound, Stage
 from eomgen.simulation.stepping import Run
 
@@ -21,8 +21,8 @@ class Stretch:
         after: what follows the bound.
     """
 
-    here: Situation
+    here: Standing
     stage: Stage
     run: Run
     bound: Bound | None
-    after: Situation | None
+    after: Standing | None

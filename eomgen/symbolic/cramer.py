@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.functions import over
+from eomgen.symbolic.functions import inner, over
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 LARGEST_BLOCK = 10  # unknowns in one determinant; its minors are 2^n
@@ -139,12 +139,8 @@ def _by_determinants(block: Block, right: Sequence[Sequence[Scalar]]) -> dict[in
         cofactors = [
             (-1) ** (i + j) * _minor(A, everything[:i] + everything[i + 1 :], others, minors) for i in range(n)
         ]
-        found[unknown] = [over(_dot(cofactors, column), whole) for column in zip(*right, strict=True)]
+        found[unknown] = [over(inner(cofactors, column), whole) for column in zip(*right, strict=True)]
     return found
-
-
-def _dot(a: Iterable[Scalar], b: Iterable[Scalar]) -> Scalar:
-    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
 
 
 def determinant(matrix: Sequence[Sequence[Scalar]]) -> Scalar:

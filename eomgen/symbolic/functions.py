@@ -6,9 +6,11 @@ The laws of mechanics call these and never `math` or `sympy`, so one text of a l
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from fractions import Fraction
+from typing import Any
 
-from eomgen.symbolic.graph import CONSTANTS, Node
+from eomgen.symbolic.graph import CONSTANTS, Node, is_zero
 
 NAMES = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1,
@@ -70,6 +72,11 @@ def over(a, b):
         quotient = Fraction(a, b)
         return quotient.numerator if quotient.denominator == 1 else quotient
     return a / b
+
+
+def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
+    """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
+    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
 
 
 def chosen(a, bound, if_below, if_above):

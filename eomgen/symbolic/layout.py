@@ -1,6 +1,6 @@
 """Node -> the terms of its sum and the factors of its products, in the order in which a textbook writes them.
 
-Text and LaTeX print from here. Sums and products are flattened by multiplicity, each node opened once: an
+Sums and products are flattened by multiplicity, each node opened once: an
 expression whose tree is exponentially large costs what its graph costs.
 """
 
@@ -10,10 +10,8 @@ from collections.abc import Container
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
-from math import gcd
 from typing import Any
 
-from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
 
 SUMS = frozenset(("add", "sub", "neg"))
@@ -59,18 +57,17 @@ def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
     return _lead([(_tidy(c), leaf) for leaf, c in share.items() if c != 0], _tidy(number))
 
 
-def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
-    """x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than
-    1/3*sqrt(42*l)."""
-    return [_with_shorter_roots(product, named) for product in _products(x, named)]
-
-
-def _products(x: Scalar, named: Container[Node] = ()) -> list[Product]:
-    """x as a sum of products, each root as the graph holds it."""
+def products_of(x: Scalar, named: Container[Node] = ()) -> list[Product]:
+    """x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)."""
     products = []
     for c, term in terms(x, named):
         product = factors(1 if term is None else term, named)
         products.append(_turned(Product(c * product.coefficient, product.numerator, product.denominator), named))
+    return plus_first(products)
+
+
+def plus_first(products: list[Product]) -> list[Product]:
+    """The products with the first positive one in front."""
     first = next((i for i, product in enumerate(products) if product.coefficient > 0), 0)
     return [products[first], *products[:first], *products[first + 1 :]]
 
@@ -85,31 +82,6 @@ def _turned(product: Product, named: Container[Node]) -> Product:
                 above = (*product.numerator[:i], turned, *product.numerator[i + 1 :])
                 return Product(-product.coefficient, above, product.denominator)
     return product
-
-
-def _with_shorter_roots(product: Product, named: Container[Node]) -> Product:
-    """What the number below the line and the number under a root share goes under the root.
-
-    k/(g d) sqrt(g n x) = k/d sqrt(n x/g)
-    """
-    c = product.coefficient
-    above = list(product.numerator)
-    for i, (base, exponent) in enumerate(above):
-        inside = _number_under(base)
-        share = gcd(inside, c.denominator)
-        if exponent == 1 and share > 1 and base not in named and decimal_of(c) is None:
-            rest = base.graph.mul(Fraction(inside, share * share), base.args[0].args[1])
-            above[i] = (base.graph.held("sqrt", (rest,)), 1)  # for print only: the graph keeps whole numbers there
-            c = _tidy(Fraction(c) * share)
-    return Product(c, tuple(above), product.denominator)
-
-
-def _number_under(base: Node) -> int:
-    """The whole number c of sqrt(c x); 1 where there is none."""
-    inside = base.args[0] if base.op == "sqrt" else None
-    if type(inside) is Node and inside.op == "mul" and type(inside.args[0]) is int:
-        return inside.args[0]
-    return 1
 
 
 def _is_less_than(x: Scalar, limit: int) -> bool:
@@ -214,7 +186,7 @@ def rebuilt_as_written(x: Scalar) -> Scalar:
     if not isinstance(x, Node):
         return x
     total: Scalar = 0
-    for product in _products(x):
+    for product in products_of(x):
         above: Any = product.coefficient
         for base, power in product.numerator:
             above = above * base**power
@@ -235,7 +207,7 @@ def has_nested_quotient(x: Scalar) -> bool:
         if not isinstance(node, Node) or is_base(node) or entry in seen:
             continue
         seen.add(entry)
-        for product in _products(node):
+        for product in products_of(node):
             if within and (product.denominator or product.coefficient.denominator > 1):
                 return True
             sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]

@@ -77,13 +77,19 @@ def solved(
             are taken as they come).
         tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
     """
+
+    def tested(line: _Line, j: int) -> bool:
+        """Whether W has the entry too: friction alone does not tell the push that it comes from."""
+        return j not in late or not is_zero(line.test.get(j, 0))
+
     lines = _lines(rows, right, values, tolerance, tests or [{}] * len(rows))
     simple, late = simple or _number_first, frozenset(last)
     order: list[tuple[int, _Line]] = []
     if sure is not None:
-        _eliminate(lines, order, lambda line, j, x: (simple(x), j in late), tolerance, worst=(sure, True))
+        _eliminate(lines, order, lambda line, j, x: (simple(x) if tested(line, j) else sure + 1, j in late), tolerance,
+                   worst=(sure, True))  # fmt: skip
         _normal(lines, order, values)
-    _eliminate(lines, order, lambda line, j, x: (j in late, simple(x)), tolerance)
+    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), simple(x)), tolerance)
     free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, tolerance)
     return Solution(constants, shares, free, tuple(line.right for line in lines))

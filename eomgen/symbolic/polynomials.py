@@ -1,4 +1,4 @@
-"""Sums of terms <-> polynomials in their atoms and in the cosine and sine of each axis, as elements of a ring of sympy's.
+"""Sums of terms <-> polynomials in their atoms and in the cosine and sine of each axis: elements of a ring of sympy's.
 
 Cosine and sine of one axis are independent generators there, so one function has many forms: s^2 eliminated; c^2
 eliminated; or, where all powers of an axis are even or all are odd, the same degree throughout by 1 = c^2 + s^2. In

@@ -11,18 +11,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Number
 from eomgen.symbolic.polynomials import Element, Polynomials
 from eomgen.symbolic.quotient import fraction_of
-from eomgen.symbolic.terms import Terms, TooLarge, constant, scaled, tidy
+from eomgen.symbolic.terms import Terms, TooLarge, tidy
 
 LARGEST_DEGREE = 24
 MOST_TERMS = 120  # of what is factored
 
-Powers = dict[Any, int]  # exponent of each irreducible factor
+Powers = dict[Element, int]  # exponent of each irreducible factor
+Pairs = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,11 @@ def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[T
 class _Roots:
     """The polynomials of above/below and of the product under the roots."""
 
-    def __init__(self, expansion, ring: Polynomials, above: Terms, below: Terms, fractions) -> None:
+    def __init__(self, expansion: Expansion, ring: Polynomials, above: Terms, below: Terms, fractions: Pairs) -> None:
         self.expansion, self.ring = expansion, ring
         self.above, self.below = self._element(above), self._element(below)
-        self.number, self.powers = Fraction(1), {}
+        self.number = Fraction(1)
+        self.powers: Powers = {}
         for n, d in fractions:
             self._gather(n, 1)
             self._gather(d, -1)

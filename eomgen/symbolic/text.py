@@ -10,7 +10,8 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from eomgen.symbolic.decimals import decimal_of, number_text
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.layout import Factor, Product, is_base, is_part_of_turn, summands
+from eomgen.symbolic.layout import Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.printed import summands
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
@@ -104,7 +105,8 @@ def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]
         return (node.name if node.op == "symbol" else "pi"), ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
-    if node.op == "sqrt" and len(products := plans.get(node.args[0], ())) == 1 and products[0].coefficient > 0:
+    products = plans.get(node.args[0], []) if node.op == "sqrt" else []
+    if len(products) == 1 and products[0].coefficient > 0:
         return f"sqrt({_product_text(products[0], printed, one_line=True)[0]})", ATOM
     inside = (printed[a][0] if type(a) is Node else number_text(a) for a in node.args)
     return f"{node.op}({', '.join(inside)})", ATOM

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from fractions import Fraction
+from functools import reduce
+from operator import and_
 
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Node, Number, Scalar
@@ -12,6 +15,7 @@ from eomgen.symbolic.terms import (
     ONE,
     Monomial,
     Terms,
+    Vector,
     Wave,
     common_monomial,
     common_number,
@@ -62,19 +66,14 @@ class Writer:
 
     def _by_common_waves(self, terms: Terms) -> Scalar:
         """sin(theta)*(3*g + 20*R*cos(theta)*theta'^2)"""
-        written = self._written(terms)
-        divided = any(e < 0 and self.atoms.is_a(atom, "sum") for monomial, _ in terms for atom, e in monomial)
-        powers = [{(kind, angle): e for kind, angle, e in factors} for _, _, factors in written]
-        common = {} if divided or len(powers) < 2 else {
-            key: e for key in powers[0] if (e := min(each.get(key, 0) for each in powers))
-        }  # fmt: skip
-        if not common:
+        if len(terms) < 2 or any(e < 0 and self.atoms.is_a(a, "sum") for monomial, _ in terms for a, e in monomial):
             return self.sum(terms)
+        written = [(c, monomial, _powers(factors)) for c, monomial, factors in self._written(terms)]
+        common = reduce(and_, (powers for _, _, powers in written))
         total: Scalar = 0
-        for c, monomial, factors in written:
-            rest = tuple((kind, angle, left) for kind, angle, e in factors if (left := e - common.get((kind, angle), 0)))
-            total = self.graph.add(total, self._term(c, monomial, rest))
-        return self._term(1, (), tuple((*key, e) for key, e in common.items())) * total
+        for c, monomial, powers in written:
+            total = self.graph.add(total, self._term(c, monomial, _factors(powers - common)))
+        return self.graph.mul(self._term(1, (), _factors(common)), total)
 
     def content(self, *sums: Terms) -> Fraction:
         """The rational number common to every coefficient as written (27/2 cos^2, not 27/4 + 27/4 cos(2 theta))."""
@@ -132,7 +131,7 @@ class Writer:
         return self.graph.mul(above, root), below
 
     def _one_root(self, monomial: Monomial) -> tuple[Monomial, Scalar]:
-        """(the rest, all roots as one): sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l), sqrt(4 a + 2 b) = sqrt(2 (2 a + b))."""
+        """(the rest, all roots as one): sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l), sqrt(4 a + 2) = sqrt(2 (2 a + 1))."""
         exponents = dict(monomial)
         roots = [atom for atom in exponents if self.atoms.is_a(atom, "sqrt")]
         if not roots:
@@ -203,6 +202,14 @@ class Writer:
         if op == "pow":
             return self.graph.pow(arguments[0], arguments[1])
         return self.graph.call(op, *arguments)
+
+
+def _powers(factors: Factors) -> Counter[tuple[str, Vector]]:
+    return Counter({(kind, angle): e for kind, angle, e in factors})
+
+
+def _factors(powers: Counter[tuple[str, Vector]]) -> Factors:
+    return tuple((kind, angle, e) for (kind, angle), e in powers.items())
 
 
 def is_rate(x: Node) -> bool:

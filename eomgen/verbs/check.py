@@ -6,14 +6,15 @@ from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.course import open_at_start
+from eomgen.simulation.course import modes_at_start
 from eomgen.verbs.outcome import Outcome, listed
 
 
 def check(model: Model) -> Outcome:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
-    away = open_at_start(model)
-    freedom = freedom_of(model, away)
+    modes = modes_at_start(model)
+    away = [name for name, mode in modes.items() if not mode.closed]
+    freedom = freedom_of(model, modes)
     waiting = unbuilt(model)
     missing = [name for name in model.parameters if name not in exact_parameters(model)]
     driven = [name for name, coordinate in model.coordinates.items() if coordinate.driven]
@@ -30,7 +31,7 @@ def check(model: Model) -> Outcome:
         "coordinates": list(model.coordinates), "driven": driven, "dependent": dependent, "missing_values": missing,
         "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
         "not_counted": freedom.not_counted or None,
-        "open_at_start": list(away), "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
+        "open_at_start": away, "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip

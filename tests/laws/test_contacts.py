@@ -273,6 +273,26 @@ def test_friction_follows_the_reaction_through_its_change_of_sign():
     assert result.reactions["reaction_n(rail)"][-1] == pytest.approx(-2 * G)
 
 
+@pytest.mark.parametrize("coordinates", [
+    'coordinates.x = { speed = "v0" }', 'coordinates = { x = { speed = "v0" }, y = 0 }',
+], ids=["reacts", "closes"])  # fmt: skip
+def test_a_rail_that_pulls_brakes_as_one_that_pushes(coordinates):
+    """N = -m g along the normal [0, -1]: x'' = -mu g sign(x') in the equations that `derive` gives, too."""
+    text = """
+    parameters = { m = 2, g = 9.81, mu = 0.3, v0 = 4 }
+    bodies.bead = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", 0] } }
+    constraints.rail = { kind = "support", point = "bead.origin", normal = [0, -1], friction = "mu" }
+    """.replace('["x", 0]', '["x", "y"]' if "y = 0" in coordinates else '["x", 0]')
+    equations = eomgen.derive(eomgen.loads(HEAD + coordinates + text))
+    for sense in (1, -1):
+        q, u = ([0.0, 0.0], [4.0 * sense, 0.0]) if "y = 0" in coordinates else ([0.0], [4.0 * sense])
+        rates = equations.rhs("numpy")(0.0, np.array([*q, *u]), equations.rhs("numpy").p0)
+        assert rates[len(q)] == pytest.approx(-0.3 * G * sense)
+    assert equations.certify().ok
+    result = run(coordinates + text, 1.0)
+    assert result["x'"][-1] == pytest.approx(4 - 0.3 * G) and result.reactions["reaction_n(rail)"][0] < 0
+
+
 def test_viscous_friction_takes_the_speed_exponentially():
     """-c N v: v = v0 exp(-c g t), without phases."""
     text = BLOCK.replace('friction = "mu"', "friction = { viscous = 0.2 }").replace("alpha = 0.5", "alpha = 0")

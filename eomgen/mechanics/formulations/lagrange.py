@@ -9,15 +9,14 @@ Where coordinates were eliminated, u_free = N u + nu, the equations of the free 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from eomgen.mechanics.assembly import Assembly, Row, assembled
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces, per_speed
 from eomgen.symbolic.derivative import gradient, jacobian, substituted
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.functions import inner
+from eomgen.symbolic.graph import Scalar
 
 name = "lagrange"
 title = "Lagrange's equations"
@@ -47,14 +46,14 @@ def _reduced(system: System, free: System) -> Assembly:
     M = tuple(substituted(row, known) for row in whole.M)
     (T, *rest) = substituted((whole.T, *whole.c, *whole.Q), known)
     c, Q = rest[: len(M)], rest[len(M) :]
-    carried = [inertia + _dot(row, bias) for inertia, row in zip(c, M, strict=True)]
+    carried = [inertia + inner(row, bias) for inertia, row in zip(c, M, strict=True)]
     columns = tuple(zip(*N, strict=True))
-    columned = [[_dot(row, column) for row in M] for column in columns]
+    columned = [[inner(row, column) for row in M] for column in columns]
     return assembled(
         system,
-        M=tuple(tuple(_dot(column, momentum) for momentum in columned) for column in columns),
-        c=tuple(_dot(column, carried) for column in columns),
-        Q=tuple(_dot(column, Q) for column in columns),
+        M=tuple(tuple(inner(column, momentum) for momentum in columned) for column in columns),
+        c=tuple(inner(column, carried) for column in columns),
+        Q=tuple(inner(column, Q) for column in columns),
         T=T,
     )
 
@@ -63,10 +62,6 @@ def free_rates(system: System, free: System) -> Row:
     """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
     rates = {q.name: rate for q, rate in zip(system.scope.symbols.q, system.scope.rates, strict=True)}
     return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
-
-
-def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
-    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
 
 
 def inertia_side(motion: Motion, T: Scalar) -> tuple[tuple[Row, ...], Row]:
