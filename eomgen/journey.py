@@ -182,7 +182,7 @@ class Journey:
         """Refuse an instant that a motion from an unstable rest would reach with contacts that have ended before.
 
         Raises:
-            DerivationError: a contact is named.
+            RunFailed: a contact is named.
         """
         stage = self._stage_of_first
         values = {**parameters_of(moment.situation), **moment.numbers}

@@ -165,6 +165,18 @@ def joint_friction(system: System, link: Link) -> Scalar | None:
     return link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
 
 
+def rubbing_of(system: System, component: Component) -> tuple[Scalar, Scalar]:
+    """Of a component that rubs: (friction along the contact for a unit of it, the sliding velocity dual to that)."""
+    if component.kind == "joint":
+        link = system.motion.link(component.owner)
+        factor, sliding = joint_friction(system, link), link.s_rate[0]
+    else:
+        row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
+        factor, sliding = row.friction, row.sliding
+    assert factor is not None, "what has an effect of friction has its factor"
+    return factor, sliding
+
+
 # -- of ties ---------------------------------------------------------------------------------------
 
 

@@ -2,7 +2,9 @@
 
 With the coordinate k freed, the equations of motion say what force along it keeps it moving as given:
 
-    F_k = (M a + c - Q - J^T lam)_k,   all of them at the given motion
+    F_k = (M a + c - Q - J^T lam - sum f_r N_r)_k,   all of them at the given motion
+
+N_r are the normal reactions of what rubs, f_r the generalized force of its friction for a unit of it.
 """
 
 from __future__ import annotations
@@ -10,12 +12,14 @@ from __future__ import annotations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.friction import frictions
+from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.part import altered
 from eomgen.model.table import Table
-from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.derivative import derivative, substituted
 from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.transplant import transplanted
 
 
@@ -34,7 +38,18 @@ def drive(system: System, coordinate: str) -> Scalar:
     free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
     assembly = recursive.assemble(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
-    return _carried(residual(free, assembly, k), system)
+    return _carried(residual(free, assembly, k), system) - _friction(system, free, k)
+
+
+def _friction(system: System, free: System, k: int) -> Scalar:
+    """What rubs along the k-th speed of the freed system, by the normal reactions of the motion as it is given."""
+    u = free.symbols.u[k]
+    shares = {name: _carried(factor * derivative(sliding, u), system) for name, factor, sliding in frictions(free)}
+    shares = {name: share for name, share in shares.items() if not is_zero(share)}
+    if not shares:
+        return 0
+    reactions = reactions_of(system)
+    return sum((share * reactions.normal(name) for name, share in shares.items()), start=0)
 
 
 def residual(system: System, assembly: Assembly, k: int, without: str = "") -> Scalar:
@@ -81,9 +96,10 @@ def _eliminated(system: System, tie: str) -> Scalar:
                               mend="leave out `dependent`: then each has its multiplier")  # fmt: skip
     k = [u.name for u in free.symbols.u].index(f"{own.eliminates}'")
     coefficient = free.ties.J[[row.tie for row in free.ties.closing].index(tie)][k]
+    along = residual(free, recursive.assemble(free), k, tie) - _friction(system, free, k)
     known: dict[Node, Scalar] = {}
     for u, a in zip(free.symbols.u, free.symbols.a, strict=True):
         if u not in system.symbols.u:
             known |= {u: system.scope.names[u.name], a: system.scope.names[a.name]}
-    (value,) = substituted((over(residual(free, recursive.assemble(free), k, tie), coefficient),), known)
+    (value,) = substituted((over(along, coefficient),), known)
     return value

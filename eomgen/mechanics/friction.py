@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.components import joint_friction
+from eomgen.mechanics.components import joint_friction, rubbing_of
 from eomgen.mechanics.explicit import bordered_rows, regular_rows
 from eomgen.mechanics.reactions import Reactions, reactions_of, values_at_a_state
 from eomgen.mechanics.system import System
@@ -82,13 +82,7 @@ def rubbing_contacts(system: System, reactions: Reactions) -> list[Rub]:
     for j, component in enumerate(reactions.components):
         if not component.rubbing:
             continue
-        if component.kind == "joint":
-            link = system.motion.link(component.owner)
-            factor, sliding = joint_friction(system, link), link.s_rate[0]
-        else:
-            row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
-            factor, sliding = row.friction, row.sliding
-        assert factor is not None, "what has an effect of friction has its factor"
+        factor, sliding = rubbing_of(system, component)
         found.append(Rub(component.owner, j, tuple(factor * d for d in gradient(sliding, u)), factor))
     return found
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.balance import Balance
-from eomgen.mechanics.components import Component, joint_friction
+from eomgen.mechanics.components import Component, rubbing_of
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -61,7 +61,7 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     for j, c in apart:
         yield NamedReaction(_name(balance, c), owner, _unit(c), {j: 1})
         if c.rubbing:
-            yield NamedReaction(f"reaction_t({owner})", owner, FORCE, {j: _friction(balance, c)})
+            yield NamedReaction(f"reaction_t({owner})", owner, FORCE, {j: rubbing_of(balance.system, c)[0]})
     for j, c in mine:
         if c.kind == "drive":
             yield NamedReaction(_drive(balance, c), owner, _unit(c), {j: 1})
@@ -115,17 +115,6 @@ def _name(balance: Balance, component: Component) -> str:
     numbers = tie.strand_rows() if hasattr(tie, "strand_rows") else (1,)
     strand = numbers.index(component.number) + 1
     return f"tension({component.owner})" if strand == 1 else f"tension({component.owner}, {strand})"
-
-
-def _friction(balance: Balance, component: Component) -> Scalar:
-    """What a unit of the normal reaction rubs with along the tangent."""
-    system = balance.system
-    if component.kind == "joint":
-        factor = joint_friction(system, system.motion.link(component.owner))
-    else:
-        factor = next(r.friction for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
-    assert factor is not None, "a component that rubs has its factor"
-    return factor
 
 
 def _drive(balance: Balance, component: Component) -> str:

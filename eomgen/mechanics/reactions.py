@@ -14,16 +14,15 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import DIRECTIONS, Balance, BodyEquation, balance_of
+from eomgen.mechanics.balance import Balance, BodyEquation, balance_of
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
-from eomgen.mechanics.freedom import redundant_rows
-from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
+from eomgen.mechanics.unheld import refuse_unheld
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -32,7 +31,7 @@ from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
 
 TRIES = 20
-HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
+RANK = 1e-7  # of the largest entry of J, below which a singular value is 0
 
 Combination = dict[int, Scalar]
 
@@ -106,7 +105,8 @@ class Reactions:
         if self.is_open(owner):
             return 0
         combinations, given = self._sums(what, owner, side, frame)
-        name = f"reaction_{'xyz'[k]}({owner})" if what == "force" else f"reaction_couple({owner})"
+        place = f"{owner}.{side}" if side else owner
+        name = f"reaction_{'xyz'[k]}({place})" if what == "force" else f"reaction_couple({place})"
         return given[k] + self.combined(combinations[k], name)
 
     def is_open(self, owner: str) -> bool:
@@ -254,7 +254,7 @@ def reactions_of(
     if at:
         return Reactions(balance, _solved(balance, at), at)
     solution = _solved(balance, {}, sure=None if short else 1)
-    _refuse_unheld(balance, solution)
+    refuse_unheld(balance, solution)
     return Reactions(balance, solution, {})
 
 
@@ -318,73 +318,6 @@ def _generic_state(system: System, seed: int) -> dict[Node, Any]:
 
 
 def _rank(system: System, state: Mapping[Node, Any]) -> int:
-    """Of J."""
+    """How many rows of J are independent."""
     J = [[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J]
-    return int(np.linalg.matrix_rank(np.array(J), tol=HELD * np.max(np.abs(J)))) if system.symbols.u and J else 0
-
-
-# -- bodies that nothing holds ---------------------------------------------------------------------
-
-
-def _refuse_unheld(balance: Balance, solution: Solution) -> None:
-    """Refuse a motion of bodies that no reaction resists and no coordinate describes.
-
-    Raises:
-        DerivationError: the body that moves most in it, and the direction.
-    """
-    system = balance.system
-    motions = len(system.symbols.u) - len(system.ties.closing) + len(redundant_rows(system.ties))
-    if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
-        return
-    free, allowed = _virtual_motions(balance)
-    Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
-    unheld = free - Q @ (Q.T @ free)
-    worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
-    if np.max(np.abs(unheld)) < HELD:
-        return
-    equation = balance.equations[worst]
-    direction = DIRECTIONS[equation.direction]
-    turning = direction.startswith("moment")
-    what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
-    raise DerivationError(f"body '{equation.body}' is {what}", f"bodies.{equation.body}",
-                          "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
-
-
-def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
-    """Velocities along the rows: a basis of those that no reaction resists, and those of the coordinates."""
-    system = balance.system
-    rows, columns = len(balance.equations), len(balance.components)
-    state = generic_state(system.ties, Random(1))
-
-    def numbers(scalars: Sequence[Scalar]) -> list[float]:
-        return [float(x) for x in evaluate(tuple(scalars), state, fifty_digits())]
-
-    G = np.zeros((rows, columns))
-    for i, e in enumerate(balance.equations):
-        if e.coefficients:
-            G[i, list(e.coefficients)] = numbers(list(e.coefficients.values()))
-    U, sizes, _ = np.linalg.svd(G)
-    free = U[:, int(np.sum(sizes > HELD * max(sizes, default=1.0))) :]
-    return free, _allowed(balance, numbers)
-
-
-def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
-    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow."""
-    system = balance.system
-    motion = system.motion
-    plane = motion.scope.model.space == "plane"
-    columns = []
-    for e in balance.equations:
-        i = motion.index[e.body]
-        link, com = motion.links[i], mass_properties(motion.scope, e.body).com
-        B = np.array(numbers([x for row in motion.B[i] for x in row])).reshape(6, -1)
-        r = np.array(numbers(com))
-        R = np.array(numbers([x for row in link.pose.R for x in row])).reshape(3, 3) if plane else np.eye(3)
-        v = R @ (B[3:] + np.cross(B[:3].T, r).T)
-        columns.append(np.vstack([v, R @ B[:3]])[e.direction])
-    moved = np.array(columns)
-    if not system.ties.closing:
-        return moved
-    J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
-    _, sizes, V = np.linalg.svd(J)
-    return moved @ V[int(np.sum(sizes > HELD * max(sizes, default=1.0))) :].T
+    return int(np.linalg.matrix_rank(np.array(J), tol=RANK * np.max(np.abs(J)))) if system.symbols.u and J else 0

@@ -21,7 +21,7 @@ from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on
 from eomgen.simulation.events import Crossing
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.settling import settled
-from eomgen.simulation.stage import GAP, RATE, Stage, Values
+from eomgen.simulation.stage import GAP, Stage, Values, smallest_speed
 from eomgen.simulation.stages import Stages
 
 
@@ -115,15 +115,11 @@ def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Confi
 
 
 def _apart(gap: float, rate: float, values: Values) -> bool:
-    return gap > _length(values) or abs(rate) > _speed(values)
+    return gap > _length(values) or abs(rate) > smallest_speed(values)
 
 
 def _length(values: Values) -> float:
     return 1e2 * GAP * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
-
-
-def _speed(values: Values) -> float:
-    return RATE * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
 def _refuse_overlap(course: Course, t: float, values: Values) -> None:
@@ -167,11 +163,11 @@ def _contact(
     """(values after an impact of what closes, the contacts that are apart, whether velocities jumped)."""
     gaps = course.loose.gaps(t, values)
     touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= _length(values)]
-    hit = any(gaps[name][1] < -_speed(values) for name in touching if name in before.open)
+    hit = any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open)
     if hit:
         values = course.loose.after_impact(t, values, touching)
         gaps = course.loose.gaps(t, values)
-    apart = (name for name, (_, rate) in gaps.items() if name not in touching or rate > _speed(values))
+    apart = (name for name, (_, rate) in gaps.items() if name not in touching or rate > smallest_speed(values))
     return values, frozenset(apart), hit
 
 

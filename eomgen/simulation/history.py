@@ -61,7 +61,7 @@ def history(
         DerivationError: the ties do not hold at the start; the reaction of a contact is indeterminate.
     """
     course = course_of(model, p, "numpy")
-    plan = Plan(time, how, np.array([]), until)
+    plan = Plan(time, how, None, until)
     found = []
     for stretch in passed(course, at_start(course, 0.0, parameters, start), plan):
         met = until is not None and stretch.bound is not None and _met(stretch, until)
@@ -73,12 +73,11 @@ def history(
 
 def _met(stretch: Stretch, until: Condition) -> bool:
     """Whether the condition holds where a phase ends, and did not hold all along."""
-
-    def size(t: float, x: np.ndarray) -> float:
-        return abs(float(stretch.stage.evaluated(np.array([t]), x[None, :], (until(stretch.stage),))[0, 0]))
-
-    at_start = size(stretch.here.t, stretch.stage.state(stretch.here.values))
-    return size(stretch.run.end, stretch.run.last) <= MET * max(1.0, at_start) < at_start
+    run, stage = stretch.run, stretch.stage
+    t, x = np.append(run.t, run.end), np.vstack([run.x, run.last])
+    size = np.abs(stage.evaluated(t, x, (until(stage),))[:, 0])
+    largest = float(np.max(size))
+    return bool(size[-1] <= MET * max(1.0, largest) < largest)
 
 
 def _passage(course: Course, stretch: Stretch, until: Condition | None, met: bool) -> Passage:

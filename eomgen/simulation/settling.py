@@ -18,7 +18,7 @@ from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.reactions import Indeterminate
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
-from eomgen.simulation.stage import FORCE, RATE, Stage, Values
+from eomgen.simulation.stage import FORCE, Stage, Values, smallest_speed
 from eomgen.simulation.stages import OPEN, Stages
 
 MOST_TRIED = 2000  # configurations at one instant
@@ -40,40 +40,58 @@ def settled(
         Indeterminate: something moves, and the balance does not tell how the contacts share what holds.
     """
     contacts = contacts_of(on_pieces(stages.model, pieces))
-    still = Configuration(Table({c.name: OPEN if c.name in apart else STICKS if c.mu else Mode() for c in contacts}),
-                          Table(pieces))  # fmt: skip
-    sliding = _sliding(stages.of(still), t, values) if any(c.mu for c in contacts) else {}
+    sliding = _sliding(stages, contacts, t, values, pieces=pieces, apart=apart)
     last: Configuration | None = None
-    open_: Indeterminate | None = None
+    refused: list[DerivationError] = []
     for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
         tried = Configuration(Table(modes), Table(pieces))
-        try:
-            stage = stages.of(tried)
-        except DerivationError as error:  # nothing can leave a contact that is open in it
-            raise open_ or error from error
-        if stage.undetermined is not None:
-            open_ = open_ or stage.undetermined
+        stage = _made(stages, tried, refused)
+        if stage is None or not agrees(stage, t, values, sliding=sliding, apart=apart):
             continue
-        if not agrees(stage, t, values, sliding=sliding, apart=apart):
-            continue
-        if open_ is not None and (standing := _standing(stage, t, values, sliding=sliding, apart=apart)):
-            held = {c.name: STICKS if c.mu else Mode() for c in contacts if c.name in standing}
+        standing = _standing(stage, t, values, sliding=sliding, apart=apart)
+        if standing and (undetermined := _indeterminate(refused)) is not None:
+            held = {c.name: _closed(c) for c in contacts if c.name in standing}
             tried = Configuration(Table({**modes, **held}), Table(pieces))
             if not stages.of(tried).rests(t, values):
-                raise open_
+                raise undetermined
         if tried not in ended:
             return tried
         last = last or tried
-    if last is None and open_ is not None:
-        raise open_
+    if last is None and refused:
+        raise _indeterminate(refused) or refused[0]
     return last
 
 
-def _sliding(stage: Stage, t: float, values: Values) -> dict[str, int]:
+def _closed(contact: Contact) -> Mode:
+    return STICKS if contact.mu is not None else Mode()
+
+
+def _made(stages: Stages, tried: Configuration, refused: list[DerivationError]) -> Stage | None:
+    """The stage of a configuration; where there is none, or its forces are not determined, why is noted."""
+    try:
+        stage = stages.of(tried)
+    except DerivationError as error:  # nothing can leave a contact that is open in it, or hold one that sticks
+        refused.append(error)
+        return None
+    if stage.undetermined is not None:
+        refused.append(stage.undetermined)
+    return stage if stage.undetermined is None else None
+
+
+def _indeterminate(refused: list[DerivationError]) -> Indeterminate | None:
+    return next((error for error in refused if isinstance(error, Indeterminate)), None)
+
+
+def _sliding(
+    stages: Stages, contacts: tuple[Contact, ...], t: float, values: Values, *, pieces: Mapping[str, int],
+    apart: frozenset[str],
+) -> dict[str, int]:  # fmt: skip
     """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
-    x = stage.state(values)
-    size = RATE * max(1.0, float(np.max(np.abs(x[len(stage.coordinates) :]), initial=0.0)))
-    return {name: 0 if abs(v) <= size else 1 if v > 0 else -1 for name, v in stage.sliding(t, x).items()}
+    if all(contact.mu is None for contact in contacts):
+        return {}
+    closed = Configuration(Table({c.name: OPEN if c.name in apart else Mode() for c in contacts}), Table(pieces))
+    found, still = stages.slides(closed).at(t, values), smallest_speed(values)
+    return {name: 0 if abs(v) <= still else 1 if v > 0 else -1 for name, v in found.items()}
 
 
 def _choices(

@@ -170,13 +170,6 @@ class Stage:
             found[signal.owner, signal.what] = values
         return found
 
-    def sliding(self, t: float, x: np.ndarray) -> dict[str, float]:
-        """The sliding velocity at every closed contact that rubs by Coulomb's law; no force needs to be known."""
-        rubbing = [contact for contact in self.contacts if contact.mu is not None and self.mode(contact).closed]
-        velocities = self._kinematic(tuple(self._sliding(contact) for contact in rubbing))
-        found = velocities.many(np.array([t]), self.inner(x)[None, :], self.p)[0]
-        return {contact.name: float(v) for contact, v in zip(rubbing, found, strict=True)}
-
     def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
         """How large forces and accelerations are at one state, the latter at least 1 m/s^2."""
         forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
@@ -312,17 +305,12 @@ class Stage:
         found = [Signal(name, f"N{k}" if k > 1 else "N", value, column) for k, (value, column) in normals]
         if contact.mu is None:
             return found
-        v, scope = self._sliding(contact), self.system.scope
+        v, scope = sliding_velocity(self.system, contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
             held = next(r for r in self.system.ties.rows if r.tie == name and r.component == "t")
             found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._reaction(held))]
         return found
-
-    def _sliding(self, contact: Contact) -> Scalar:
-        if contact.kind == "path":
-            return self.system.motion.link(contact.name).s_rate[0]
-        return next(r.sliding for r in self.system.ties.rows if r.tie == contact.name and r.tangent)
 
     def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
         """N of a support, the tensions of a string: (value, name of its column)."""
@@ -397,6 +385,18 @@ class Stage:
     @cached_property
     def _gaps(self) -> RightHandSide:
         return self._kinematic(tuple(r.gap for r in self.system.ties.rows if r.gap is not None and not r.identical))
+
+
+def sliding_velocity(system: System, contact: Contact) -> Scalar:
+    """Of a closed contact that rubs, along its tangent."""
+    if contact.kind == "path":
+        return system.motion.link(contact.name).s_rate[0]
+    return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)
+
+
+def smallest_speed(values: Values) -> float:
+    """What is no rounding any more, against the fastest of the rates."""
+    return RATE * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
 def slack_name(tie: str) -> str:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.formulations import recursive
@@ -15,12 +18,36 @@ from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.release import released, stays_straight
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.parts import Model
-from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces
+from eomgen.simulation.contacts import Configuration, Contact, bounds_of, contacts_of, on_pieces
 from eomgen.simulation.impact import Loose
-from eomgen.simulation.stage import Stage
+from eomgen.simulation.stage import Stage, Values, sliding_velocity
 from eomgen.symbolic.graph import Scalar
 
 OPEN = Mode(closed=False)
+
+
+@dataclass(frozen=True)
+class Slides:
+    """The contacts of a system that rub by Coulomb's law, as they slide.
+
+    Args:
+        p: the parameters' values.
+    """
+
+    system: System
+    contacts: tuple[Contact, ...]
+    p: np.ndarray
+
+    def at(self, t: float, values: Values) -> dict[str, float]:
+        """The sliding velocity of each contact."""
+        x = np.array([values.get(node.name, 0.0) for node in (*self.system.symbols.q, *self.system.symbols.u)])
+        found = self._velocities.many(np.array([t]), x[None, :], self.p)[0]
+        return {contact.name: float(v) for contact, v in zip(self.contacts, found, strict=True)}
+
+    @cached_property
+    def _velocities(self) -> RightHandSide:
+        scalars = tuple(sliding_velocity(self.system, contact) for contact in self.contacts)
+        return compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
 
 class Stages:
@@ -35,6 +62,7 @@ class Stages:
     def __init__(self, model: Model, p: np.ndarray, target: str | None) -> None:
         self.model, self.p, self.target = model, p, target
         self._made: dict[Configuration, Stage] = {}
+        self._slides: dict[Configuration, Slides] = {}
 
     def of(self, configuration: Configuration) -> Stage:
         """The stage of a configuration.
@@ -45,6 +73,14 @@ class Stages:
         if configuration not in self._made:
             self._made[configuration] = self._stage(configuration)
         return self._made[configuration]
+
+    def slides(self, configuration: Configuration) -> Slides:
+        """The sliding velocities of a configuration, for which no force needs to be known."""
+        if configuration not in self._slides:
+            model = on_pieces(self.model, configuration.pieces)
+            rubbing = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
+            self._slides[configuration] = Slides(self._system(model, configuration), tuple(rubbing), self.p)
+        return self._slides[configuration]
 
     @cached_property
     def loose(self) -> Loose:

@@ -12,6 +12,7 @@ from fractions import Fraction
 from heapq import heappop, heappush
 from typing import Any
 
+from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
 
 SUMS = frozenset(("add", "sub", "neg"))
@@ -208,7 +209,8 @@ def has_nested_quotient(x: Scalar) -> bool:
             continue
         seen.add(entry)
         for product in products_of(node):
-            if within and (product.denominator or product.coefficient.denominator > 1):
+            broken = product.coefficient.denominator > 1 and decimal_of(product.coefficient) is None
+            if within and (product.denominator or broken):
                 return True
             sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
             stack += [(base, within or bool(product.denominator)) for base in sums]

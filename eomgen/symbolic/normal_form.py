@@ -223,7 +223,7 @@ def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> 
 def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
     """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
     above, below = _whole(writer, *reduced(expansion, terms))
-    forms = [expansion.graph.div(writer.in_factors(above), writer.in_factors(below))]
+    forms = [expansion.graph.div(writer.in_factors(above), writer.in_powers(below))]
     common = common_monomial(above)
     roots = tuple((atom, e) for atom, e in common if expansion.atoms.is_a(atom, "sqrt"))
     if roots and len(above) * len(below) > 1:

@@ -15,18 +15,20 @@ from eomgen.symbolic.terms import tidy
 def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
     """x as a sum of products for print, in the order of `terms`.
 
-    k*(1 - l/r) rather than -k*(l/r - 1), k*(b - a) rather than -k*(a - b), sqrt(14*l/3) rather than 1/3*sqrt(42*l).
+    k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than 1/3*sqrt(42*l), and k*(b - a) rather than
+    -k*(a - b) where that is all.
     """
-    products = [_with_shorter_roots(_with_difference_turned(p, named), named) for p in products_of(x, named)]
-    return plus_first(products)
+    products = products_of(x, named)
+    alone = len(products) == 1
+    return plus_first([_with_shorter_roots(_with_plus(p, named, alone=alone), named) for p in products])
 
 
-def _with_difference_turned(product: Product, named: Container[Node]) -> Product:
-    """-k (a - b) as k (b - a), -k/(a - b) as k/(b - a); k itself where no difference is among the factors."""
+def _with_plus(product: Product, named: Container[Node], *, alone: bool) -> Product:
+    """-k/(a - b) as k/(b - a), and where it stands alone -k (a - b) as k (b - a); else as it is."""
     if product.coefficient > 0:
         return product
     above, below = (_turned(factors, named) for factors in (product.numerator, product.denominator))
-    if above is not None:
+    if alone and above is not None:
         return Product(-product.coefficient, above, product.denominator)
     return product if below is None else Product(-product.coefficient, product.numerator, below)
 

@@ -6,6 +6,7 @@ from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.polynomials import Polynomials
 from eomgen.symbolic.terms import Terms, TooLarge, common_monomial, constant
 
+MOST_TERMS = 40  # of a sum that is looked at for powers
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought
 
 
@@ -49,3 +50,17 @@ def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator:
         return numerator, denominator
     above, below = ring.without_common_divisor(above, below)
     return ring.terms(above), ring.terms(below)
+
+
+def powers_in(expansion: Expansion, terms: Terms) -> list[tuple[Terms, int]]:
+    """The terms as a product of powers: 16 + 72 c^2 + 81 c^4 is (4 + 9 c^2)^2; as they are where too large."""
+    if not 1 < len(terms) <= MOST_TERMS or any(e < 0 for monomial, _ in terms for _, e in monomial):
+        return [(terms, 1)]
+    try:
+        ring = Polynomials(expansion, (terms,))
+        number, parts = ring.of_one_degree(ring.of(terms)).sqf_list()
+        if any(e > 1 for _, e in parts):
+            return [(ring.terms(ring.ring.ground_new(number)), 1), *((ring.terms(part), e) for part, e in parts)]
+    except TooLarge:
+        pass
+    return [(terms, 1)]

@@ -19,7 +19,7 @@ from eomgen.symbolic.quotient import fraction_of
 from eomgen.symbolic.terms import Terms, TooLarge, tidy
 
 LARGEST_DEGREE = 24
-MOST_TERMS = 120  # of what is factored
+MOST_TERMS = 60  # of what is factored
 
 Powers = dict[Element, int]  # exponent of each irreducible factor
 Pairs = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
@@ -39,59 +39,59 @@ class Radical:
 
 
 def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[Terms]) -> Radical | None:
-    """above/below times the square roots of all `roots`, as one root; None where that takes too much work."""
-    fractions = [fraction_of(expansion, f) for f in roots]
+    """above/below times the square roots of all `roots`, as one root; None where that takes too much work.
+
+    The work is bounded by the size of what is factored, and does not count as the expansion's.
+    """
+    spent = expansion.work
     try:
+        fractions = [fraction_of(expansion, f) for f in roots]
         ring = Polynomials(expansion, [above, below, *(part for pair in fractions for part in pair)])
         return _Roots(expansion, ring, above, below, fractions).joined()
     except TooLarge:
         return None
+    finally:
+        expansion.work = spent
 
 
 class _Roots:
-    """The polynomials of above/below and of the product under the roots."""
+    """The polynomials of above/below and the factors of the product under the roots."""
 
     def __init__(self, expansion: Expansion, ring: Polynomials, above: Terms, below: Terms, fractions: Pairs) -> None:
         self.expansion, self.ring = expansion, ring
         self.above, self.below = self._element(above), self._element(below)
         self.number = Fraction(1)
         self.powers: Powers = {}
-        for n, d in fractions:
-            self._gather(n, 1)
-            self._gather(d, -1)
-        self.positive = {p for n, d in fractions for p in (*self._sure(n, d), *self._sure(d, n))}
+        self.positive: set[Element] = set()
+        for pair in fractions:
+            found = [self._factors(terms) for terms in pair]
+            for (number, factors), other, sign in zip(found, reversed(pair), (1, -1), strict=True):
+                self.number *= number**sign
+                for p, e in factors:
+                    self.powers[p] = self.powers.get(p, 0) + sign * e
+                if number > 0 and expansion.all_positive(other):
+                    self.positive |= self._sure(factors)
 
     def _element(self, terms: Terms) -> Element:
         return self.ring.of_one_degree(self.ring.of(terms))
 
-    def _gather(self, terms: Terms, sign: int) -> None:
-        """The factors of one numerator (1) or denominator (-1) of what stands under the roots."""
-        for p, e in self._factors(terms):
-            if p.is_ground:
-                self.number *= Fraction(int(p.LC.numerator), int(p.LC.denominator)) ** sign
-            else:
-                self.powers[p] = self.powers.get(p, 0) + sign * e
-
-    def _factors(self, terms: Terms) -> list[tuple[Element, int]]:
-        """The irreducible factors with their powers, the number among them."""
+    def _factors(self, terms: Terms) -> tuple[Fraction, list[tuple[Element, int]]]:
+        """The number, and the irreducible factors with their powers, positive where all their terms have one sign."""
         element = self._element(terms)
         if len(element) > MOST_TERMS or max(map(sum, element.monoms())) > LARGEST_DEGREE:
             raise TooLarge(f"a polynomial of more than {MOST_TERMS} terms or degree {LARGEST_DEGREE}")
-        number, parts = element.factor_list()
-        found = [(self.ring.ring.ground_new(number), 1)]
+        c, parts = element.factor_list()
+        number, factors = Fraction(int(c.numerator), int(c.denominator)), []
         for p, e in parts:
             turned = self._is_positive(-p)
-            found += [(-p if turned else p, e)]
-            found[0] = (found[0][0] * (-1) ** e if turned else found[0][0], 1)
-        return found
+            factors.append((-p if turned else p, e))
+            number *= (-1) ** e if turned else 1
+        return number, factors
 
-    def _sure(self, n: Terms, d: Terms) -> list[Element]:
-        """The one factor of n that holds a sign, where n/d > 0 tells that it is positive."""
-        if not self.expansion.all_positive(d):
-            return []
-        number, *rest = self._factors(n)
-        unsure = [(p, e) for p, e in rest if e % 2 and not self._is_positive(p)]
-        return [p for p, _ in unsure] if len(unsure) == 1 and number[0].LC > 0 else []
+    def _sure(self, factors: list[tuple[Element, int]]) -> set[Element]:
+        """The one factor with a sign of its own, positive where the product is."""
+        unsure = {p for p, e in factors if e % 2 and not self._is_positive(p)}
+        return unsure if len(unsure) == 1 else set()
 
     def _is_positive(self, p: Element) -> bool:
         return self.expansion.all_positive(self.ring.terms(p))

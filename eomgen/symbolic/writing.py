@@ -7,8 +7,10 @@ from fractions import Fraction
 from functools import reduce
 from operator import and_
 
+from eomgen.symbolic.atoms import RADIAN
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.graph import Node, Number, Scalar
+from eomgen.symbolic.quotient import powers_in
 from eomgen.symbolic.radicals import Radical, one_root
 from eomgen.symbolic.shortest import Factors, shortest
 from eomgen.symbolic.terms import (
@@ -100,9 +102,10 @@ class Writer:
         for (monomial, w), c in terms.items():
             groups.setdefault(monomial, {})[w] = c
         return [
-            (c, monomial, factors)
+            (sign * c, monomial, turned)
             for monomial in sorted(groups, key=self.atoms.place)
             for c, factors in shortest(groups[monomial])
+            for sign, turned in (_forward(factors),)
         ]
 
     def _term(self, c: Number, monomial: Monomial, factors: Factors) -> Scalar:
@@ -177,7 +180,7 @@ class Writer:
         else:
             root = graph.sqrt(graph.mul(tidy(number), graph.div(above, below)))
         outside = graph.mul(self.in_factors(x.above), graph.mul(bare, root))
-        return graph.div(outside, self.in_factors(x.below))
+        return graph.div(outside, self.in_powers(x.below))
 
     def _product(self, parts: tuple[Terms, ...]) -> Scalar:
         """The product, or what comes of multiplying it out where that is no longer."""
@@ -188,6 +191,13 @@ class Writer:
             total = self._expansion.product(total, part)
         whole = self.in_factors(total)
         return whole if text_size(whole) <= text_size(product) else product
+
+    def in_powers(self, terms: Terms) -> Scalar:
+        """The terms in factors, (4 + 9*cos(theta)^2)^2 as the power that it is."""
+        product: Scalar = 1
+        for part, e in powers_in(self._expansion, terms):
+            product = self.graph.mul(product, self.graph.pow(self.in_factors(part), e))
+        return product
 
     def in_factors(self, terms: Terms) -> Scalar:
         """The terms with what they have in common outside: l*(M + m*sin(theta)^2)."""
@@ -202,6 +212,17 @@ class Writer:
         if op == "pow":
             return self.graph.pow(arguments[0], arguments[1])
         return self.graph.call(op, *arguments)
+
+
+def _forward(factors: Factors) -> tuple[int, Factors]:
+    """(sign, factors) with the first symbol of every angle positive: sin(-theta) = -sin(theta)."""
+    sign, turned = 1, []
+    for kind, angle, e in factors:
+        if next((c for atom, c in angle if atom != RADIAN), 1) < 0:
+            angle = tuple((atom, -c) for atom, c in angle)
+            sign *= -1 if kind == "sin" and e % 2 else 1
+        turned.append((kind, angle, e))
+    return sign, tuple(turned)
 
 
 def _powers(factors: Factors) -> Counter[tuple[str, Vector]]:

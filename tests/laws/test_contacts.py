@@ -273,6 +273,24 @@ def test_friction_follows_the_reaction_through_its_change_of_sign():
     assert result.reactions["reaction_n(rail)"][-1] == pytest.approx(-2 * G)
 
 
+def test_what_drags_a_block_over_a_rough_floor_overcomes_its_friction():
+    """F = m x'' + mu m g sign(x') along the driven coordinate and at its joint alike."""
+    text = """
+    parameters = { m = 2, g = 9.81, mu = 0.3, a = 1.5 }
+    coordinates = { x = { motion = "a*t^2/2 + t" }, y = 0 }
+    bodies.carriage.joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+    constraints.floor = { kind = "support", point = "block.center", normal = [0, 1], friction = "mu" }
+    outputs = { F = "drive(x)", N = "reaction_n(floor)" }
+    [bodies.block]
+    mass = "m"
+    joint = { kind = "prismatic", on = "carriage", axis = [0, 1], displacement = "y" }
+    """
+    model = eomgen.loads(HEAD + text)
+    found = eomgen.solve(model)
+    assert found["F"].value == pytest.approx(2 * 1.5 + 0.3 * 2 * G) and found["N"].value == pytest.approx(2 * G)
+    assert run(text, 1.0).reactions["drive(x)"] == pytest.approx(2 * 1.5 + 0.3 * 2 * G)
+
+
 @pytest.mark.parametrize("coordinates", [
     'coordinates.x = { speed = "v0" }', 'coordinates = { x = { speed = "v0" }, y = 0 }',
 ], ids=["reacts", "closes"])  # fmt: skip

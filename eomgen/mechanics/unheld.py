@@ -1,0 +1,88 @@
+"""Balance, Solution -> refusal of a motion of bodies that no reaction resists and no coordinate describes.
+
+The rows that the reactions leave over are the equations of motion: one for each freedom. Where there are more, some
+virtual motion is resisted by nothing, and it is none of the coordinates'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance import DIRECTIONS, Balance
+from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.ties import holds_identically
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.linear import Solution
+
+HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
+
+
+def refuse_unheld(balance: Balance, solution: Solution) -> None:
+    """Refuse a motion of bodies that no reaction resists and no coordinate describes.
+
+    Raises:
+        DerivationError: the body that moves most in it, and the direction.
+    """
+    system = balance.system
+    motions = len(system.symbols.u) - len(system.ties.closing) + len(redundant_rows(system.ties))
+    if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
+        return
+    free, allowed = _virtual_motions(balance)
+    Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
+    unheld = free - Q @ (Q.T @ free)
+    worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
+    if np.max(np.abs(unheld)) < HELD:
+        return
+    equation = balance.equations[worst]
+    direction = DIRECTIONS[equation.direction]
+    turning = direction.startswith("moment")
+    what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
+    raise DerivationError(f"body '{equation.body}' is {what}", f"bodies.{equation.body}",
+                          "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
+
+
+def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities along the rows: a basis of those that no reaction resists, and those of the coordinates."""
+    system = balance.system
+    rows, columns = len(balance.equations), len(balance.components)
+    state = generic_state(system.ties)
+
+    def numbers(scalars: Sequence[Scalar]) -> list[float]:
+        return [float(x) for x in evaluate(tuple(scalars), state, fifty_digits())]
+
+    G = np.zeros((rows, columns))
+    for i, e in enumerate(balance.equations):
+        if e.coefficients:
+            G[i, list(e.coefficients)] = numbers(list(e.coefficients.values()))
+    U, sizes, _ = np.linalg.svd(G)
+    free = U[:, int(np.sum(sizes > HELD * max(sizes, default=1.0))) :]
+    return free, _allowed(balance, numbers)
+
+
+def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
+    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow."""
+    system = balance.system
+    motion = system.motion
+    plane = motion.scope.model.space == "plane"
+    columns = []
+    for e in balance.equations:
+        i = motion.index[e.body]
+        link, com = motion.links[i], mass_properties(motion.scope, e.body).com
+        B = np.array(numbers([x for row in motion.B[i] for x in row])).reshape(6, -1)
+        r = np.array(numbers(com))
+        R = np.array(numbers([x for row in link.pose.R for x in row])).reshape(3, 3) if plane else np.eye(3)
+        v = R @ (B[3:] + np.cross(B[:3].T, r).T)
+        columns.append(np.vstack([v, R @ B[:3]])[e.direction])
+    moved = np.array(columns)
+    if not system.ties.closing:
+        return moved
+    J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
+    _, sizes, V = np.linalg.svd(J)
+    return moved @ V[int(np.sum(sizes > HELD * max(sizes, default=1.0))) :].T
