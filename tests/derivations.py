@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import runpy
 from functools import cache
 from pathlib import Path
@@ -165,8 +166,17 @@ def by_every_method() -> tuple[tuple[str, str], ...]:
 def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
     """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier.
 
-    Cases are printed by two functions more than the grammar has: select(less_equal(x, y), a, b).
+    Cases are printed one after the other, a where x <= y; b otherwise, and by to_text as two functions more than the
+    grammar has: select(less_equal(x, y), a, b).
     """
+    *cases, last = text.split("; ")
+    if cases:
+        value, x, relation, y = re.fullmatch(r"(.*?)(?: else)? where (.*) (<=?) (.*)", cases[0]).groups()
+        if_true, low, high = (read_back(part, equations, also) for part in (value, x, y))
+        otherwise = read_back("; ".join([*cases[1:], last]), equations, also)
+        graph = equations.graph.symbols.graph
+        return graph.select(graph.call({"<": "less", "<=": "less_equal"}[relation], low, high), if_true, otherwise)
+    text = last.removesuffix(" otherwise")
     symbols = equations.graph.symbols
     free = free_system(equations).symbols
     own = (symbols.t, *symbols.parameters.values(), *symbols.inputs.values(), *symbols.q, *free.u, *free.a)

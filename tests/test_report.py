@@ -47,7 +47,9 @@ def step(derivation: Derivation, key: str) -> Step:
 
 
 def printed_formulas(text: str) -> list[tuple[str, str]]:
-    """(left, right) of each formula of a rendered text that has two sides, continued lines joined."""
+    """(left, right) of each formula of a rendered text that has two sides, continued lines and cases joined."""
+    text = re.sub(r"\n {16}", " ", text)
+    text = re.sub(r"(?<= =)((?:\n {8}\S.*)+)", lambda cases: " " + "; ".join(cases[0].split("\n        ")[1:]), text)
     lines = [line.strip() for line in re.sub(r"\n {8}", " ", text).splitlines() if line.startswith("    ")]
     return [(line.split(" = ")[0], line.split(" = ")[1]) for line in lines if line.count(" = ") == 1]
 
