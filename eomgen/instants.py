@@ -22,7 +22,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
 
-TRIALS = (1.3, 3, 8, 8, 20, 20)  # how far from 1 values are tried for parameters that have none
+TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that have none
 
 
 @dataclass(frozen=True)
