@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import eomgen
-from eomgen.certificate import real_state
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System, system_of
+from eomgen.proof.trials import real_state
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar

@@ -14,9 +14,10 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen import equations, pipeline
-from eomgen.certificate import Certificate, Check
+from eomgen.certificate import Certificate
 from eomgen.cli import LATER, main
 from eomgen.codegen.build import compiler
+from eomgen.proof.check import Check
 from eomgen.version import __version__
 
 ROOT = Path(__file__).parent.parent

@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.certificate import accelerations_at
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.closure import generic_state
@@ -22,6 +21,7 @@ from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.reactions import Indeterminate
 from eomgen.model.values import numeric_parameters
+from eomgen.proof.trials import accelerations_at
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.evaluation import evaluate, fifty_digits

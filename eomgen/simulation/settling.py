@@ -73,9 +73,9 @@ def _made(stages: Stages, tried: Configuration, refused: list[DerivationError]) 
     except DerivationError as error:  # nothing can leave a contact that is open in it, or hold one that sticks
         refused.append(error)
         return None
-    if stage.undetermined is not None:
-        refused.append(stage.undetermined)
-    return stage if stage.undetermined is None else None
+    if stage.watch.undetermined is not None:
+        refused.append(stage.watch.undetermined)
+    return stage if stage.watch.undetermined is None else None
 
 
 def _indeterminate(refused: list[DerivationError]) -> Indeterminate | None:
@@ -127,7 +127,7 @@ def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int]
     found = stage.look(t, x)
     forces, accelerations = stage.sizes(t, x)
     asked = [contact for contact in stage.contacts if contact.name not in apart]
-    signs = [_signs(stage.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
+    signs = [_signs(stage.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
     return not any(
         force < -FORCE * forces or acceleration < -FORCE * accelerations
         for pairs in signs for force, acceleration in pairs
@@ -142,7 +142,7 @@ def _standing(
     found, (_, size) = stage.look(t, x), stage.sizes(t, x)
     accelerations = {}
     for contact in stage.contacts:
-        mode, name = stage.mode(contact), contact.name
+        mode, name = stage.watch.mode(contact), contact.name
         if mode.closed and mode.sense and not sliding[name]:
             accelerations[name] = found[name, "slide'"]
         elif not mode.closed and name not in apart:

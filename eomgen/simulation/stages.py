@@ -20,7 +20,8 @@ from eomgen.mechanics.system import System, system_of
 from eomgen.model.parts import Model
 from eomgen.simulation.contacts import Configuration, Contact, bounds_of, contacts_of, on_pieces
 from eomgen.simulation.impact import Loose
-from eomgen.simulation.stage import Stage, Values, sliding_velocity
+from eomgen.simulation.stage import Stage, Values
+from eomgen.simulation.watching import Watch, sliding_velocity
 from eomgen.symbolic.graph import Scalar
 
 OPEN = Mode(closed=False)
@@ -101,7 +102,8 @@ class Stages:
         system = self._system(model, configuration)
         assembly = with_friction(system, recursive.assemble(system))
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
-        return Stage(configuration, contacts_of(model), lengths, system, assembly, self.p, self.target)
+        watch = Watch(configuration, contacts_of(model), lengths, system)
+        return Stage(watch, assembly, self.p, self.target)
 
     def _system(self, model: Model, configuration: Configuration) -> System:
         """The system of a configuration.

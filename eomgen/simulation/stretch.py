@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.simulation.course import Standing
-from eomgen.simulation.stage import Bound, Stage
+from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Run
+from eomgen.simulation.watching import Bound
 
 
 @dataclass(frozen=True)

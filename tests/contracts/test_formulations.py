@@ -11,7 +11,6 @@ from laws.test_random_systems import random_model
 from moving import at, equal, state_of, written
 
 import eomgen
-from eomgen.certificate import accelerations_at
 from eomgen.mechanics import articulated
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import ALL
@@ -20,6 +19,7 @@ from eomgen.mechanics.maximal import free_body_accelerations
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.tree import branches_of
 from eomgen.model.unbuilt import unbuilt
+from eomgen.proof.trials import accelerations_at
 from eomgen.symbolic.evaluation import NoValue
 
 MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}

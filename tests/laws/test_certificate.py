@@ -9,7 +9,7 @@ from random import Random
 import pytest
 
 import eomgen
-from eomgen.certificate import accelerations_at, certify, closed_state
+from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics import (
@@ -30,6 +30,7 @@ from eomgen.mechanics.balance import Balance, BodyEquation
 from eomgen.mechanics.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
+from eomgen.proof.trials import accelerations_at, closed_state
 from eomgen.symbolic.evaluation import fifty_digits
 from eomgen.symbolic.graph import Scalar, linear_terms
 from eomgen.symbolic.spatial import times

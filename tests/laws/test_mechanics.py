@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.certificate import accelerations_at, closed_state, real_state
 from eomgen.equations import Equations
+from eomgen.proof.trials import accelerations_at, closed_state, real_state
 from eomgen.symbolic.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states

@@ -1,0 +1,213 @@
+"""System, Assembly -> checks at states, in numbers: what the routes share, free bodies, reactions, the emitted code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.errors import DerivationError, ModelError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.contacts import CLOSED
+from eomgen.mechanics.dense import independent, scaled_condition, solution
+from eomgen.mechanics.equilibrium import imbalance
+from eomgen.mechanics.friction import frictions
+from eomgen.mechanics.kinematics import spin_between
+from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.system import System
+from eomgen.proof.check import Check
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
+
+FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
+SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
+DIFFERENCE_TOLERANCE = 1e-18  # of a central difference with a step of 1e-15 at 50 digits
+TRIES = 20
+
+State = dict[Node, Any]
+
+
+def eliminated_rows(system: System) -> Check:
+    """W^T xi + s_t = 0 and dphi/dt = 0 whatever the independent speeds: what the dependent rates were solved from.
+
+    Rows that follow from others do so where the ties hold, and are looked at there.
+    """
+
+    def check(state: State) -> str:
+        rows = [row for row in system.ties.rows if row.status == "eliminated"]
+        gaps = [(row, row.gap) for row in rows if row.gap is not None]
+        rates = zip((row for row, _ in gaps), system.scope.time_derivative(tuple(x for _, x in gaps)), strict=True)
+        size = 1 + sum(abs(x) for x in evaluate(system.scope.rates, state, fifty_digits()))
+        for row, rate in (*((row, row.velocity) for row in rows), *rates):
+            if abs(evaluate((rate,), state, fifty_digits())[0]) > DIFFERENCE_TOLERANCE * size:
+                return f"row {row.number} of '{row.tie}' opens"
+        return ""
+
+    return _at_a_state(system, "eliminated rows hold whatever the speeds", "50 digits", check)
+
+
+def real_state(system: System, rng: Random) -> State:
+    """Random values of all symbols, at 50 digits; parameters and times positive."""
+    arithmetic = fifty_digits()
+    symbols = system.symbols
+
+    def draw(low: int, high: int) -> Any:
+        return arithmetic.number(1) * rng.randint(low * 10**12, high * 10**12) / 10**12
+
+    state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
+    state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
+    state[symbols.t] = draw(0, 1)
+    return state
+
+
+def closed_state(system: System, rng: Random) -> tuple[State, str]:
+    """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
+    state = real_state(system, rng)
+    if all(row.identical for row in system.ties.rows):
+        return state, ""
+    try:
+        return state | generic_state(system.ties, rng), ""
+    except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant
+        return state, f" ({error.what})"
+
+
+def _at_a_state(system: System, name: str, how: str, check: Callable[[State], str]) -> Check:
+    """A check at the first random real state where everything has a value; `check` names what differs."""
+    rng = Random(7)
+    for _ in range(TRIES):
+        state, remark = closed_state(system, rng)
+        try:
+            wrong = check(state)
+        except (NoValue, ZeroDivisionError):
+            continue
+        return Check(name, not wrong, how, wrong and wrong + remark)
+    return Check(name, False, how, f"no state with values was found in {TRIES} tries")
+
+
+def twists(system: System) -> Check:
+    """Twists against central differences of the poses along the motion."""
+
+    def check(state: State) -> str:
+        arithmetic = fifty_digits()
+        h = arithmetic.number(1) / 10**15
+        after, before = (_moved(system, state, sign * h) for sign in (1, -1))
+        for link in system.motion.links:
+            R, p = link.pose.R, link.pose.p
+            flat = tuple(x for row in R for x in row) + tuple(p)
+            late, early = (evaluate(flat, values, arithmetic) for values in (after, before))
+            rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
+            here = evaluate(flat, state, arithmetic)
+            R_now = matrix_of((here[0:3], here[3:6], here[6:9]))
+            spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
+            velocity = apply(transposed(R_now), vector_of(rates[9:12]))
+            twist = evaluate((*link.twist.w, *link.twist.v), state, arithmetic)
+            pairs = zip(twist, (*spin, *velocity), strict=True)
+            if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in pairs):
+                return f"the twist of '{link.name}' is not the rate of its pose"
+        return ""
+
+    return _at_a_state(system, "twists are the rates of the poses", "differences at 50 digits", check)
+
+
+def _moved(system: System, state: State, h: Any) -> State:
+    """The state h later, to first order."""
+    arithmetic = fifty_digits()
+    rates = evaluate(system.scope.rates, state, arithmetic)
+    values = dict(state)
+    for q, rate in zip(system.scope.symbols.q, rates, strict=True):
+        values[q] = values[q] + h * rate
+    values[system.scope.symbols.t] = values[system.scope.symbols.t] + h
+    return values
+
+
+def free_bodies(system: System, assembly: Assembly) -> Check:
+    """Accelerations from the free bodies, which use neither B nor an energy."""
+
+    def check(state: State) -> str:
+        free = free_body_accelerations(system, state)
+        return _difference("a", free, accelerations_at(assembly, state), FLOAT_TOLERANCE)
+
+    return _at_a_state(system, "accelerations agree with those of the free bodies", "floating point", check)
+
+
+def friction(system: System) -> Check:
+    """Whatever rubs is braked: factor * v < 0 for a contact that pushes, v its sliding velocity."""
+
+    def check(state: State) -> str:
+        for name, factor, sliding in frictions(system):
+            mode = system.modes.get(name, CLOSED)
+            v = sliding if mode.sense is None else mode.sense
+            (power,) = evaluate((mode.push * factor * v,), state, fifty_digits())
+            if not power < 0:
+                return f"friction drives '{name}' on"
+        return ""
+
+    return _at_a_state(system, "friction takes power from what slides", "50 digits", check)
+
+
+def balance(system: System, assembly: Assembly) -> Iterable[Check]:
+    """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""
+    try:
+        reactions = reactions_of(system)
+    except DerivationError:
+        return
+
+    def check(state: State) -> str:
+        digits = fifty_digits()
+        a = [digits.number(1) * float(value) for value in accelerations_at(assembly, state)]
+        return imbalance(reactions, state | dict(zip(assembly.symbols.a, a, strict=True)), Random(7))
+
+    if reactions.components:
+        yield _at_a_state(system, "every body is in balance with its reactions", "floating point", check)
+
+
+def code(system: System, assembly: Assembly, rhs: RightHandSide) -> Check:
+    """The emitted code returns the symbols' numbers."""
+
+    def check(state: State) -> str:
+        symbols = assembly.symbols
+        x, p, inputs = (
+            [float(state[s]) for s in group]
+            for group in ((*symbols.q, *symbols.u), symbols.parameters.values(), symbols.inputs.values())
+        )
+        rates = [float(v) for v in evaluate(system.scope.rates, state, fifty_digits())]
+        dx = rhs(float(state[symbols.t]), x, p, inputs)
+        return _difference("dx", dx, np.concatenate([rates, accelerations_at(assembly, state)]), FLOAT_TOLERANCE)
+
+    return _at_a_state(system, f"the emitted code ({rhs.target}) returns the symbols' numbers", "floating point", check)
+
+
+def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
+    """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, by dense linear algebra.
+
+    Raises:
+        NoValue: M is singular at the state.
+    """
+    n, k = len(assembly.M), len(assembly.J)
+    entries = [x for row in assembly.M for x in row] + [x for row in assembly.J for x in row]
+    values = [float(v) for v in evaluate((*entries, *assembly.forcing, *assembly.gamma), state, fifty_digits())]
+    M = np.reshape(values[: n * n], (n, n))
+    J = np.reshape(values[n * n : n * n + k * n], (k, n))
+    right = np.array(values[n * n + k * n :]) * np.array([1] * n + [-1] * k)
+    if n == 0:
+        return np.zeros(0)
+    if scaled_condition(M) > SINGULAR:
+        raise NoValue("the mass matrix is singular")
+    if k == 0:
+        return np.linalg.solve(M, right)
+    bordered = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+    regular = independent(J, smallest=REDUNDANT)
+    return solution(bordered, right, regular=regular, smallest=REDUNDANT)[:n]
+
+
+def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:
+    """Which entry of two vectors differs, or ""."""
+    scale = 1 + max((abs(x) for x in b), default=0)
+    wrong = [i for i, (x, y) in enumerate(zip(a, b, strict=True)) if not abs(x - y) <= tolerance * scale]
+    return f"{name}[{wrong[0]}] is {a[wrong[0]]:.15g} against {b[wrong[0]]:.15g}" if wrong else ""
