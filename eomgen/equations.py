@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.certificate import Certificate, certify
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, reactions_program
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
@@ -21,7 +21,6 @@ from eomgen.mechanics.start import start_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
-from eomgen.model.values import numeric_parameters
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
@@ -171,7 +170,7 @@ class Equations:
     def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
         """(p0, x0) of the model, None where a value is missing, or the ties do not close at the start."""
         try:
-            p = np.array(list(numeric_parameters(self.model).values()), dtype=float)
+            p = parameter_vector(self.model)
         except MissingValues:
             p = None
         try:

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located
@@ -59,7 +60,7 @@ class Journey:
         if not has_phases(self.model):
             return None
         try:
-            return course_of(self.model, np.array(list(numeric_parameters(self.model).values()), dtype=float))
+            return course_of(self.model, parameter_vector(self.model))
         except MissingValues:
             return None
 
@@ -203,7 +204,7 @@ class Journey:
         Raises:
             RunFailed: it is not met.
         """
-        p = np.array(list(numeric_parameters(self.model).values()), dtype=float)
+        p = parameter_vector(self.model)
 
         def until(stage: Stage) -> Scalar:
             return _difference(Situation(stage.system), condition)

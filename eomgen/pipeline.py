@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.closure import gaps_of
@@ -20,7 +20,6 @@ from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
-from eomgen.model.values import numeric_parameters
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.course import modes_at_start
 from eomgen.simulation.independence import Independence
@@ -97,7 +96,7 @@ def simulated(
     tolerances: tuple[float, float] = (1e-9, 1e-9),
 ) -> Trajectory:
     """The motion by equations that are derived already; see `simulate`. The tolerances are (rtol, atol)."""
-    p = np.array(list(numeric_parameters(equations.model, parameters).values()), dtype=float)
+    p = parameter_vector(equations.model, parameters)
     if has_phases(equations.model):
         run = run_phases(
             equations.model, time=time, p=p, parameters=parameters, start=start, target=target,

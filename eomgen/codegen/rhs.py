@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,8 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Functions, Target
 from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.model.parts import Model
+from eomgen.model.values import numeric_parameters
 
 _said: set[str] = set()
 
@@ -132,3 +134,12 @@ def _say(line: str) -> None:
 def _wrong_length(what: str, names: tuple[str, ...], given: int) -> UsageError:
     listed = f": {', '.join(names)}" if names else ""
     return UsageError(f"{what} has {given} entries, not {len(names)}{listed}")
+
+
+def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -> np.ndarray:
+    """p: the value of every parameter, in the model's order.
+
+    Raises:
+        MissingValues: parameters without a value, all named.
+    """
+    return np.array(list(numeric_parameters(model, overrides).values()), dtype=float)

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.start import start_state
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
-from eomgen.model.values import numeric_parameters
 from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces, paths_of
 from eomgen.simulation.events import Crossing
 from eomgen.simulation.impact import Loose
@@ -184,7 +184,7 @@ def modes_at_start(model: Model) -> dict[str, Mode]:
     if not contacts_of(model):
         return {}
     try:
-        p = np.array(list(numeric_parameters(model).values()), dtype=float)
+        p = parameter_vector(model)
         course = course_of(model, p, "numpy")
         here = at_start(course, 0.0, None, None)
         gaps = course.loose.gaps(0.0, here.values) if here.configuration.open else {}

@@ -12,6 +12,7 @@ import numpy as np
 
 from eomgen import answers, pipeline
 from eomgen.answers import Answer
+from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.balance import balance_of
@@ -22,7 +23,6 @@ from eomgen.model.fields import Equation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
-from eomgen.model.values import numeric_parameters
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
@@ -86,7 +86,7 @@ def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Ans
 def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
     """({name: value}, why there are none, or None): what has no single value at the start is left out."""
     try:
-        p = np.array(list(numeric_parameters(equations.model).values()), dtype=float)
+        p = parameter_vector(equations.model)
         columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:
