@@ -16,7 +16,8 @@ import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed, UsageError
-from eomgen.report.plots import mathtext, plot_trajectory
+from eomgen.report.figures import mathtext
+from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.trajectory import Trajectory
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from eomgen.report.statements import Derivation, Formula, Prose, Statement
-from eomgen.report.text import formula_text, prose_text, side_text
+from eomgen.report.statements import Derivation, Formula, Grid, Prose, Statement
+from eomgen.report.text import cell_text, formula_text, prose_text, side_text
 from eomgen.symbolic.text import to_text
 
 name = "json"
@@ -55,6 +55,8 @@ def _statement(statement: Statement) -> dict[str, Any]:
         return {"kind": "prose", "text": prose_text(statement)}
     if isinstance(statement, Formula):
         return {"kind": "formula", "text": formula_text(statement)}
+    if isinstance(statement, Grid):
+        return {"kind": "grid", "head": list(statement.head), "rows": [list(map(cell_text, r)) for r in statement.rows]}
     rows = [
         {"symbol": side_text(row.symbol), "meaning": row.meaning, "unit": row.unit, "value": row.value}
         for row in statement.rows

@@ -13,6 +13,7 @@ from eomgen.report.statements import (
     Derivation,
     Entry,
     Formula,
+    Grid,
     Law,
     Name,
     Omitted,
@@ -23,6 +24,7 @@ from eomgen.report.statements import (
     Side,
     Statement,
     Table,
+    parts_of,
 )
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar
@@ -42,6 +44,7 @@ PREAMBLE = r"""\documentclass[fleqn]{article}
 \setlength{\LTleft}{0pt}
 \setlength{\LTright}{\fill}
 """
+WORDS = 60  # characters in a line of a column of words, and its width in mm
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
@@ -65,12 +68,8 @@ def setter_of(derivation: Derivation) -> Setter:
 
 def symbols_in(statement: Statement) -> list[Node]:
     """The symbols that stand in the formulas of a statement."""
-    if isinstance(statement, Formula):
-        parts: Sequence[object] = statement.sides
-    else:
-        parts = statement.pieces if isinstance(statement, Prose) else [row.symbol for row in statement.rows]
     found: list[Node] = []
-    for part in parts:
+    for part in parts_of(statement):
         found += _symbols(part)
     return [node for node in order(found) if node.op == "symbol"]
 
@@ -112,13 +111,13 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
             end = "" if isinstance(after, list) else "\n"
             blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + end)
         else:
-            blocks.append(_table(setter, group))
+            blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
     return blocks
 
 
-def grouped(statements: Sequence[Statement]) -> list[Prose | Table | list[Formula]]:
+def grouped(statements: Sequence[Statement]) -> list[Prose | Table | Grid | list[Formula]]:
     """The statements, formulas in a row taken together."""
-    groups: list[Prose | Table | list[Formula]] = []
+    groups: list[Prose | Table | Grid | list[Formula]] = []
     for statement in statements:
         if not isinstance(statement, Formula):
             groups.append(statement)
@@ -229,3 +228,18 @@ def _table(setter: Setter, table: Table) -> str:
         cells = (symbol, escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
         lines.append(" & ".join(cells[k] for k in kept) + r" \\")
     return "\n".join([*lines, r"\end{longtable}"])
+
+
+def _grid(setter: Setter, grid: Grid) -> str:
+    """A table of words and formulas that may go over pages; columns of long words are wrapped."""
+    alignment = "".join(f"p{{{WORDS}mm}}" if _is_wordy(grid, k) else "l" for k in range(len(grid.head)))
+    lines = [rf"\begin{{longtable}}{{@{{}}{alignment}@{{}}}}",
+             " & ".join(escaped(name) for name in grid.head) + r" \\ \hline \noalign{\vskip 3pt} \endhead"]  # fmt: skip
+    for row in grid.rows:
+        cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$" for cell in row)
+        lines.append(" & ".join(cells) + r" \\")
+    return "\n".join([*lines, r"\end{longtable}"])
+
+
+def _is_wordy(grid: Grid, column: int) -> bool:
+    return any(isinstance(cell, str) and len(cell) > WORDS for cell in (row[column] for row in grid.rows))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex
 from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Code, Derivation, Piece, Prose, Statement, Table
+from eomgen.report.statements import Code, Derivation, Grid, Piece, Prose, Statement, Table
 
 name = "markdown"
 
@@ -35,7 +35,7 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
         elif isinstance(group, Prose):
             blocks.append("".join(_piece(setter, piece) for piece in group.pieces))
         else:
-            blocks.append(_table(setter, group))
+            blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
     return blocks
 
 
@@ -59,4 +59,14 @@ def _table(setter: Setter, table: Table) -> str:
     for row in table.rows:
         cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
         lines.append("| " + " | ".join(cells[k] for k in kept) + " |")
+    return "\n".join(lines)
+
+
+def _grid(setter: Setter, grid: Grid) -> str:
+    """A table of words and formulas; a bar inside a formula would end its cell."""
+    lines = ["| " + " | ".join(map(escaped, grid.head)) + " |", "|" + "---|" * len(grid.head)]
+    for row in grid.rows:
+        cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
+                 for cell in row)  # fmt: skip
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
 
-from eomgen.report.statements import Entry, Formula, Meaning, Name, Partial, Prose, Rate, Statement, Step, Table
+from eomgen.report.statements import Entry, Meaning, Name, Partial, Rate, Statement, Step, Table, parts_of
 
 MEANINGS = {
     "T": ("kinetic energy, of the whole or of a body", "J"),
@@ -57,11 +57,8 @@ def notation_step(steps: Sequence[Step], taken: Container[str]) -> Step:
 
 def quantities(statement: Statement) -> Iterator[Name]:
     """The quantities that a statement names."""
-    if isinstance(statement, Formula):
-        parts: Sequence[object] = statement.sides
-    else:
-        parts = statement.pieces if isinstance(statement, Prose) else [row.symbol for row in statement.rows]
-    for part in parts:
+    part: object
+    for part in parts_of(statement):
         while isinstance(part, (Partial, Rate)):
             part = part.of
         if isinstance(part, Entry):

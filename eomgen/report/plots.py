@@ -2,41 +2,19 @@
 
 from __future__ import annotations
 
-import os
-import re
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from eomgen.errors import RunFailed, UsageError
+from eomgen.report.figures import draw, mathtext
 from eomgen.simulation.trajectory import Trajectory
 
-FORMATS = (".png", ".svg", ".pdf")
-GREEK = frozenset(
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
-    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
-)
 MOST_IN_LEGEND = 12
 MOST_REACTIONS = 10  # lines in one panel
 UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
 DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "tension": "-", "couple": "--", "drive": ":"}
-STYLE: dict[Any, Any] = {
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e6e6e6",
-    "grid.linewidth": 0.8,
-    "axes.edgecolor": "#808080",
-    "xtick.color": "#505050",
-    "ytick.color": "#505050",
-    "font.size": 10,
-    "mathtext.fontset": "cm",
-    "legend.frameon": False,
-    "svg.hashsalt": "eomgen",
-}
 
 
 def plot_trajectory(
@@ -53,19 +31,11 @@ def plot_trajectory(
         UsageError: another ending.
         RunFailed: the file cannot be written; what was there before is then still there.
     """
-    path = Path(path)
-    if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     groups = _by_unit(trajectory, units or {})
     reactions = _reactions_by_unit(trajectory)
     count = len(groups) + (trajectory.energy is not None) + len(reactions)
-    with rc_context(STYLE):
-        figure = Figure(figsize=(8, 1.0 + 2.1 * max(count, 1)), layout="constrained")
-        FigureCanvasAgg(figure)
+
+    def fill(figure: Any) -> None:
         panels = figure.subplots(max(count, 1), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (unit, names) in zip(panels, groups.items(), strict=False):
             _coordinates(panel, trajectory, names, unit)
@@ -76,21 +46,8 @@ def plot_trajectory(
         panels[-1].set_xlabel("$t$ [s]")
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
-        if title:
-            figure.suptitle(title.replace("$", r"\$"), fontsize=12, fontweight="bold", x=0.01, ha="left")
-        _save(figure, path)
 
-
-def mathtext(name: str) -> str:
-    r"""A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}."""
-    base, dots = name.rstrip("'"), len(name) - len(name.rstrip("'"))
-    head, tail = re.fullmatch(r"([^\W\d_]+|.)_*(.*)", base.strip("_") or "x", re.DOTALL).groups()  # type: ignore[union-attr]
-    letter = f"\\{head}" if head in GREEK else head if len(head) == 1 else f"\\mathrm{{{head}}}"
-    dotted = {0: letter, 1: f"\\dot{{{letter}}}", 2: f"\\ddot{{{letter}}}"}.get(dots, letter + "'" * dots)
-    below = tail.replace("_", r"\,")
-    if len(below) > 1 and not below.isdigit():
-        below = f"\\mathrm{{{below}}}"
-    return f"{dotted}_{{{below}}}" if below else dotted
+    draw(path, (8, 1.0 + 2.1 * max(count, 1)), fill, title=title)
 
 
 def _by_unit(trajectory: Trajectory, units: Mapping[str, str]) -> dict[str, list[str]]:
@@ -191,14 +148,3 @@ def _component(name: str) -> str:
     number = arguments.rstrip(")").partition(",")[2].strip()
     return " ".join(word for word in (head.removeprefix("reaction_").replace("_", " "), number) if word)
 
-
-def _save(figure: Any, path: Path) -> None:
-    """Draw aside and move into place."""
-    metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower(), {})
-    try:
-        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".eomgen-") as aside:
-            made = Path(aside) / path.name
-            figure.savefig(made, dpi=150, metadata=metadata)
-            os.replace(made, path)
-    except OSError as error:
-        raise RunFailed(f"the picture cannot be written: {error.strerror or error}", str(path)) from None

@@ -123,7 +123,34 @@ class Table:
         return tuple(k for k in range(4) if any(row[k] for row in cells))
 
 
-Statement = Prose | Formula | Table
+Cell = str | Side
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of any columns.
+
+    Args:
+        head: the names of the columns.
+        rows: words or formulas, one cell for each column.
+    """
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+Statement = Prose | Formula | Table | Grid
+
+
+def parts_of(statement: Statement) -> list[Piece | Side]:
+    """What stands in a statement: words, symbols, quantities, formulas."""
+    if isinstance(statement, Formula):
+        return list(statement.sides)
+    if isinstance(statement, Prose):
+        return list(statement.pieces)
+    if isinstance(statement, Table):
+        return [row.symbol for row in statement.rows]
+    return [cell for row in statement.rows for cell in row]
 
 
 @dataclass(frozen=True)

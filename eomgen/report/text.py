@@ -8,10 +8,12 @@ from typing import TypeGuard
 
 from eomgen.report.reading import without_cases
 from eomgen.report.statements import (
+    Cell,
     Code,
     Derivation,
     Entry,
     Formula,
+    Grid,
     Law,
     Meaning,
     Name,
@@ -62,7 +64,7 @@ def _statement_lines(statement: Statement) -> list[str]:
             head = broken(f"{formula_text(Formula(tuple(left)))} =", INDENT, WIDTH)
             return [*head, *(line for case in cases_text(last) for line in broken(case, 2 * INDENT, WIDTH))]
         return broken(formula_text(statement), INDENT, WIDTH)
-    return _table_lines(statement)
+    return _grid_lines(statement) if isinstance(statement, Grid) else _table_lines(statement)
 
 
 def prose_text(prose: Prose) -> str:
@@ -140,6 +142,25 @@ def _table_lines(table: Table) -> list[str]:
 
 def _cells(row: Meaning) -> tuple[str, str, str, str]:
     return side_text(row.symbol), row.meaning, row.unit, row.value
+
+
+def cell_text(cell: Cell) -> str:
+    """A cell of a grid."""
+    return cell if isinstance(cell, str) else side_text(cell)
+
+
+def _grid_lines(grid: Grid) -> list[str]:
+    """Columns as wide as what stands in them; where they do not fit beside one another, the last one is wrapped."""
+    rows = [grid.head, *(tuple(map(cell_text, row)) for row in grid.rows)]
+    *widths, last = (max(map(len, column)) for column in zip(*rows, strict=True))
+    most = max(30, WIDTH - len(INDENT) - sum(width + 2 for width in widths))
+    lines: list[str] = []
+    for *cells, end in rows:
+        for number, part in enumerate(textwrap.wrap(end, most) or [""] if last > most else [end]):
+            shown = ["" if number else cell for cell in cells]
+            line = "".join(f"{cell.ljust(width)}  " for cell, width in zip(shown, widths, strict=True))
+            lines.append(f"{INDENT}{line}{part}".rstrip())
+    return lines
 
 
 def broken(text: str, indent: str, width: int) -> list[str]:

@@ -1,0 +1,84 @@
+"""A picture in a file: its look, its formats, names as matplotlib sets them."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from eomgen.errors import RunFailed, UsageError
+
+FORMATS = (".png", ".svg", ".pdf")
+GREEK = frozenset(
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
+)
+STYLE: dict[Any, Any] = {
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.8,
+    "axes.edgecolor": "#808080",
+    "xtick.color": "#505050",
+    "ytick.color": "#505050",
+    "font.size": 10,
+    "mathtext.fontset": "cm",
+    "legend.frameon": False,
+    "svg.hashsalt": "eomgen",
+}
+
+
+def draw(path: str | Path, size: tuple[float, float], fill: Callable[[Any], None], *, title: str = "") -> None:
+    """Draw a picture into a PNG, SVG or PDF file.
+
+    Args:
+        path: where to; the ending says which.
+        size: width and height [inches].
+        fill: puts panels into the matplotlib figure.
+        title: above the picture, the model's name.
+    Raises:
+        UsageError: another ending.
+        RunFailed: the file cannot be written; what was there before is then still there.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in FORMATS:
+        raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=size, layout="constrained")
+        FigureCanvasAgg(figure)
+        fill(figure)
+        if title:
+            figure.suptitle(title.replace("$", r"\$"), fontsize=12, fontweight="bold", x=0.01, ha="left")
+        _save(figure, path)
+
+
+def mathtext(name: str) -> str:
+    r"""A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}."""
+    base, dots = name.rstrip("'"), len(name) - len(name.rstrip("'"))
+    head, tail = re.fullmatch(r"([^\W\d_]+|.)_*(.*)", base.strip("_") or "x", re.DOTALL).groups()  # type: ignore[union-attr]
+    letter = f"\\{head}" if head in GREEK else head if len(head) == 1 else f"\\mathrm{{{head}}}"
+    dotted = {0: letter, 1: f"\\dot{{{letter}}}", 2: f"\\ddot{{{letter}}}"}.get(dots, letter + "'" * dots)
+    below = tail.replace("_", r"\,")
+    if len(below) > 1 and not below.isdigit():
+        below = f"\\mathrm{{{below}}}"
+    return f"{dotted}_{{{below}}}" if below else dotted
+
+
+def _save(figure: Any, path: Path) -> None:
+    """Draw aside and move into place."""
+    metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower(), {})
+    try:
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".eomgen-") as aside:
+            made = Path(aside) / path.name
+            figure.savefig(made, dpi=150, metadata=metadata)
+            os.replace(made, path)
+    except OSError as error:
+        raise RunFailed(f"the picture cannot be written: {error.strerror or error}", str(path)) from None
