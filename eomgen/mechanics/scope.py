@@ -11,6 +11,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.model.parts import Coordinate, Model
+from eomgen.model.trusses import in_parts
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Graph, Node, Scalar
@@ -23,10 +24,11 @@ class Scope:
     """The symbols of a model and its kinematic equations.
 
     Args:
-        model: the model.
+        model: the model, its trusses taken apart.
         symbols: its symbols.
         N, nu: q' = N u + nu; N has nq rows of nu entries.
-        names: what each name of an expression stands for: parameters, q, u, `theta'`, `theta''`, inputs, t, pi.
+        names: what each name of an expression stands for: parameters, unknowns, q, u, `theta'`, `theta''`, inputs,
+            t, pi.
     """
 
     model: Model
@@ -53,17 +55,8 @@ class Scope:
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True))}
 
     def value(self, expression: Expression | None) -> Scalar:
-        """An expression of the model in the symbols (absent: 0).
-
-        Raises:
-            NotYet: an unknown stands in it.
-        """
-        if expression is None:
-            return 0
-        if self.model.unknowns and (asked := sorted(expression.names & self.model.unknowns.keys())):
-            raise NotYet(f"'{asked[0]}' is an unknown: solving for unknowns comes with a later version",
-                         f"unknowns.{asked[0]}")  # fmt: skip
-        return expression.evaluate(self.names)
+        """An expression of the model in the symbols (absent: 0)."""
+        return 0 if expression is None else expression.evaluate(self.names)
 
     def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
         """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""
@@ -99,6 +92,7 @@ def scope_of(model: Model) -> Scope:
     """
     if model.speeds:
         raise NotYet("declared speeds are not derived yet", "speeds", "use the rates of the coordinates")
+    model = in_parts(model)
     graph = Graph()
     t = graph.symbol("t")
     parameters = {name: graph.symbol(name) for name in model.parameters}
@@ -107,8 +101,9 @@ def scope_of(model: Model) -> Scope:
     u = tuple(graph.symbol(name + "'") for name in free)
     a = tuple(graph.symbol(name + "''") for name in free)
     inputs = {name: graph.symbol(name) for name in model.inputs}
-    symbols = Symbols(graph, t, parameters, inputs, q, u, a)
-    names: dict[str, Scalar] = {**parameters, **inputs, "t": t, "pi": graph.pi}
+    unknowns = {name: graph.symbol(name) for name in model.unknowns}
+    symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns)
+    names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, "t": t, "pi": graph.pi}
     names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
     N: list[tuple[Scalar, ...]] = []
     nu: list[Scalar] = []

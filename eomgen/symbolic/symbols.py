@@ -6,7 +6,7 @@ derivative for deriving.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from eomgen.symbolic.graph import Graph, Node
 
@@ -24,6 +24,7 @@ class Symbols:
         u: generalized speeds, nu, named `theta'` where u is a rate, else by the speed's name.
         a: accelerations u', nu, named `theta''` or `w1'`.
         lam: multipliers of the closing rows, k, named `lam(tie, row)`, row from 1.
+        unknowns: numbers that are asked, by name, in the model's order.
     """
 
     graph: Graph
@@ -34,3 +35,4 @@ class Symbols:
     u: tuple[Node, ...]
     a: tuple[Node, ...]
     lam: tuple[Node, ...] = ()
+    unknowns: dict[str, Node] = field(default_factory=dict)
