@@ -2,9 +2,11 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from scipy.integrate import dblquad, tplquad
 
+from eomgen.model import shapes
 from eomgen.model.shapes import (
     ALL,
     Box,
@@ -19,6 +21,7 @@ from eomgen.model.shapes import (
     Sphere,
     Triangle,
 )
+from eomgen.symbolic.graph import Graph, Node
 
 EXAMPLES = {
     "particle": {"mass": 3},
@@ -33,11 +36,32 @@ EXAMPLES = {
     "box": {"mass": 3, "size": [1, 2, 3]},
     "cone": {"mass": 3, "radius": "1/2", "height": 2},
     "ellipsoid": {"mass": 3, "semiaxes": [1, 2, 3]},
+    "annulus": {"mass": 3, "radius": 2, "inner": "1/2"},
+    "sector": {"mass": 3, "radius": 2, "opening": "2*pi/3"},
+    "arc": {"mass": 3, "radius": 2, "opening": "2*pi/3"},
+    "ellipse": {"mass": 3, "semiaxes": [2, 1]},
+    "hollow_sphere": {"mass": 3, "radius": 2, "inner": "1/2"},
+    "spherical_shell": {"mass": 3, "radius": 2},
+    "hemisphere": {"mass": 3, "radius": 2},
+    "hemispherical_shell": {"mass": 3, "radius": 2},
+    "tube": {"mass": 3, "radius": 2, "inner": "1/2", "length": 3},
+    "cylindrical_shell": {"mass": 3, "radius": 2, "length": 3},
+    "conical_shell": {"mass": 3, "radius": 2, "height": 3},
+    "frustum": {"mass": 3, "radius": 2, "top": 1, "height": 3},
+    "torus": {"mass": 3, "major": 2, "minor": "1/2"},
+    "pyramid": {"mass": 3, "width": 2, "depth": 1, "height": 3},
+    "prism": {"mass": 3, "vertices": [[0, 0], [3, 0], [0, 2]], "length": 4},
+    "tetrahedron": {"mass": 3, "vertices": [[0, 0, 0], [3, 0, 0], [1, 2, 0], [1, 1, 4]]},
 }
+PI = Graph().pi
 
 
 def value(expression):
     return expression.evaluate({"pi": 3.141592653589793})
+
+
+def exactly(expression):
+    return expression.evaluate({"pi": PI})
 
 
 def properties(shape):
@@ -60,10 +84,11 @@ SECOND = (
 def test_a_shape_is_exact_and_has_the_points_of_its_names(cls):
     """No float comes in; `points` gives what `point_names` promises; `center` is the mass centre."""
     shape = cls(**EXAMPLES[cls.kind])
-    found, points = properties(shape), shape.points(value)
+    found, points = shape.mass_properties(exactly), shape.points(exactly)
     assert set(points) == set(shape.point_names)
     assert points["center"] == found.com and points["origin"] == (0, 0, 0)
-    assert all(isinstance(x, int | Fraction) for row in (*found.I, found.com, (found.m,)) for x in row)
+    entries = [x for row in (*found.I, found.com, (found.m, shape.measure(exactly))) for x in row]
+    assert all(isinstance(x, int | Fraction | Node) for x in entries)
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
@@ -136,3 +161,123 @@ def test_an_ellipsoid_with_equal_axes_is_a_sphere_and_a_ring_has_all_its_mass_ou
     """2/5 m r^2 both ways; I_zz of the hoop is m r^2."""
     assert properties(Ellipsoid(mass=3, semiaxes=["1/2"] * 3)) == properties(Sphere(**EXAMPLES["sphere"]))
     assert properties(Ring(**EXAMPLES["ring"])).I[2][2] == Fraction(3, 4)
+
+
+# -- every shape against an integral over what it is made of -----------------------------------------
+
+
+def turned_about_z(profile):
+    """The solid between z0 and z1 whose section at z is the ring from r0(z) to r1(z), as midpoints with volumes."""
+    z0, z1, inner, outer = profile
+    n = 400
+    z = z0 + (z1 - z0) * (np.arange(n) + 0.5) / n
+    r0, r1 = np.vectorize(inner)(z), np.vectorize(outer)(z)
+    share = (np.arange(n) + 0.5) / n
+    squares = r0[:, None] ** 2 + (r1**2 - r0**2)[:, None] * share  # equal areas in r^2
+    volume = np.pi * (r1**2 - r0**2)[:, None] * (z1 - z0) / n / n * np.ones_like(squares)
+    return around(np.sqrt(squares), z[:, None] * np.ones_like(squares), volume)
+
+
+def around(r, z, weight):
+    """Rings of the radius r at the height z: second moments of a whole turn."""
+    m = weight.sum()
+    return m, (0, 0, (weight * z).sum() / m), np.diag(
+        [(weight * r * r).sum() / 2, (weight * r * r).sum() / 2, (weight * z * z).sum()]
+    )
+
+
+def mantle(z0, z1, radius):
+    """The surface whose radius at the height z is given."""
+    n = 4000
+    edges = z0 + (z1 - z0) * np.arange(n + 1) / n
+    r = np.vectorize(radius)(edges)
+    slant = np.hypot(np.diff(edges), np.diff(r))
+    middle, z = (r[1:] + r[:-1]) / 2, (edges[1:] + edges[:-1]) / 2
+    return around(middle, z, 2 * np.pi * middle * slant)
+
+
+def fan(radius, opening, thick):
+    """A sector, or its arc, about the centre of the circle; +x halves the opening."""
+    n = 1500
+    angle = opening * ((np.arange(n) + 0.5) / n - 0.5)
+    r = radius * np.sqrt((np.arange(n) + 0.5) / n)[:, None] if thick else np.array([[radius]])
+    x, y = r * np.cos(angle), r * np.sin(angle)
+    weight = np.full(x.shape, (opening * radius**2 / 2 if thick else opening * radius) / x.size)
+    second = np.diag([(weight * x * x).sum(), (weight * y * y).sum(), 0])
+    return weight.sum(), ((weight * x).sum() / weight.sum(), 0, 0), second
+
+
+def corners(vertices):
+    """A solid simplex, by the moments of its Duffy points."""
+    n = 60
+    t, w = np.polynomial.legendre.leggauss(n)
+    t, w = (t + 1) / 2, w / 2
+    a, b, c = np.meshgrid(t, t, t, indexing="ij")
+    weight = np.einsum("i,j,k->ijk", w * (1 - t) ** 2, w * (1 - t), w)
+    shares = np.stack([(1 - a) * (1 - b) * (1 - c), a, (1 - a) * b, (1 - a) * (1 - b) * c])
+    vertices = np.array(vertices, dtype=float)
+    p = np.einsum("vijk,vd->dijk", shares, vertices)
+    weight = weight * abs(np.linalg.det(vertices[1:] - vertices[0]))
+    m = weight.sum()
+    return m, tuple((weight * x).sum() / m for x in p), np.array([[(weight * x * y).sum() for y in p] for x in p])
+
+
+def block(width, depth, z0, z1, share):
+    """Rectangles of which the sides are a share of the whole at the height z."""
+    n = 4000
+    z = z0 + (z1 - z0) * (np.arange(n) + 0.5) / n
+    k = np.vectorize(share)(z)
+    area = width * depth * k * k * (z1 - z0) / n
+    m = area.sum()
+    x = (area * (width * k) ** 2 / 12).sum()
+    return m, (0, 0, (area * z).sum() / m), np.diag([x, (area * (depth * k) ** 2 / 12).sum(), (area * z * z).sum()])
+
+
+INTEGRALS = {
+    "disc": lambda: turned_about_z((-1e-6, 1e-6, lambda z: 0, lambda z: 0.5)),
+    "annulus": lambda: turned_about_z((-1e-6, 1e-6, lambda z: 0.5, lambda z: 2)),
+    "sector": lambda: fan(2, 2 * np.pi / 3, True),
+    "arc": lambda: fan(2, 2 * np.pi / 3, False),
+    "hollow_sphere": lambda: turned_about_z(
+        (-2, 2, lambda z: max(0, 0.25 - z * z) ** 0.5, lambda z: max(0, 4 - z * z) ** 0.5)
+    ),
+    "spherical_shell": lambda: mantle(-2, 2, lambda z: max(0, 4 - z * z) ** 0.5),
+    "hemisphere": lambda: turned_about_z((0, 2, lambda z: 0, lambda z: max(0, 4 - z * z) ** 0.5)),
+    "hemispherical_shell": lambda: mantle(0, 2, lambda z: max(0, 4 - z * z) ** 0.5),
+    "tube": lambda: turned_about_z((-1.5, 1.5, lambda z: 0.5, lambda z: 2)),
+    "cylindrical_shell": lambda: mantle(-1.5, 1.5, lambda z: 2),
+    "conical_shell": lambda: mantle(-1, 2, lambda z: 2 * (2 - z) / 3),
+    "frustum": lambda: turned_about_z((0, 3, lambda z: 0, lambda z: 2 - z / 3)),
+    "torus": lambda: turned_about_z(
+        (-0.5, 0.5, lambda z: 2 - max(0, 0.25 - z * z) ** 0.5, lambda z: 2 + max(0, 0.25 - z * z) ** 0.5)
+    ),
+    "pyramid": lambda: block(2, 1, -0.75, 2.25, lambda z: (2.25 - z) / 3),
+    "box": lambda: block(1, 2, -1.5, 1.5, lambda z: 1),
+    "tetrahedron": lambda: corners([[0, 0, 0], [3, 0, 0], [1, 2, 0], [1, 1, 4]]),
+}
+
+
+@pytest.mark.parametrize("kind", INTEGRALS)
+def test_a_shape_agrees_with_the_integral_over_what_it_is_made_of(kind):
+    """Measure, mass centre and I = (m / measure) (tr P 1 - P) about it, from sums over small pieces of its own."""
+    cls = next(cls for cls in ALL if cls.kind == kind)
+    shape = cls(**EXAMPLES[kind])
+    found, (measure, center, second) = properties(shape), INTEGRALS[kind]()
+    flat = {"disc": 2e-6, "annulus": 2e-6}.get(kind, 1.0)  # thickness
+    assert shape.measure(lambda e: float(value(e))) == pytest.approx(measure / flat, rel=1e-3)
+    assert [float(x) for x in found.com] == pytest.approx(list(center), abs=1e-3)
+    P = 3 / measure * second - 3 * np.outer(center, center)
+    expected = np.trace(P) * np.eye(3) - P
+    assert np.array(found.I, dtype=float) == pytest.approx(expected, abs=5e-3)
+
+
+def test_what_no_integral_stands_for_follows_from_another_shape():
+    """An ellipse is a stretched disc, a prism a polygon and a rod along z, a ring an arc of a whole turn."""
+    ellipse, disc = properties(shapes.Ellipse(mass=3, semiaxes=[2, 2])), properties(Disc(mass=3, radius=2))
+    assert ellipse == disc
+    stretched = properties(shapes.Ellipse(**EXAMPLES["ellipse"])).I
+    assert (stretched[0][0], stretched[1][1]) == (Fraction(3, 4), 3)  # m b^2/4, m a^2/4
+    prism, plate = properties(shapes.Prism(**EXAMPLES["prism"])), properties(Triangle(mass=3, width=3, height=2))
+    assert [prism.I[k][k] - plate.I[k][k] for k in range(3)] == [4, 4, 0] and prism.com == plate.com  # m l^2/12
+    whole, ring = shapes.Arc(mass=3, radius=2, opening="2*pi"), properties(Ring(mass=3, radius=2))
+    assert whole.mass_properties(exactly) == ring

@@ -10,22 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from eomgen.errors import ModelError, NotYet
+from eomgen.errors import ModelError
 from eomgen.mechanics.kinematics import Link, Motion, spin_between
+from eomgen.mechanics.made_of import made_of
 from eomgen.mechanics.scope import Scope
+from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
 
 HALF = Fraction(1, 2)
-
-
-@dataclass(frozen=True)
-class MassProperties:
-    """m [kg], mass centre com [m] and inertia I about it [kg m^2], body axes."""
-
-    m: Scalar
-    com: Vector
-    I: Matrix
 
 
 def mass_properties(scope: Scope, body: str) -> MassProperties:
@@ -36,10 +29,9 @@ def mass_properties(scope: Scope, body: str) -> MassProperties:
     """
     part = scope.model.bodies[body]
     if part.parts is not None:
-        raise NotYet("bodies made of parts are not derived yet", f"bodies.{body}.parts")
+        return made_of(scope, body).whole
     if part.shape is not None:
-        own = part.shape.mass_properties(scope.value)
-        return MassProperties(own.m, own.com, own.I)
+        return part.shape.mass_properties(scope.value)
     m = scope.value(part.mass)
     return MassProperties(m, scope.vector(part.center), _inertia(scope, body, part.inertia))
 

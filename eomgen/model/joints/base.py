@@ -14,8 +14,8 @@ from eomgen.model.containers import ListRule
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.spatial import Pose, Vector, cross, dot
+from eomgen.symbolic.functions import cos, over, sin, sqrt
+from eomgen.symbolic.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation
 
 Value = Callable[[Expression], Any]
 Scalars = tuple[Any, ...]
@@ -130,6 +130,16 @@ def unit(axis: Vector) -> Vector:
         return axis
     length = sqrt(square)
     return tuple(over(a, length) for a in axis)
+
+
+def oriented(turns: tuple[Turned, ...] | None, value: Value) -> Matrix:
+    """The rotation that turns one after the other make, each about the axes that the one before left."""
+    R = IDENTITY
+    for turn in turns or ():
+        axis = unit(vector(turn.axis, value, Z))
+        angle = value(turn.angle)
+        R = product(R, rotation(axis, cos(angle), sin(angle)))
+    return R
 
 
 def across(n: Vector) -> tuple[Vector, Vector]:

@@ -1,17 +1,21 @@
 """What every shape gives: its points and its mass properties, over any scalar."""
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Mass
 from eomgen.model.part import Part
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.spatial import Matrix, Vector
+from eomgen.symbolic.expressions import Expression, parse
+from eomgen.symbolic.spatial import Matrix, Vector, matrix_of
 
+Line = tuple[tuple[float, float], ...]
 Value = Callable[[Expression], Any]
 """What an expression is worth: the arithmetic in which a law runs."""
+PI = parse("pi")
+PI = parse("pi")
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class Shape(Part, ABC):
     """A homogeneous body of a simple form. Its mass may only be left out in a piece of a composite body."""
 
     kind: ClassVar[str]
+    dimension: ClassVar[int]  # what its mass is spread over: 0 a point, 1 a line, 2 a surface, 3 a volume
     mass: Mass | None = None
 
     @abstractmethod
@@ -35,8 +40,24 @@ class Shape(Part, ABC):
         """The named points of the shape, body axes [m]: `origin`, `center`, and its own."""
 
     @abstractmethod
+    def measure(self, value: Value) -> Any:
+        """Its length [m], area [m^2] or volume [m^3], as its dimension says."""
+
+    @abstractmethod
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        """Mass centre and inertia of the shape if its mass is m."""
+
     def mass_properties(self, value: Value) -> MassProperties:
         """Mass, mass centre and inertia of the shape."""
+        return self.of_mass(self.mass_of(value), value)
+
+    def impossible(self, value: Value) -> str:
+        """Why no such body exists, "" where one does; the values are numbers."""
+        return ""
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        """What a picture in the plane shows of it: lines from point to point, body axes; the values are numbers."""
+        return ()
 
     def mass_of(self, value: Value) -> Any:
         return 0 if self.mass is None else value(self.mass)
@@ -52,3 +73,29 @@ def diagonal(xx: Any, yy: Any, zz: Any) -> Matrix:
     return ((xx, 0, 0), (0, yy, 0), (0, 0, zz))
 
 
+def tensor(second: Sequence[Sequence[Any]]) -> Matrix:
+    """The inertia tensor from the second moments P_ij, the integrals of x_i x_j dm: I = tr(P) 1 - P."""
+    trace = second[0][0] + second[1][1] + second[2][2]
+    return matrix_of(((trace if i == j else 0) - second[i][j] for j in range(3)) for i in range(3))
+
+
+def not_inside(inner: Any, outer: Any) -> str:
+    """What is wrong with a hollow body's inner radius."""
+    return "" if inner < outer else "'inner' is not smaller than 'radius'"
+
+
+def more_than_a_turn(opening: float) -> str:
+    """What is wrong with the angle of a sector or an arc."""
+    return "" if opening <= 2 * math.pi * (1 + 1e-12) else "'opening' is more than a whole turn"
+
+
+def circle(radius: float, begin: float = 0.0, end: float = 2 * math.pi) -> Line:
+    """A circle about the origin, or its arc from one angle to another, as a line of many pieces."""
+    turns = (begin + (end - begin) * k / 72 for k in range(73))
+    return tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
+
+
+def box_around(width: float, height: float) -> Line:
+    """A rectangle about the origin, as a closed line."""
+    x, y = width / 2, height / 2
+    return ((-x, -y), (x, -y), (x, y), (-x, y), (-x, -y))

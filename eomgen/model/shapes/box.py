@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -14,12 +14,20 @@ class Box(Shape):
     """A solid block about its centre (the origin), size = [x, y, z]: I_xx = m (y^2 + z^2) / 12, and so on round."""
 
     kind: ClassVar[str] = "box"
+    dimension: ClassVar[int] = 3
     size: Size
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m = self.mass_of(value)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        width, height, _ = self.size
+        return (box_around(value(width), value(height)),)
+
+    def measure(self, value: Value) -> Any:
+        x, y, z = map(value, self.size)
+        return x * y * z
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
         x, y, z = (Fraction(1, 12) * m * value(edge) * value(edge) for edge in self.size)
         return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))

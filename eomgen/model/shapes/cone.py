@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -17,13 +17,17 @@ class Cone(Shape):
     """
 
     kind: ClassVar[str] = "cone"
+    dimension: ClassVar[int] = 3
     radius: Length
     height: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, r, h = self.mass_of(value), value(self.radius), value(self.height)
+    def measure(self, value: Value) -> Any:
+        return Fraction(1, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.height)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, h = value(self.radius), value(self.height)
         across = Fraction(3, 20) * m * r * r + Fraction(3, 80) * m * h * h
         return MassProperties(m, ZERO, diagonal(across, across, Fraction(3, 10) * m * r * r))

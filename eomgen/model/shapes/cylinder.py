@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -17,13 +17,20 @@ class Cylinder(Shape):
     """
 
     kind: ClassVar[str] = "cylinder"
+    dimension: ClassVar[int] = 3
     radius: Length
     length: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, r, length = self.mass_of(value), value(self.radius), value(self.length)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return (circle(value(self.radius)),)
+
+    def measure(self, value: Value) -> Any:
+        return value(PI) * value(self.radius) * value(self.radius) * value(self.length)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, length = value(self.radius), value(self.length)
         across = Fraction(1, 4) * m * r * r + Fraction(1, 12) * m * length * length
         return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -14,13 +14,21 @@ class Disc(Shape):
     """A thin homogeneous disc about its centre (the origin), axis z: I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4."""
 
     kind: ClassVar[str] = "disc"
+    dimension: ClassVar[int] = 2
     radius: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, r = self.mass_of(value), value(self.radius)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        r = value(self.radius)
+        return circle(r), ((0.0, 0.0), (r, 0.0))
+
+    def measure(self, value: Value) -> Any:
+        return value(PI) * value(self.radius) * value(self.radius)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r = value(self.radius)
         square = m * r * r
         quarter = Fraction(1, 4) * square
         return MassProperties(m, ZERO, diagonal(quarter, quarter, Fraction(1, 2) * square))

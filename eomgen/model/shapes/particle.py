@@ -1,7 +1,7 @@
 """Particle: a mass without size."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
@@ -12,9 +12,13 @@ class Particle(Shape):
     """A point mass at the origin: no inertia of its own."""
 
     kind: ClassVar[str] = "particle"
+    dimension: ClassVar[int] = 0
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        return MassProperties(self.mass_of(value), ZERO, diagonal(0, 0, 0))
+    def measure(self, value: Value) -> Any:
+        return 0
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        return MassProperties(m, ZERO, diagonal(0, 0, 0))

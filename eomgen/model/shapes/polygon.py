@@ -6,9 +6,9 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
-from eomgen.model.shapes.base import MassProperties, Shape, Value
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
 from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import over
+from eomgen.symbolic.functions import function, over
 from eomgen.symbolic.spatial import ZERO, Vector
 
 Vertices = Annotated[
@@ -25,13 +25,27 @@ class Polygon(Shape):
     """
 
     kind: ClassVar[str] = "polygon"
+    dimension: ClassVar[int] = 2
     vertices: Vertices
 
     def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.mass_properties(value).com}
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m = self.mass_of(value)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        corners = tuple((value(x), value(y)) for x, y in self.vertices)
+        return ((*corners, corners[0]),)
+
+    def impossible(self, value: Value) -> str:
+        corners = [(value(x), value(y)) for x, y in self.vertices]
+        if crossing(corners):
+            return "its edges cross one another"
+        return "" if self.measure(value) else "it has no area"
+
+    def measure(self, value: Value) -> Any:
+        corners = [(value(x), value(y)) for x, y in self.vertices]
+        return Fraction(1, 2) * function("abs", _edge_sums(corners)[0])
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
         corners = [(value(x), value(y)) for x, y in self.vertices]
         double_area, cx, cy, xx, yy, xy = _edge_sums(corners)
         x, y = over(cx, 3 * double_area), over(cy, 3 * double_area)
@@ -53,3 +67,19 @@ def _edge_sums(corners: list[tuple[Any, Any]]) -> tuple[Any, ...]:
         )  # fmt: skip
         sums = [total + term for total, term in zip(sums, terms, strict=True)]
     return tuple(sums)
+
+
+def crossing(corners: list[tuple[Any, Any]]) -> bool:
+    """Whether two edges cross; that they touch, as along a cut to a hole, does no harm. The corners are numbers."""
+    edges = list(zip(corners, corners[1:] + corners[:1], strict=True))
+    return any(_cross(*a, *b) for i, a in enumerate(edges) for b in edges[i + 1 :])
+
+
+def _cross(a: Any, b: Any, c: Any, d: Any) -> bool:
+    """Whether the segments a b and c d cross inside both."""
+    return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0
+
+
+def _turn(a: Any, b: Any, c: Any) -> Any:
+    """Positive where c is on the left of the way from a to b: (b - a) x (c - b)."""
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])

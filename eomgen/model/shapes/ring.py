@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -14,12 +14,19 @@ class Ring(Shape):
     """A thin homogeneous hoop about its centre (the origin), axis z: I_zz = m r^2, I_xx = I_yy = m r^2 / 2."""
 
     kind: ClassVar[str] = "ring"
+    dimension: ClassVar[int] = 1
     radius: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, r = self.mass_of(value), value(self.radius)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return (circle(value(self.radius)),)
+
+    def measure(self, value: Value) -> Any:
+        return 2 * value(PI) * value(self.radius)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r = value(self.radius)
         square = m * r * r
         return MassProperties(m, ZERO, diagonal(Fraction(1, 2) * square, Fraction(1, 2) * square, square))

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -14,12 +14,20 @@ class Sphere(Shape):
     """A solid homogeneous ball about its centre (the origin): I = 2 m r^2 / 5 about every axis."""
 
     kind: ClassVar[str] = "sphere"
+    dimension: ClassVar[int] = 3
     radius: Length
 
     def points(self, value: Value) -> dict[str, Vector]:
         return {"origin": ZERO, "center": ZERO}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, r = self.mass_of(value), value(self.radius)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        r = value(self.radius)
+        return circle(r), ((0.0, 0.0), (r, 0.0))
+
+    def measure(self, value: Value) -> Any:
+        return Fraction(4, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.radius)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r = value(self.radius)
         square = Fraction(2, 5) * m * r * r
         return MassProperties(m, ZERO, diagonal(square, square, square))

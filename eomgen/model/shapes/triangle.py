@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import MassProperties, Shape, Value
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
 from eomgen.symbolic.spatial import ZERO, Vector
 
 
@@ -17,6 +17,7 @@ class Triangle(Shape):
     """
 
     kind: ClassVar[str] = "triangle"
+    dimension: ClassVar[int] = 2
     width: Length
     height: Length
 
@@ -24,8 +25,15 @@ class Triangle(Shape):
         third = Fraction(1, 3)
         return {"origin": ZERO, "center": (third * value(self.width), third * value(self.height), 0)}
 
-    def mass_properties(self, value: Value) -> MassProperties:
-        m, w, h = self.mass_of(value), value(self.width), value(self.height)
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        w, h = value(self.width), value(self.height)
+        return (((0.0, 0.0), (w, 0.0), (0.0, h), (0.0, 0.0)),)
+
+    def measure(self, value: Value) -> Any:
+        return Fraction(1, 2) * value(self.width) * value(self.height)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        w, h = value(self.width), value(self.height)
         xx, yy, xy = Fraction(1, 18) * m * h * h, Fraction(1, 18) * m * w * w, Fraction(1, 36) * m * w * h
         center = (Fraction(1, 3) * w, Fraction(1, 3) * h, 0)
         return MassProperties(m, center, ((xx, xy, 0), (xy, yy, 0), (0, 0, xx + yy)))

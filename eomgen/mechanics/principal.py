@@ -1,0 +1,304 @@
+"""Inertia tensor -> principal moments and axes, exact wherever they have a closed form.
+
+    det(I - J 1) = 0,  R I R^T = diag(J_1, J_2, J_3):  the rows of R are the principal axes, right-handed
+
+A tensor with two products that vanish splits: its moments are J_kk and, with D^2 = (a - b)^2 + 4 p^2, (a + b -+ D)/2;
+the axis of the larger one has the components sqrt((D + a - b) / 2D) and +- sqrt((D - a + b) / 2D). Else the
+characteristic polynomial is split into factors; where it has none, its three real roots are
+
+    J = q + 2 p cos((f + 2 pi k) / 3),  q = tr(I) / 3,  p^2 = tr((I - q 1)^2) / 6,  cos f = det(I - q 1) / (2 p^3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, cmp_to_key
+
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.scope import Scope
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate, order
+from eomgen.symbolic.functions import cos, function, over, sqrt
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import common_factor, simplest
+from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.solving import roots, vanishes
+from eomgen.symbolic.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
+from eomgen.symbolic.text import text_size
+
+WORK = 4_000  # products of terms for making one formula short
+LONGEST = 3_000  # characters of a tensor whose characteristic polynomial may have factors
+HALF = Fraction(1, 2)
+Moments = tuple[Scalar, Scalar, Scalar]
+
+
+@dataclass(frozen=True)
+class Principal:
+    """The principal moments and axes of a tensor.
+
+    Args:
+        moments: ascending where `sorted`, [kg m^2].
+        axes: the rows of R, unit vectors, right-handed; None where they have no closed form.
+        sorted: whether the order of the moments is known.
+        equal: pairs (k, l) of moments that are equal: every axis in their plane is principal.
+    """
+
+    moments: Moments
+    axes: Matrix | None
+    sorted: bool
+    equal: tuple[tuple[int, int], ...]
+
+
+def principal_moments(I: Matrix, scope: Scope) -> Moments:
+    """The principal moments, ascending; by min and max where their order depends on the values of the symbols."""
+    tensor = _Tensor(I, scope)
+    found = tensor.moments
+    ascending = _ascending(tensor)
+    if ascending is not None:
+        return vector_of(found[k] for k in ascending)
+    for k in range(3):
+        signs = {tensor.larger(k, n) for n in range(3) if n != k}
+        one, other = (found[n] for n in range(3) if n != k)
+        pair = function("min", one, other), function("max", one, other)
+        if signs <= {0, 1}:
+            return (*pair, found[k])
+        if signs <= {0, -1}:
+            return (found[k], *pair)
+    least, most = (function(name, function(name, found[0], found[1]), found[2]) for name in ("min", "max"))
+    return least, found[0] + found[1] + found[2] - least - most, most
+
+
+def principal_of(I: Matrix, scope: Scope) -> Principal:
+    """The principal moments with their axes."""
+    tensor = _Tensor(I, scope)
+    ascending = _ascending(tensor)
+    moments = tensor.moments if ascending is None else vector_of(tensor.moments[k] for k in ascending)
+    pairs = tuple((k, n) for k, n in ((0, 1), (1, 2), (0, 2)) if vanishes(moments[k] - moments[n]))
+    return Principal(moments, tensor.axes(moments, pairs), ascending is not None, pairs)
+
+
+@dataclass(frozen=True)
+class _Tensor:
+    """A symmetric tensor over the scalars of a scope."""
+
+    given: Matrix
+    scope: Scope
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        return positive_parameters(self.scope)
+
+    def short(self, x: Scalar) -> Scalar:
+        return short_form(x, self.positive)
+
+    @cached_property
+    def tensor(self) -> Matrix:
+        """The tensor in short form, what vanishes as 0."""
+        return matrix_of((0 if vanishes(x) else self.short(x) for x in row) for row in self.given)
+
+    @property
+    def linked(self) -> list[tuple[int, int]]:
+        """The pairs of axes whose product of inertia does not vanish."""
+        return [(i, j) for i, j in ((0, 1), (1, 2), (0, 2)) if not is_zero(self.tensor[i][j])]
+
+    @cached_property
+    def moments(self) -> Moments:
+        """The principal moments, in no order."""
+        I = self.tensor
+        if not self.linked:
+            return I[0][0], I[1][1], I[2][2]
+        if len(self.linked) == 1:
+            ((i, j),) = self.linked
+            return (I[3 - i - j][3 - i - j], *self._halves(I[i][i] + I[j][j], self._spread))
+        return self._cubic(I)
+
+    @cached_property
+    def _spread(self) -> Scalar:
+        """D, the difference of the two moments in the plane of the one pair that is linked."""
+        ((i, j),) = self.linked
+        across = self.tensor[i][i] - self.tensor[j][j]
+        return self.short(sqrt(self.short(across * across + 4 * self.tensor[i][j] * self.tensor[i][j])))
+
+    def _halves(self, total: Scalar, spread: Scalar) -> tuple[Scalar, Scalar]:
+        return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
+
+    def _cubic(self, I: Matrix) -> Moments:
+        """The roots of J^3 - tr J^2 + minors J - det."""
+        if sum(text_size(x) for row in I for x in row) > LONGEST:
+            return self._trigonometric(I, lambda x: x)
+        trace = self.short(I[0][0] + I[1][1] + I[2][2])
+        minors = self.short(sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2))))
+        determinant = self.short(dot(I[0], cross(I[1], I[2])))
+        J = self.scope.graph.symbol("J of the characteristic equation")
+        found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.positive)
+        if len(found) >= 2:
+            first, second = found[:2]
+            return first, second, self.short(trace - first - second)
+        if found:
+            total = trace - found[0]
+            square = self.short(total * total - 4 * (minors - found[0] * total))
+            return (found[0], *self._halves(total, self.short(sqrt(square))))
+        return self._trigonometric(I, self.short)
+
+    def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> Moments:
+        q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
+        A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
+        p = sqrt(short(over(sum(x * x for row in A for x in row), 6)))
+        turn = over(function("acos", over(short(dot(A[0], cross(A[1], A[2]))), 2 * p * p * p)), 3)
+        third = over(2 * self.scope.graph.pi, 3)
+        return q + 2 * p * cos(turn + third), q + 2 * p * cos(turn - third), q + 2 * p * cos(turn)
+
+    def larger(self, i: int, j: int) -> int | None:
+        """The sign of moment i - moment j, where that is known: by its terms, or as both are made.
+
+        The two of a pair of axes come as the smaller and the larger one; of a thin plate J_z = J_x + J_y.
+        """
+        moments = self.moments
+        if len(self.linked) == 1 and {i, j} == {1, 2}:
+            return i - j
+        if i != j:
+            rest = moments[3 - i - j]
+            for large, small, sign in ((moments[i], moments[j], 1), (moments[j], moments[i], -1)):
+                if vanishes(large - small - rest):
+                    return sign
+        return self.sign(moments[i] - moments[j])
+
+    def sign(self, x: Scalar) -> int | None:
+        """The sign of x, where all its terms have it, or where it is a constant times positive symbols."""
+        known = sign_of_terms(x, self.positive)
+        if known is not None:
+            return known
+        _, product = common_factor((self.short(x),))
+        rest = self.short(over(x, product))
+        if symbols_of((rest,)) or sign_of_terms(product, self.positive) != 1:
+            return None
+        (number,) = evaluate((rest,), {}, FLOAT)
+        return 1 if number > 0 else -1
+
+    # -- axes ---------------------------------------------------------------------------------------
+
+    def axes(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
+        """The rows of R for the moments in this order; of equal moments one choice of many. None: no closed form."""
+        if len(equal) == 3:
+            return IDENTITY
+        if len(self.linked) == 3 or len(self.linked) == 2:
+            return self._by_rows(moments, equal)
+        known = list(zip(self.moments, self._in_plane(), strict=True))
+        rows = []
+        for moment in moments[:2]:
+            k = next(k for k, (other, _) in enumerate(known) if other is moment or other == moment)
+            rows.append(known.pop(k)[1])
+        return self._right_handed(*rows)
+
+    def _in_plane(self) -> Matrix:
+        """An axis for each of the moments where at most one pair of axes is linked."""
+        if not self.linked:
+            return IDENTITY
+        ((i, j),) = self.linked
+        a, b, product, spread = self.tensor[i][i], self.tensor[j][j], self.tensor[i][j], self._spread
+        sine, cosine = (self.short(sqrt(over(spread + side, 2 * spread))) for side in (b - a, a - b))
+        sign = self._sign(product)
+        larger: list[Scalar] = [0, 0, 0]
+        smaller: list[Scalar] = [0, 0, 0]
+        larger[i], larger[j] = cosine, self.short(sign * sine)
+        smaller[i], smaller[j] = sine, self.short(-sign * cosine)
+        return IDENTITY[3 - i - j], vector_of(smaller), vector_of(larger)
+
+    def _sign(self, x: Scalar) -> Scalar:
+        """The sign of what does not vanish, as a formula where it is not known."""
+        known = self.sign(x)
+        numbers = None if known else values_of((x,), self.scope)
+        return known or (function("sign", x) if numbers is None else (1 if numbers[0] > 0 else -1))
+
+    def _by_rows(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
+        """Every simple moment's axis is across two rows of I - J 1; two equal ones have any axes across the third."""
+        if any(node.op == "acos" for node in order(moments)):
+            return None
+        if not equal:
+            found = [n for n in map(self._across_rows, moments) if n is not None]
+            return self._turned_right(*found) if len(found) == 3 else None
+        (pair,) = equal
+        single = 3 - sum(pair)
+        n = self._across_rows(moments[single])
+        if n is None:
+            return None
+        other = self._unit(cross(IDENTITY[2], n))
+        return (n, other, self._third(n, other)) if single == 0 else (other, self._third(n, other), n)
+
+    def _across_rows(self, moment: Scalar) -> Vector | None:
+        I = self.tensor
+        rows = [vector_of(I[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3)]
+        for i, j in ((0, 1), (1, 2), (0, 2)):
+            n = vector_of(map(self.short, cross(rows[i], rows[j])))
+            if not all(vanishes(x) for x in n):
+                return self._unit(n)
+        return None
+
+    def _right_handed(self, first: Vector, second: Vector) -> Matrix:
+        return first, second, self._third(first, second)
+
+    def _turned_right(self, first: Vector, second: Vector, third: Vector) -> Matrix:
+        """The three axes, the last one reversed where they are left-handed."""
+        hand = dot(cross(first, second), third)
+        signs = [sign for sign in (1, -1) if vanishes(hand - sign)]
+        return (first, second, times(signs[0], third)) if signs else self._right_handed(first, second)
+
+    def _third(self, first: Vector, second: Vector) -> Vector:
+        return vector_of(map(self.short, cross(first, second)))
+
+    def _unit(self, n: Vector) -> Vector:
+        """n over its length, its first component that does not vanish positive where its sign is known.
+
+        Divided by that component at first, so that what all three share is gone.
+        """
+        flat = [0 if vanishes(x) else x for x in n]
+        lead = next(x for x in flat if not is_zero(x))
+        ratios = vector_of(self.short(over(x, lead)) for x in flat)
+        length = sqrt(self.short(dot(ratios, ratios)))
+        return vector_of(self.short(over(x, length)) for x in ratios)
+
+
+def _ascending(tensor: _Tensor) -> list[int] | None:
+    """The indices of the moments, ascending; None where nothing tells."""
+    moments = tensor.moments
+    numbers = values_of(moments, tensor.scope)
+    if numbers is not None:
+        return sorted(range(3), key=lambda k: numbers[k])
+    signs = [[tensor.larger(i, j) for j in range(3)] for i in range(3)]
+    if any(sign is None for row in signs for sign in row):
+        return None
+
+    def compared(i: int, j: int) -> int:
+        return signs[i][j] or 0
+
+    return sorted(range(3), key=cmp_to_key(compared))
+
+
+def short_form(x: Scalar, positive: Collection[Node]) -> Scalar:
+    """x in readable form, the magnitudes of constants by their sign."""
+    found = simplest(x, WORK, positive)
+    signed = _with_signs(found)
+    return found if signed is found else simplest(signed, WORK, positive)
+
+
+def _with_signs(x: Scalar) -> Scalar:
+    """x with the magnitudes of constants by their sign: |pi - 90| is 90 - pi."""
+    known: dict[Node, Scalar] = {}
+    for node in order((x,)):
+        if node.op == "abs" and not symbols_of((node,)):
+            (inside,) = node.args
+            (number,) = evaluate((inside,), {}, FLOAT)
+            known[node] = inside if number > 0 else -inside
+    return substituted((x,), known)[0] if known else x
+
+
+def values_of(scalars: Sequence[Scalar], scope: Scope) -> list[float] | None:
+    """What scalars of parameters are worth; None where they hold something else, or one without a value."""
+    symbols = symbols_of(tuple(scalars))
+    known: Mapping[str, float] = {name: float(x) for name, x in exact_parameters(scope.model).items()}
+    if any(symbol.name not in known or symbol not in scope.symbols.parameters.values() for symbol in symbols):
+        return None
+    return list(evaluate(tuple(scalars), {symbol: known[symbol.name] for symbol in symbols}, FLOAT))

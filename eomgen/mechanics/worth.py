@@ -1,0 +1,63 @@
+"""Scope -> Worth: what scalars are worth at the model's parameters, with 50 digits, and whether they vanish there.
+
+Parameters without a value, and symbols that were left free, are something at random.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.mechanics.rest import values_of_parameters
+from eomgen.mechanics.scope import Scope
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar
+
+EXACT, ROUNDED = 1e-25, 1e-9  # what counts as zero: of a number of 50 digits, of one that comes from doubles
+
+
+@dataclass(frozen=True)
+class Worth:
+    """Values of scalars.
+
+    Args:
+        scope: of the model.
+        tolerance: what counts as zero.
+    """
+
+    scope: Scope
+    tolerance: float = EXACT
+
+    def of(self, scalars: Iterable[Scalar]) -> list[Any]:
+        """The values, with 50 digits."""
+        wanted, values, rng = tuple(scalars), self._values, Random(2)
+        for x in symbols_of(wanted):
+            if x not in values:
+                values[x] = fifty_digits().number(Fraction(rng.randint(20, 60), 40))
+        return evaluate(wanted, values, fifty_digits())
+
+    def vanish(self, scalars: Iterable[Scalar]) -> bool:
+        """Whether all are zero."""
+        return all(abs(x) < self.tolerance for x in self.of(scalars))
+
+    def number(self, x: Scalar) -> float | None:
+        """A scalar as a number; None where something in it has no value."""
+        if any(symbol not in self._known for symbol in symbols_of((x,))):
+            return None
+        try:
+            return float(evaluate((x,), self._known, fifty_digits())[0]) + 0.0
+        except (NoValue, ZeroDivisionError):
+            return None
+
+    @cached_property
+    def _values(self) -> dict[Node, Any]:
+        return values_of_parameters(self.scope, Random(1))
+
+    @cached_property
+    def _known(self) -> dict[Node, Any]:
+        return values_of_parameters(self.scope, None)

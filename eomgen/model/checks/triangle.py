@@ -1,0 +1,21 @@
+"""Whether a body can have an inertia: the triangle inequality, in any axes."""
+
+ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
+
+
+def possible(moments: list[float], size: float = 0.0) -> bool:
+    """J = tr(I)/2 - I has no negative eigenvalue (its principal minors are not negative).
+
+    Args:
+        moments: xx, yy, zz and then, where there are any, xy, yz, zx.
+        size: of what they were added up from, where that is larger than they are.
+    """
+    xx, yy, zz, xy, yz, zx = moments if len(moments) == 6 else (*moments, 0.0, 0.0, 0.0)
+    half = (xx + yy + zz) / 2
+    a, b, c = half - xx, half - yy, half - zz
+    size = max(size, *(abs(x) for x in (xx, yy, zz, xy, yz, zx))) or 1.0
+    determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
+    second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
+    return (
+        min(a, b, c) >= -ROUNDING * size and min(second) >= -ROUNDING * size**2 and determinant >= -ROUNDING * size**3
+    )

@@ -1,0 +1,153 @@
+"""Pieces -> Composite: mass, mass centre and inertia of a body that is put together from shapes, over any scalar.
+
+    m = sum s_k m_k,   m c = sum s_k m_k c_k,   I = sum s_k (I_k + m_k (d_k.d_k 1 - d_k d_k^T)),   d_k = c_k - c
+
+with s_k = -1 for a hole, which is taken to lie wholly inside the other pieces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.model.joints.base import Z, oriented, unit, vector
+from eomgen.model.shapes import MassProperties
+from eomgen.model.shapes.base import Value
+from eomgen.symbolic.functions import cos, over, sin
+from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.spatial import (
+    ZERO,
+    Inertia,
+    Matrix,
+    Pose,
+    Vector,
+    added,
+    minus,
+    plus,
+    product,
+    rotation,
+    times,
+    transposed,
+    vector_of,
+)
+
+
+@dataclass(frozen=True)
+class PlacedPiece:
+    """One piece where it is in the body.
+
+    Args:
+        piece: as declared.
+        mass: m [kg], positive for a hole too; mass centre and inertia about it in the body's axes.
+    """
+
+    piece: Any
+    mass: MassProperties
+
+    @property
+    def sign(self) -> int:
+        """-1 for a hole, which takes away."""
+        return -1 if self.piece.hole else 1
+
+
+@dataclass(frozen=True)
+class Composite:
+    """A body made of pieces: its mass, mass centre and inertia about it, body axes."""
+
+    pieces: tuple[PlacedPiece, ...]
+    whole: MassProperties
+
+
+def composite_of(pieces: Sequence[Any], mass: Any, value: Value) -> Composite:
+    """The whole body.
+
+    Args:
+        pieces: as declared, `Piece`s.
+        mass: the net mass as an expression, or None where every piece has its own.
+    """
+    masses = masses_of(pieces, mass, value)
+    placed = tuple(PlacedPiece(piece, _placed(piece, m, value)) for piece, m in zip(pieces, masses, strict=True))
+    m = value(mass) if mass is not None else sum(part.sign * part.mass.m for part in placed)
+    com = _center(placed, _weights(pieces, masses, value))
+    I: Matrix = (ZERO, ZERO, ZERO)
+    for part in placed:
+        I = added(I, scaled(part.sign, about(part.mass, com)))
+    return Composite(placed, MassProperties(m, com, I))
+
+
+def about(mass: MassProperties, point: Vector) -> Matrix:
+    """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
+    return Inertia.about_center(mass.m, minus(mass.com, point), mass.I).I
+
+
+def scaled(k: Any, A: Matrix) -> Matrix:
+    """k A"""
+    return (times(k, A[0]), times(k, A[1]), times(k, A[2]))
+
+
+def masses_of(pieces: Sequence[Any], mass: Any, value: Value) -> tuple[Any, ...]:
+    """The mass of each piece: its own, or its share by measure (length, area or volume) in what is left [kg].
+
+    Without the mass of the whole, a hole has the density of the one piece of its dimension.
+    """
+    given = [None if piece.shape.mass is None else value(piece.shape.mass) for piece in pieces]
+    sharing = [k for k, m in enumerate(given) if m is None]
+    measures = {k: pieces[k].shape.measure(value) for k in sharing}
+    if mass is None:
+        densities = {k: _density(pieces, given, sources(pieces, k), value) for k in sharing}
+    else:
+        left = value(mass) - sum(_sign(piece) * m for piece, m in zip(pieces, given, strict=True) if m is not None)
+        net = sum(_sign(pieces[k]) * measure for k, measure in measures.items())
+        densities = {k: (left, net) for k in sharing}
+    shared = {k: over(densities[k][0] * measures[k], densities[k][1]) for k in sharing}
+    return tuple(shared[k] if m is None else m for k, m in enumerate(given))
+
+
+def sources(pieces: Sequence[Any], hole: int) -> tuple[int, ...]:
+    """The pieces out of which a hole may be cut: those that are none, of its dimension."""
+    dimension = pieces[hole].shape.dimension
+    return tuple(k for k, p in enumerate(pieces) if not p.hole and p.shape.dimension == dimension)
+
+
+def _density(pieces: Sequence[Any], given: Sequence[Any], of: tuple[int, ...], value: Value) -> tuple[Any, Any]:
+    (k,) = of
+    return given[k], pieces[k].shape.measure(value)
+
+
+def _sign(piece: Any) -> int:
+    return -1 if piece.hole else 1
+
+
+def _placed(piece: Any, m: Any, value: Value) -> MassProperties:
+    """The mass properties of a piece in the body's axes."""
+    own = piece.shape.of_mass(m, value)
+    pose = pose_of(piece, value)
+    I = product(product(pose.R, own.I), transposed(pose.R))
+    return MassProperties(m, pose.point(own.com), I)
+
+
+def pose_of(piece: Any, value: Value) -> Pose:
+    """Where a piece's frame stands in the body: turned as `turned` says, then by `angle` about `axis`."""
+    R = oriented(piece.turned, value)
+    if piece.angle is not None:
+        angle = value(piece.angle)
+        R = product(R, rotation(unit(vector(piece.axis, value, Z)), cos(angle), sin(angle)))
+    return Pose(R, vector(piece.at, value))
+
+
+def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: Value) -> list[Any]:
+    """What the mass centre is weighted with: masses; measures where all of them share, so that it needs no mass."""
+    if all(piece.shape.mass is None for piece in pieces):
+        return [_sign(piece) * piece.shape.measure(value) for piece in pieces]
+    return [_sign(piece) * m for piece, m in zip(pieces, masses, strict=True)]
+
+
+def _center(placed: Sequence[PlacedPiece], weights: Sequence[Any]) -> Vector:
+    total = sum(weights)
+    if is_zero(total):
+        return ZERO  # without mass, nothing has a centre
+    first: Vector = ZERO
+    for weight, part in zip(weights, placed, strict=True):
+        first = plus(first, times(weight, part.mass.com))
+    return vector_of(over(x, total) for x in first)

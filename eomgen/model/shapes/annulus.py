@@ -1,0 +1,40 @@
+"""Annulus: a thin round plate with a concentric hole."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Annulus(Shape):
+    """A thin round plate about its centre (the origin), axis z, between the radii r (`inner`) and R.
+
+    I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = half of it.
+    """
+
+    kind: ClassVar[str] = "annulus"
+    dimension: ClassVar[int] = 2
+    radius: Length
+    inner: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return circle(value(self.radius)), circle(value(self.inner))
+
+    def impossible(self, value: Value) -> str:
+        return not_inside(value(self.inner), value(self.radius))
+
+    def measure(self, value: Value) -> Any:
+        R, r = value(self.radius), value(self.inner)
+        return value(PI) * (R * R - r * r)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        R, r = value(self.radius), value(self.inner)
+        quarter = Fraction(1, 4) * m * (R * R + r * r)
+        return MassProperties(m, ZERO, diagonal(quarter, quarter, 2 * quarter))

@@ -1,0 +1,43 @@
+"""Arc: a thin rod bent to a part of a circle."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length, Opening
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, circle, diagonal, more_than_a_turn
+from eomgen.symbolic.functions import over, sin
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc(Shape):
+    """A bent rod about the centre of its circle (the origin), the angle A (`opening`) halved by +x; pi: half a hoop.
+
+    Centre 2 r sin(A/2) / A along x; about the origin I_xx = m r^2 (1 - sin(A)/A) / 2, I_zz = m r^2.
+    """
+
+    kind: ClassVar[str] = "arc"
+    dimension: ClassVar[int] = 1
+    radius: Length
+    opening: Opening
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        half = value(self.opening) / 2
+        return (circle(value(self.radius), -half, half),)
+
+    def impossible(self, value: Value) -> str:
+        return more_than_a_turn(value(self.opening))
+
+    def measure(self, value: Value) -> Any:
+        return value(self.radius) * value(self.opening)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, A = value(self.radius), value(self.opening)
+        x = over(2 * r * sin(Fraction(1, 2) * A), A)
+        half, lean = Fraction(1, 2) * m * r * r, over(sin(A), A)
+        shift = m * x * x
+        return MassProperties(m, (x, 0, 0), diagonal(half * (1 - lean), half * (1 + lean) - shift, 2 * half - shift))

@@ -1,0 +1,35 @@
+"""Conical shell: the thin mantle of a cone, without its base."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
+from eomgen.symbolic.functions import sqrt
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConicalShell(Shape):
+    """A thin mantle about its mass centre (the origin), apex towards +z, h/3 of its height h below the origin.
+
+    I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4 + m h^2 / 18.
+    """
+
+    kind: ClassVar[str] = "conical_shell"
+    dimension: ClassVar[int] = 2
+    radius: Length
+    height: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def measure(self, value: Value) -> Any:
+        r, h = value(self.radius), value(self.height)
+        return value(PI) * r * sqrt(r * r + h * h)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, h = value(self.radius), value(self.height)
+        across = Fraction(1, 4) * m * r * r + Fraction(1, 18) * m * h * h
+        return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))

@@ -1,0 +1,33 @@
+"""Cylindrical shell: a thin round pipe, open at its ends."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylindricalShell(Shape):
+    """A thin pipe about its centre (the origin), length l along z: I_zz = m r^2, I_xx = I_yy = m (6 r^2 + l^2) / 12."""
+
+    kind: ClassVar[str] = "cylindrical_shell"
+    dimension: ClassVar[int] = 2
+    radius: Length
+    length: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return (circle(value(self.radius)),)
+
+    def measure(self, value: Value) -> Any:
+        return 2 * value(PI) * value(self.radius) * value(self.length)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, length = value(self.radius), value(self.length)
+        across = Fraction(1, 2) * m * r * r + Fraction(1, 12) * m * length * length
+        return MassProperties(m, ZERO, diagonal(across, across, m * r * r))

@@ -1,0 +1,34 @@
+"""Ellipse: a thin elliptic plate."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import PlaneSize
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ellipse(Shape):
+    """A thin plate about its centre (the origin), semiaxes = [a, b] in x and y: I_xx = m b^2 / 4, I_yy = m a^2 / 4."""
+
+    kind: ClassVar[str] = "ellipse"
+    dimension: ClassVar[int] = 2
+    semiaxes: PlaneSize
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        a, b = map(value, self.semiaxes)
+        return (tuple((a * x, b * y) for x, y in circle(1.0)),)
+
+    def measure(self, value: Value) -> Any:
+        a, b = map(value, self.semiaxes)
+        return value(PI) * a * b
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        a, b = map(value, self.semiaxes)
+        xx, yy = Fraction(1, 4) * m * b * b, Fraction(1, 4) * m * a * a
+        return MassProperties(m, ZERO, diagonal(xx, yy, xx + yy))

@@ -1,0 +1,42 @@
+"""Frustum: a solid round cone without its tip."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frustum(Shape):
+    """A solid frustum, the centre of its base at the origin, radius R there and r (`top`) at the height h along +z.
+
+    With s = R^2 + R r + r^2: centre h (R^2 + 2 R r + 3 r^2) / (4 s); I_zz = 3 m (R^5 - r^5) / (10 (R^3 - r^3));
+    the integral of z^2 dm is m h^2 (R^2 + 3 R r + 6 r^2) / (10 s).
+    """
+
+    kind: ClassVar[str] = "frustum"
+    dimension: ClassVar[int] = 3
+    radius: Length
+    top: Length
+    height: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def measure(self, value: Value) -> Any:
+        R, r = value(self.radius), value(self.top)
+        return Fraction(1, 3) * value(PI) * value(self.height) * (R * R + R * r + r * r)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        R, r, h = value(self.radius), value(self.top), value(self.height)
+        s = R * R + R * r + r * r
+        z = over(Fraction(1, 4) * h * (R * R + 2 * R * r + 3 * r * r), s)
+        fifth = R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r  # both over R - r
+        I_zz = over(Fraction(3, 10) * m * fifth, s)
+        along = over(Fraction(1, 10) * m * h * h * (R * R + 3 * R * r + 6 * r * r), s)
+        across = Fraction(1, 2) * I_zz + along - m * z * z
+        return MassProperties(m, (0, 0, z), diagonal(across, across, I_zz))

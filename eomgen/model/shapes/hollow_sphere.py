@@ -1,0 +1,42 @@
+"""Hollow sphere: a ball with a concentric cavity."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class HollowSphere(Shape):
+    """A ball of radius R with a cavity of radius r (`inner`), about their centre (the origin).
+
+    I = 2 m (R^5 - r^5) / (5 (R^3 - r^3)) about every axis.
+    """
+
+    kind: ClassVar[str] = "hollow_sphere"
+    dimension: ClassVar[int] = 3
+    radius: Length
+    inner: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return circle(value(self.radius)), circle(value(self.inner))
+
+    def impossible(self, value: Value) -> str:
+        return not_inside(value(self.inner), value(self.radius))
+
+    def measure(self, value: Value) -> Any:
+        R, r = value(self.radius), value(self.inner)
+        return Fraction(4, 3) * value(PI) * (R * R * R - r * r * r)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        R, r = value(self.radius), value(self.inner)
+        above = R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r  # both over R - r
+        square = over(Fraction(2, 5) * m * above, R * R + R * r + r * r)
+        return MassProperties(m, ZERO, diagonal(square, square, square))

@@ -1,0 +1,44 @@
+"""Prism: a solid whose section is a polygon."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.polygon import Polygon, Vertices
+from eomgen.symbolic.spatial import ZERO, Vector, added
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prism(Shape):
+    """A solid with the section of a polygon, from -l/2 to l/2 along z; its axes are those of the vertices.
+
+    To the polygon's moments about x and y come m l^2 / 12.
+    """
+
+    kind: ClassVar[str] = "prism"
+    dimension: ClassVar[int] = 3
+    vertices: Vertices
+    length: Length
+
+    @property
+    def section(self) -> Polygon:
+        return Polygon(vertices=self.vertices)
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return self.section.outline(value)
+
+    def impossible(self, value: Value) -> str:
+        return self.section.impossible(value)
+
+    def measure(self, value: Value) -> Any:
+        return self.section.measure(value) * value(self.length)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        plate = self.section.of_mass(m, value)
+        across = Fraction(1, 12) * m * value(self.length) * value(self.length)
+        return MassProperties(m, plate.com, added(plate.I, diagonal(across, across, 0)))

@@ -1,0 +1,37 @@
+"""Pyramid: a solid one on a rectangle."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pyramid(Shape):
+    """A solid pyramid about its mass centre (the origin), apex towards +z, h/4 of its height h below the origin.
+
+    Its base is w wide along x and d deep along y: I_xx = m (d^2 / 20 + 3 h^2 / 80), I_zz = m (w^2 + d^2) / 20.
+    """
+
+    kind: ClassVar[str] = "pyramid"
+    dimension: ClassVar[int] = 3
+    width: Length
+    depth: Length
+    height: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return (box_around(value(self.width), value(self.depth)),)
+
+    def measure(self, value: Value) -> Any:
+        return Fraction(1, 3) * value(self.width) * value(self.depth) * value(self.height)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        x, y = (Fraction(1, 20) * m * value(edge) * value(edge) for edge in (self.width, self.depth))
+        z = Fraction(3, 80) * m * value(self.height) * value(self.height)
+        return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))

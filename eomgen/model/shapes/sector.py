@@ -1,0 +1,46 @@
+"""Sector: a thin plate cut out of a disc by two radii."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length, Opening
+from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, circle, diagonal, more_than_a_turn
+from eomgen.symbolic.functions import over, sin
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sector(Shape):
+    """A thin plate about the centre of its circle (the origin), the angle A (`opening`) halved by +x; pi: half a disc.
+
+    Centre 4 r sin(A/2) / (3 A) along x; about the origin I_xx = m r^2 (1 - sin(A)/A) / 4, I_zz = m r^2 / 2.
+    """
+
+    kind: ClassVar[str] = "sector"
+    dimension: ClassVar[int] = 2
+    radius: Length
+    opening: Opening
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        half = value(self.opening) / 2
+        return (((0.0, 0.0), *circle(value(self.radius), -half, half), (0.0, 0.0)),)
+
+    def impossible(self, value: Value) -> str:
+        return more_than_a_turn(value(self.opening))
+
+    def measure(self, value: Value) -> Any:
+        r = value(self.radius)
+        return Fraction(1, 2) * value(self.opening) * r * r
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r, A = value(self.radius), value(self.opening)
+        x = over(4 * r * sin(Fraction(1, 2) * A), 3 * A)
+        quarter, lean = Fraction(1, 4) * m * r * r, over(sin(A), A)
+        shift = m * x * x
+        return MassProperties(
+            m, (x, 0, 0), diagonal(quarter * (1 - lean), quarter * (1 + lean) - shift, 2 * quarter - shift)
+        )

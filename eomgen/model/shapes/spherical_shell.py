@@ -1,0 +1,32 @@
+"""Spherical shell: a thin hollow ball."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class SphericalShell(Shape):
+    """A thin homogeneous shell about its centre (the origin): I = 2 m r^2 / 3 about every axis."""
+
+    kind: ClassVar[str] = "spherical_shell"
+    dimension: ClassVar[int] = 2
+    radius: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return (circle(value(self.radius)),)
+
+    def measure(self, value: Value) -> Any:
+        return 4 * value(PI) * value(self.radius) * value(self.radius)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        r = value(self.radius)
+        square = Fraction(2, 3) * m * r * r
+        return MassProperties(m, ZERO, diagonal(square, square, square))

@@ -1,0 +1,50 @@
+"""Tetrahedron: a solid with four corners."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar
+
+from eomgen.model.containers import ListRule
+from eomgen.model.fields import FormulaRule, VectorRule
+from eomgen.model.shapes.base import MassProperties, Shape, Value, tensor
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.functions import function
+from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, vector_of
+
+Corners = Annotated[
+    tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=3), least=4, most=4)
+]  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tetrahedron(Shape):
+    """A solid homogeneous tetrahedron, in the axes in which its four vertices are given.
+
+    Volume |a . (b x c)| / 6 of the edges from one vertex; the centre c is the mean of the vertices p_k, about which
+    the integral of x_i x_j dm is m / 20 times the sum of (p_k - c)_i (p_k - c)_j.
+    """
+
+    kind: ClassVar[str] = "tetrahedron"
+    dimension: ClassVar[int] = 3
+    vertices: Corners
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def impossible(self, value: Value) -> str:
+        return "" if self.measure(value) else "its four vertices lie in one plane"
+
+    def measure(self, value: Value) -> Any:
+        first, *others = self._corners(value)
+        a, b, c = (minus(p, first) for p in others)
+        return Fraction(1, 6) * function("abs", dot(a, cross(b, c)))
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        corners = self._corners(value)
+        com = vector_of(Fraction(1, 4) * sum(p[i] for p in corners) for i in range(3))
+        arms = [minus(p, com) for p in corners]
+        second = [[Fraction(1, 20) * m * sum(r[i] * r[j] for r in arms) for j in range(3)] for i in range(3)]
+        return MassProperties(m, com, tensor(second))
+
+    def _corners(self, value: Value) -> list[Vector]:
+        return [vector_of(map(value, vertex)) for vertex in self.vertices]

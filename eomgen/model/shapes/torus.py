@@ -1,0 +1,40 @@
+"""Torus: a solid ring of round section."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Torus(Shape):
+    """A solid ring about its centre (the origin), axis z: radius R (`major`) to the middle of its section of radius r.
+
+    I_zz = m (R^2 + 3 r^2 / 4), I_xx = I_yy = m (R^2 / 2 + 5 r^2 / 8).
+    """
+
+    kind: ClassVar[str] = "torus"
+    dimension: ClassVar[int] = 3
+    major: Length
+    minor: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        R, r = value(self.major), value(self.minor)
+        return circle(R + r), circle(R - r)
+
+    def impossible(self, value: Value) -> str:
+        return "" if value(self.minor) <= value(self.major) else "'minor' is larger than 'major'"
+
+    def measure(self, value: Value) -> Any:
+        return 2 * value(PI) * value(PI) * value(self.major) * value(self.minor) * value(self.minor)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        R, r = value(self.major), value(self.minor)
+        across = Fraction(1, 2) * m * R * R + Fraction(5, 8) * m * r * r
+        return MassProperties(m, ZERO, diagonal(across, across, m * R * R + Fraction(3, 4) * m * r * r))

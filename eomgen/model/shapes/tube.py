@@ -1,0 +1,42 @@
+"""Tube: a round bar with a concentric bore."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.symbolic.spatial import ZERO, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tube(Shape):
+    """A cylinder of radius R with a bore of radius r (`inner`), about its centre (the origin), length l along z.
+
+    I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = m (3 (R^2 + r^2) + l^2) / 12.
+    """
+
+    kind: ClassVar[str] = "tube"
+    dimension: ClassVar[int] = 3
+    radius: Length
+    inner: Length
+    length: Length
+
+    def points(self, value: Value) -> dict[str, Vector]:
+        return {"origin": ZERO, "center": ZERO}
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return circle(value(self.radius)), circle(value(self.inner))
+
+    def impossible(self, value: Value) -> str:
+        return not_inside(value(self.inner), value(self.radius))
+
+    def measure(self, value: Value) -> Any:
+        R, r = value(self.radius), value(self.inner)
+        return value(PI) * (R * R - r * r) * value(self.length)
+
+    def of_mass(self, m: Any, value: Value) -> MassProperties:
+        R, r, length = value(self.radius), value(self.inner), value(self.length)
+        quarter = Fraction(1, 4) * m * (R * R + r * r)
+        across = quarter + Fraction(1, 12) * m * length * length
+        return MassProperties(m, ZERO, diagonal(across, across, 2 * quarter))

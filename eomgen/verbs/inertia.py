@@ -1,0 +1,29 @@
+"""eomgen inertia: mass, centre, tensors, principal axes, about points and axes."""
+
+from __future__ import annotations
+
+from eomgen.model.parts import Model
+from eomgen.report.inertia_picture import plot_inertia
+from eomgen.report.inertia_result import inertia as found_in
+from eomgen.verbs.outcome import Outcome
+
+
+def inertia(
+    model: Model, *, format: str = "text", plot: str | None = None, bodies: tuple[str, ...] = (),
+    about: str | None = None, axis: str | None = None,
+) -> Outcome:  # fmt: skip
+    """Masses, mass centres, moments and products of inertia, principal axes.
+
+    Args:
+        format: text, latex, markdown or json.
+        plot: a picture's file.
+        bodies: only these.
+        about: a point about which they are taken too.
+        axis: "A,B", or x, y, z through that point.
+    """
+    found = found_in(model, bodies, about=about, axis=axis)
+    if plot is not None:
+        plot_inertia(model, found, plot)
+    if format == "json":
+        return Outcome("", found.as_dict())
+    return Outcome(found.render(format))
