@@ -9,6 +9,7 @@ unknowns are the components of all reactions, of joints and of ties; what drives
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.components import Component, components_of
@@ -18,8 +19,9 @@ from eomgen.mechanics.loads import weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically, slide_power
 from eomgen.model.forces.load import PointForce
+from eomgen.model.unknowns import in_loads
 from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, apply, cross, plus, times, vector_of
 
 DIRECTIONS = ("x", "y", "z", "moment x", "moment y", "moment z")
@@ -56,6 +58,17 @@ class Balance:
     system: System
     components: tuple[Component, ...]
     equations: tuple[BodyEquation, ...]
+
+    @cached_property
+    def unknowns(self) -> tuple[Node, ...]:
+        """The unknowns that stand in the loads: the bodies at rest determine them together with the reactions."""
+        symbols = self.system.symbols.unknowns
+        return tuple(symbols[name] for name in in_loads(self.system.scope.model))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all that the equations are solved for: reaction_x(B), then the unknowns."""
+        return (*(c.name for c in self.components), *(unknown.name for unknown in self.unknowns))
 
 
 def balance_of(system: System) -> Balance:

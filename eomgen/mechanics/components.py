@@ -29,7 +29,8 @@ class Component:
         number: its row in the tie, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
         rubbing: its friction for a unit of it, on the same bodies.
-        side: the body on which it is the force of a hinge of several, the coordinate of a drive, or "".
+        side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
+            truss, or "".
     """
 
     owner: str
@@ -44,7 +45,8 @@ class Component:
     def name(self) -> str:
         """As an output asks for it: reaction_x(B), tension(rope, 2)."""
         if self.label == "tension":
-            return f"tension({self.owner})" if self.number == 1 else f"tension({self.owner}, {self.number})"
+            which = self.side or (self.number if self.number > 1 else "")
+            return f"tension({self.owner}, {which})" if which else f"tension({self.owner})"
         if self.label == "drive":
             return f"drive({self.side or self.owner})"
         owner = f"{self.owner}.{self.side}" if self.side else self.owner
@@ -206,4 +208,4 @@ def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], rubbing: tupl
         side = system.motion.links[effects[-1].link].name if len(points) > 2 else ""
         opposite = tuple(e.times(-1) for e in effects)
         return Component(row.tie, "tie", row.component, row.number, opposite, (), side)
-    return Component(row.tie, "tie", row.component, row.number, effects, rubbing)
+    return Component(row.tie, "tie", row.component, row.number, effects, rubbing, row.part)

@@ -8,11 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.inertia import MassProperties, mass_properties
+from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, Link, Motion
 from eomgen.mechanics.loads import JointEffort, in_ground_axes
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import (
     IDENTITY,
@@ -39,12 +40,14 @@ class Effect:
         link: index of the body.
         force, couple: on it.
         arm: from its mass centre to the place [m].
+        place: the same place in body axes [m]; None of a couple that acts on the body as a whole.
     """
 
     link: int
     force: Vector
     couple: Vector
     arm: Vector
+    place: Vector | None = None
 
     @cached_property
     def six(self) -> tuple[Scalar, ...]:
@@ -53,7 +56,7 @@ class Effect:
 
     def times(self, k: Scalar) -> Effect:
         """k units of it."""
-        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm)
+        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place)
 
 
 @dataclass(frozen=True)
@@ -96,11 +99,11 @@ def effects_at_joint(axes: Axes, link: Link, force: Vector, couple: Vector) -> l
     """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
     i = axes.motion.index[link.name]
     R = axes.of_body(link)
-    effects = [Effect(i, turned(R, force), turned(R, couple), axes.arm(i, link.point))]
+    effects = [Effect(i, turned(R, force), turned(R, couple), axes.arm(i, link.point), link.point)]
     if link.parent != GROUND:
         to_parent = R if axes.plane else link.local.R
         f, n = times(-1, turned(to_parent, force)), times(-1, turned(to_parent, couple))
-        effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p)))
+        effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
     return effects
 
 
@@ -156,5 +159,5 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
     vector = given if load.axes == body and not axes.plane else axes.of_ground(
         link, in_ground_axes(axes.motion, given, load.axes))  # fmt: skip
     if isinstance(load, Couple):
-        return (Effect(i, ZERO, vector, ZERO),)
-    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1])),)
+        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1]),)
+    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1]),)

@@ -98,7 +98,7 @@ def counted(ties: Ties) -> tuple[int, str]:
     """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
     motion = ties.motion
     of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
-    particles = [link for link in motion.links if _is_particle(motion, link)]
+    particles = [link for link in motion.links if is_particle(motion, link)]
     bodies = [link for link in motion.links if link not in particles]
     free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
     joints = sum(_components(link, of_body) for link in bodies)
@@ -110,7 +110,7 @@ def counted(ties: Ties) -> tuple[int, str]:
     return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
 
 
-def _is_particle(motion: Motion, link: Link) -> bool:
+def is_particle(motion: Motion, link: Link) -> bool:
     """A point mass that its joint does not turn."""
     shape = motion.scope.model.bodies[link.name].shape
     turns = any(not is_zero(x) for w, _ in link.S for x in w)

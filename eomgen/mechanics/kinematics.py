@@ -16,13 +16,13 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.made_of import made_of
 from eomgen.mechanics.scope import Scope
-from eomgen.model.joints.base import Z, unit, vector
+from eomgen.model.joints.base import Z, oriented
 from eomgen.symbolic.derivative import jacobian, symbols_of
 from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.graph import Scalar, collected
 from eomgen.symbolic.spatial import (
-    IDENTITY,
     ZERO,
     Matrix,
     Pose,
@@ -108,8 +108,6 @@ class Motion:
         body, name = self.scope.model.resolve_point(point)
         if body is None:
             return None, self.scope.vector(self.scope.model.points[name])
-        if body not in self.points:
-            raise NotYet(f"'{point}' is a node of a truss: trusses are not derived yet", f"trusses.{body}")
         return body, self.points[body][name]
 
     def position(self, place: tuple[str | None, Vector]) -> Vector:
@@ -172,7 +170,9 @@ def body_points(scope: Scope, body: str) -> dict[str, Vector]:
     """Points of one body: its own, its shape's, `origin`, and `center` where it has mass; body axes [m]."""
     part = scope.model.bodies[body]
     points: dict[str, Vector] = {"origin": ZERO}
-    if part.center is not None or part.mass is not None:
+    if part.parts is not None:
+        points["center"] = made_of(scope, body).whole.com
+    elif part.center is not None or part.mass is not None:
         points["center"] = scope.vector(part.center)
     if part.shape is not None:
         points |= part.shape.points(scope.value)
@@ -190,7 +190,7 @@ def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> 
     parent_name = parent_of(scope.model, name)
     parent = GROUND if parent_name is None else index[parent_name]
     above = None if parent == GROUND else links[parent]
-    before = Pose(_turned(scope, joint), _seat(scope, joint))
+    before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
     point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
     s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
     s_rate = scope.time_derivative(s)
@@ -232,16 +232,6 @@ def _twist(
     moved = at_joint.at(times(-1, point))
     drift = scope.rate_of(point)  # a joint that slides along its own body
     return Twist(moved.w, minus(moved.v, drift))
-
-
-def _turned(scope: Scope, joint: Any) -> Matrix:
-    """The fixed rotation before the joint: each turn about the axes left by the one before."""
-    R = IDENTITY
-    for turn in joint.turned or ():
-        axis = unit(vector(turn.axis, scope.value, Z))
-        angle = scope.value(turn.angle)
-        R = product(R, rotation(axis, cos(angle), sin(angle)))
-    return R
 
 
 def _turned_angle(scope: Scope, joint: Any) -> Scalar:

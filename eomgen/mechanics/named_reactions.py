@@ -109,7 +109,7 @@ def _unit(component: Component) -> str:
 
 def _name(balance: Balance, component: Component) -> str:
     """A strand has the number that the string gives it; several may have one tension, the first gives the name."""
-    if component.label != "tension":
+    if component.label != "tension" or component.side:
         return component.name
     tie = balance.system.scope.model.constraints[component.owner]
     numbers = tie.strand_rows() if hasattr(tie, "strand_rows") else (1,)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from random import Random
 from typing import Any
 
@@ -20,14 +21,17 @@ from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.rest import at_rest
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.unheld import refuse_unheld
+from eomgen.mechanics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced, with_unknowns
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution, solved
+from eomgen.symbolic.linear import Solution
 from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.scaling import solved
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
 
 TRIES = 20
@@ -68,10 +72,25 @@ class Reactions:
         """Of each free component: what may be added to all reactions without a trace, by name."""
         found = []
         for f in self.solution.free:
-            row: dict[str, Scalar] = {self.components[f].name: 1}
-            row |= {self.components[j].name: -s[f] for j, s in self.solution.shares.items() if f in s}
+            row: dict[str, Scalar] = {self.balance.names[f]: 1}
+            row |= {self.balance.names[j]: -s[f] for j, s in self.solution.shares.items() if f in s}
             found.append(row)
         return tuple(found)
+
+    @cached_property
+    def unknowns(self) -> dict[Node, Scalar]:
+        """What the unknowns of the loads are at rest, those that have a single value."""
+        first = len(self.components)
+        pairs = enumerate(self.balance.unknowns, start=first)
+        return {p: self.solution.constants[j] for j, p in pairs if self.solution.determined(j)}
+
+    def unknown(self, name: str) -> Scalar:
+        """An unknown of the loads.
+
+        Raises:
+            Indeterminate: the balance at rest leaves it open.
+        """
+        return self.combined({self.balance.names.index(name, len(self.components)): 1}, name)
 
     def value(self, j: int) -> Scalar:
         """Component j.
@@ -105,6 +124,7 @@ class Reactions:
         if self.is_open(owner):
             return 0
         combinations, given = self._sums(what, owner, side, frame)
+        given = vector_of(substituted(given, self.unknowns)) if self.unknowns else given
         place = f"{owner}.{side}" if side else owner
         name = f"reaction_{'xyz'[k]}({place})" if what == "force" else f"reaction_couple({place})"
         return given[k] + self.combined(combinations[k], name)
@@ -129,6 +149,19 @@ class Reactions:
             if named.name == name:
                 return self.combined({j: self._replaced((k, 0, 0))[0] for j, k in named.combination.items()}, name)
         return self._labelled(owner, "t", "friction")
+
+    def member(self, truss: str, first: str, second: str) -> Scalar:
+        """Tension of the member of a truss between two nodes.
+
+        Raises:
+            DerivationError: there is none.
+        """
+        members = {c.side: j for j, c in enumerate(self.components) if c.owner == truss}
+        found = [j for member, j in members.items() if set(member.split("-")) == {first, second}]
+        if not found:
+            raise DerivationError(f"truss '{truss}' has no member between '{first}' and '{second}'",
+                                  mend=f"its members: {', '.join(members)}")  # fmt: skip
+        return self.value(found[0])
 
     def tension(self, owner: str, strand: int = 1) -> Scalar:
         """Tension of a link, or of a strand of a string."""
@@ -229,8 +262,8 @@ class Reactions:
                 open_[f] = open_.get(f, 0) - k * share
         left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
         if left:
-            partners = [c.name for j, c in enumerate(self.components)
-                        if c.name != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
+            partners = [other for j, other in enumerate(self.balance.names)
+                        if other != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
             raise Indeterminate(
                 f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
                 + (", together with " + ", ".join(partners) if partners else ""),
@@ -251,6 +284,8 @@ def reactions_of(
         DerivationError: a body is held by nothing; a force acts at no place.
     """
     balance = balance_of(system)
+    if balance.unknowns:
+        return _at_rest(balance, at or {})
     if at:
         return Reactions(balance, _solved(balance, at), at)
     solution = _solved(balance, {}, sure=None if short else 1)
@@ -258,16 +293,33 @@ def reactions_of(
     return Reactions(balance, solution, {})
 
 
+def _at_rest(balance: Balance, at: Mapping[Node, Scalar]) -> Reactions:
+    """Reactions and unknown loads where nothing moves: as functions of the coordinates, or at the start alone.
+
+    Raises:
+        DerivationError: the loads are not in balance there, whatever the unknowns are.
+    """
+    refuse_rubbing(balance)
+    state = {**at, **still(balance.system)}
+    solution = _solved(balance, state)
+    if not is_balanced(balance, solution):
+        state = {**at_rest(balance.system), **at}
+        solution = _solved(balance, state)
+        if not is_balanced(balance, solution):
+            raise unbalanced(balance, solution)
+    return Reactions(balance, solution, state)
+
+
 def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -> Solution:
-    entries = [x for e in balance.equations for x in e.coefficients.values()]
+    coefficients, needed = with_unknowns(balance)
+    entries = [x for row in coefficients for x in row.values()]
     pushes = [_pushes(balance, e) for e in balance.equations]
-    needed = tuple(e.needed for e in balance.equations)
     if at:
         entries = list(readable_all(substituted(tuple(entries), at)))
-        needed = readable_all(substituted(needed, at))
+        needed = list(readable_all(substituted(tuple(needed), at)))
         pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at)), strict=True)) for row in pushes]
     flat = iter(entries)
-    rows = [{j: next(flat) for j in e.coefficients} for e in balance.equations]
+    rows = [{j: next(flat) for j in row} for row in coefficients]
     parameters = frozenset(balance.system.symbols.parameters.values())
 
     def simple(a: Scalar) -> int:
@@ -276,8 +328,8 @@ def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return solved(rows, needed, len(balance.components), values, simple=simple, last=last, sure=sure,
-                  tests=pushes)  # fmt: skip
+    return solved(rows, needed, len(balance.names), values, simple=simple, last=last, sure=sure,
+                  tests=pushes, sure_symbols=parameters)  # fmt: skip
 
 
 def _pushes(balance: Balance, equation: BodyEquation) -> Combination:

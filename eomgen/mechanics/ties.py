@@ -47,6 +47,7 @@ class Row:
         sliding: the sliding velocity dual to it [m/s].
         friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
         eliminates: the dependent coordinate that an "eliminated" row determines, or "".
+        part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
     """
 
     tie: str
@@ -62,6 +63,7 @@ class Row:
     sliding: Scalar = 0
     friction: Scalar | None = None
     eliminates: str = ""
+    part: str = ""
 
     @property
     def identical(self) -> bool:
@@ -113,13 +115,13 @@ def ties_of(
         used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
         modes: how contacts are that can end, rub or stick.
     Raises:
-        NotYet: a kind whose rows this version does not build, a truss.
+        NotYet: a kind whose rows this version does not build.
     """
     for where, what in unbuilt_ties(motion.scope.model):
         raise NotYet(f"the rows of '{what}' are not built yet", where)
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
-        scene = SystemScene(motion, f"constraints.{name}")
+        scene = SystemScene(motion, f"{constraint.table}.{name}")
         mode = (modes or {}).get(name, CLOSED)
         for number, tie_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
             label = (name, number)
@@ -166,7 +168,7 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}", f"constraints.{name}", mend)
     return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
-               row.tangent, sliding)  # fmt: skip
+               row.tangent, sliding, part=row.part)  # fmt: skip
 
 
 def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:

@@ -16,7 +16,10 @@ from eomgen.mechanics.balance import DIRECTIONS, Balance
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.loose_motion import refuse_loose
+from eomgen.mechanics.structure import structure_of
 from eomgen.mechanics.ties import holds_identically
+from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.linear import Solution
@@ -34,6 +37,8 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     motions = len(system.symbols.u) - len(system.ties.closing) + len(redundant_rows(system.ties))
     if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
         return
+    if not system.symbols.u:
+        return refuse_loose(structure_of(system))
     free, allowed = _virtual_motions(balance)
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
@@ -44,7 +49,7 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     direction = DIRECTIONS[equation.direction]
     turning = direction.startswith("moment")
     what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
-    raise DerivationError(f"body '{equation.body}' is {what}", f"bodies.{equation.body}",
+    raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body),
                           "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
 
 

@@ -13,10 +13,12 @@ from eomgen.model.part import Part
 class Constraint(Part, ABC):
     """A tie between bodies, or between coordinates.
 
-    `spaces` are those in which this version states its rows; elsewhere it is read, checked and not derived yet.
+    `table` is where a user declares it. `spaces` are those in which this version states its rows; elsewhere it is read,
+    checked and not derived yet.
     """
 
     kind: ClassVar[str]
+    table: ClassVar[str] = "constraints"
     spaces: ClassVar[tuple[str, ...]] = ("plane", "space")
 
     @classmethod

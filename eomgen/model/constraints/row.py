@@ -21,6 +21,7 @@ class TieRow:
         material: the row sees the velocities of the bodies' material points, not of points that wander in them
             (rolling contacts, strings that leave a pulley).
         tangent: of a contact that can rub, the forces for a unit of friction; their dual is the sliding velocity.
+        part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
     """
 
     pushes: tuple[PointForce | Couple, ...]
@@ -29,6 +30,7 @@ class TieRow:
     component: str = ""
     material: bool = False
     tangent: tuple[PointForce | Couple, ...] = ()
+    part: str = ""
 
 
 def direction_of(scene: Scene, v: Vector) -> Vector:

@@ -1,0 +1,50 @@
+"""Model -> the same model in bodies and ties alone: nodes of trusses are massless points, their members ties.
+
+A node "T.n1" is a body of that name: a particle without mass, placed where the node is. The members of truss T are
+the rows of one tie T.
+"""
+
+from eomgen.model.constraints.members import Members
+from eomgen.model.joints.placed import Placed
+from eomgen.model.part import altered, made
+from eomgen.model.parts import Body, Model, Truss
+from eomgen.model.shapes.particle import Particle
+from eomgen.model.table import Table
+from eomgen.symbolic.expressions import Expression
+
+
+def in_parts(model: Model) -> Model:
+    """The model with its trusses taken apart; the model itself where it has none."""
+    if not model.trusses:
+        return model
+    nodes = {f"{name}.{node}": _node(at) for name, truss in model.trusses.items() for node, at in truss.nodes.items()}
+    members = {name: _members(name, truss) for name, truss in model.trusses.items() if truss.members}
+    return altered(
+        model, bodies=Table({**model.bodies, **nodes}), constraints=Table({**model.constraints, **members}),
+        trusses=Table(),
+    )  # fmt: skip
+
+
+def _node(at: tuple[Expression, ...]) -> Body:
+    point = made(Particle, {"mass": Expression.number(0)})
+    return made(Body, {"shape": point, "joint": made(Placed, {"at": at})})
+
+
+def _members(name: str, truss: Truss) -> Members:
+    return made(Members, {"truss": name, "members": truss.members})
+
+
+def is_node(body: str) -> bool:
+    """Whether a body of a model in parts is a node of a truss."""
+    return "." in body
+
+
+def called(body: str) -> str:
+    """What messages call a body of a model in parts: body 'bar', node 'T.n1'."""
+    return f"node '{body}'" if is_node(body) else f"body '{body}'"
+
+
+def declared_at(body: str) -> str:
+    """Where it was declared: bodies.bar, trusses.T.nodes.n1."""
+    truss, dot, node = body.partition(".")
+    return f"trusses.{truss}.nodes.{node}" if dot else f"bodies.{body}"

@@ -1,0 +1,56 @@
+"""Model -> where its [unknowns] stand: in loads, which a balance can be solved for, or elsewhere."""
+
+from collections.abc import Iterator
+
+from eomgen.errors import DerivationError
+from eomgen.model.findings import Path
+from eomgen.model.part import leaves_of
+from eomgen.model.parts import Model
+from eomgen.symbolic.expressions import Expression
+
+ASKED = ("given", "outputs", "unknowns")
+"""Tables in which an unknown is asked for, or is one of the kinematics of an instant."""
+EFFORTS = ("torque", "force")
+"""Loads at a joint."""
+
+
+def uses(model: Model) -> Iterator[tuple[Path, str]]:
+    """(path, unknown) of every place in which an unknown stands, but where it is asked for."""
+    if not model.unknowns:
+        return
+    for leaf in leaves_of(model, ()):
+        if leaf.path[0] not in ASKED and isinstance(leaf.value, Expression):
+            yield from ((leaf.path, name) for name in sorted(leaf.value.names & model.unknowns.keys()))
+
+
+def in_loads(model: Model) -> tuple[str, ...]:
+    """The unknowns that stand in loads, in the model's order.
+
+    Raises:
+        DerivationError: one stands elsewhere, where no balance can be solved for it.
+    """
+    found = set()
+    for path, name in uses(model):
+        if not _is_load(path):
+            where = ".".join(map(str, path))
+            what = f"the unknown '{name}' stands where no balance gives it ({where})"
+            mend = "an unknown may stand in forces, couples and drives, and in [given]"
+            raise DerivationError(what, f"unknowns.{name}", mend)
+        found.add(name)
+    return tuple(name for name in model.unknowns if name in found)
+
+
+def refuse_motion(model: Model) -> None:
+    """Refuse equations of motion in which a force is unknown.
+
+    Raises:
+        DerivationError: it is named.
+    """
+    for path, name in uses(model):
+        where = ".".join(map(str, path))
+        raise DerivationError(f"the unknown '{name}' stands in {where}: a motion does not follow from it", where,
+                              "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it")
+
+
+def _is_load(path: Path) -> bool:
+    return path[0] == "forces" or (path[0] == "bodies" and "joint" in path and path[-1] in EFFORTS)

@@ -1,0 +1,67 @@
+"""Linear equations with common factors in rows and columns: solved as they would be without."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.functions import sin, sqrt
+from eomgen.symbolic.graph import Graph, Node
+from eomgen.symbolic.scaling import monomial, scaled, solved
+
+
+def values(scalars):
+    number = fifty_digits().number
+    return evaluate(scalars, {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))},
+                    fifty_digits())  # fmt: skip
+
+
+def test_a_product_is_a_number_times_powers():
+    """-3/2 a^2 sqrt(2)/b"""
+    g = Graph()
+    a, b = g.symbol("a"), g.symbol("b")
+    x = monomial(-Fraction(3, 2) * a * a * sqrt(2) / b)
+    assert x.number == -Fraction(3, 2)
+    assert {str(atom): e for atom, e in x.powers.items()} == {"a": 2, "b": -1, "sqrt(2)": 1}
+    assert equal_at_random_states([(x.scalar(), -Fraction(3, 2) * a * a * sqrt(2) / b)]).equal
+
+
+def test_lengths_and_heights_leave_plain_numbers():
+    """A knot of two bars, (2 a, h)/L and (-a, h)/K: rows a and h, columns 1/L and 1/K are taken out."""
+    g = Graph()
+    a, h = g.symbol("a"), g.symbol("h")
+    L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
+    found = scaled([{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, 1], {a, h})
+    assert all(type(x) is not Node for row in found.rows for x in row.values())
+
+
+def test_the_solution_is_that_of_the_equations_as_given():
+    """x0, x1 of the same knot under P."""
+    g = Graph()
+    a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
+    L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
+    rows, right = [{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, -P]
+    x = solved(rows, right, 2, values, sure_symbols={a, h}).constants
+    pairs = [(sum((c * x[j] for j, c in row.items()), start=0), b) for row, b in zip(rows, right, strict=True)]
+    assert equal_at_random_states(pairs).equal
+
+
+def test_shares_of_free_unknowns_are_those_of_the_unscaled_ones():
+    """a x0 + h x1 = P: x0 = P/a - (h/a) x1."""
+    g = Graph()
+    a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
+    solution = solved([{0: a, 1: h}], [P], 2, values, sure_symbols={a, h})
+    (free,) = solution.free
+    j = 1 - free
+    total = (a, h)[j] * (solution.constants[j] - solution.shares[j][free] * P) + (a, h)[free] * P
+    assert equal_at_random_states([(total, P)]).equal
+
+
+def test_what_may_vanish_is_not_divided_by():
+    """sin(theta) of a coordinate stays in its column."""
+    g = Graph()
+    theta, a = g.symbol("theta"), g.symbol("a")
+    found = scaled([{0: a * sin(theta)}], [1], {a})
+    assert equal_at_random_states([(found.rows[0][0], sin(theta))]).equal
