@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from eomgen.model.forces.load import Load, Scalar, Scene
+from eomgen.model.forces.load import Load, Scalar, Scene, SpreadLoad
 from eomgen.model.part import Part
 
 
 @dataclass(frozen=True, kw_only=True)
 class Force(Part):
-    """Something applied to the system.
+    """Something applied to the system; `by_mass` is what acts on every particle of a body as its mass is spread.
 
     A law gives `loads`, whether or not it has a `potential`: the two ways to its generalized forces.
     `works` is False for a kind that is read and checked but not derived yet.
@@ -17,10 +17,15 @@ class Force(Part):
 
     kind: ClassVar[str]
     works: ClassVar[bool] = True
+    by_mass: ClassVar[bool] = False
     placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """Forces and couples on bodies, and forces along coordinates."""
+        return ()
+
+    def spread(self, scene: Scene) -> tuple[SpreadLoad, ...]:
+        """What is spread along lines, of which `loads` gives the resultants."""
         return ()
 
     def potential(self, scene: Scene) -> Scalar | None:

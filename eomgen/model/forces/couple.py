@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
-from eomgen.model.kinds import AxesName, BodyName, Couple
+from eomgen.model.kinds import AxesName, BodyName, Couple, OwnPointName
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,16 +16,19 @@ class CoupleForce(Force):
         body: on which it acts.
         couple: about z in the plane, 1; in space 3 components [N m].
         axes: "ground", or the body whose axes the components are in.
+        point: of the body, where it acts: only what the body is strained by inside depends on it.
     """
 
     kind: ClassVar[str] = "couple"
     body: BodyName
     couple: Couple
     axes: AxesName = "ground"
+    point: OwnPointName | None = None
 
     def loads(self, scene: load.Scene) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
         couple = scene.vector(self.couple)
         if len(self.couple) == 1:
             couple = (0, 0, couple[0])
-        return (load.Couple(self.body, couple, axes),)
+        place = None if self.point is None else scene.own_place(self.body, self.point)
+        return (load.Couple(self.body, couple, axes, place),)

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, SpreadLoad, Vector
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.spatial import dot, minus, plus, times
@@ -30,13 +30,19 @@ class Distributed(Force):
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """Forces (2 q_A + q_B) L / 6 at A and (q_A + 2 q_B) L / 6 at B: the same resultant and moment as the load."""
-        (body, a), (_, b) = (scene.place(_own(self.body, name)) for name in self.between)
-        length = sqrt(dot(minus(b, a), minus(b, a)))
-        q_A, q_B = (scene.vector(q) for q in self.intensities or (self.intensity, self.intensity))
+        (line,) = self.spread(scene)
+        along = minus(line.end[1], line.start[1])
+        length = sqrt(dot(along, along))
         return (
-            PointForce((body, a), _resultant(length, q_A, q_B)),
-            PointForce((body, b), _resultant(length, q_B, q_A)),
+            PointForce(line.start, _resultant(length, line.at_start, line.at_end)),
+            PointForce(line.end, _resultant(length, line.at_end, line.at_start)),
         )
+
+    def spread(self, scene: Scene) -> tuple[SpreadLoad, ...]:
+        """q_A at A, q_B at B, linear between."""
+        a, b = (scene.place(_own(self.body, name)) for name in self.between)
+        q_A, q_B = (scene.vector(q) for q in self.intensities or (self.intensity, self.intensity))
+        return (SpreadLoad(a, b, q_A, q_B),)
 
 
 def _resultant(length: Scalar, near: Vector, far: Vector) -> Vector:

@@ -19,6 +19,7 @@ class Gravity(Force):
     """
 
     kind: ClassVar[str] = "gravity"
+    by_mass: ClassVar[bool] = True
     acceleration: Acceleration
     bodies: Bodies | None = None
 

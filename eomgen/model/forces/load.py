@@ -23,11 +23,15 @@ class PointForce:
 
 @dataclass(frozen=True)
 class Couple:
-    """A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m]."""
+    """A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m].
+
+    Where it acts matters inside the body alone: `place` is None where nobody said it.
+    """
 
     body: str
     couple: Vector
     axes: str | None = None
+    place: Place | None = None
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,16 @@ class UniformField:
     """An acceleration field that acts on every mass of the model: a weight m g at every mass centre [m/s^2]."""
 
     acceleration: Vector
+
+
+@dataclass(frozen=True)
+class SpreadLoad:
+    """A force per length on a body along the straight line between two places of it, linear, ground axes [N/m]."""
+
+    start: Place
+    end: Place
+    at_start: Vector
+    at_end: Vector
 
 
 Load = PointForce | Couple | GeneralizedForce | UniformField
@@ -70,6 +84,7 @@ class Scene(Protocol):
     def moves(self, scalars: tuple[Scalar, ...]) -> bool: ...
     def vanishes(self, scalar: Scalar) -> bool: ...
     def worth(self, scalar: Scalar) -> float | None: ...
+    def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]: ...
 
     @property
     def where(self) -> str: ...

@@ -1,0 +1,44 @@
+"""A place of rest -> the contacts that would have to pull there: it is no place of rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.contacts import CLOSED
+from eomgen.mechanics.reactions import Indeterminate, reactions_of
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Node, Scalar
+
+PULLS = -1e-9  # of a reaction against the largest of its kind and 1
+
+
+def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
+    """The one-sided ties whose reaction is negative at a state.
+
+    Args:
+        state: exact scalars of everything that moves.
+        values: of the parameters.
+    """
+    ties = system.scope.model.constraints
+    names = [name for name, tie in ties.items()
+             if getattr(tie, "unilateral", False) and system.modes.get(name, CLOSED).closed]  # fmt: skip
+    if not names:
+        return ()
+    try:
+        reactions = reactions_of(system, state)
+    except DerivationError:  # what acts at no place has no reactions
+        return ()
+    found = []
+    for j, component in enumerate(reactions.components):
+        if component.owner in names and component.label in ("n", "tension"):
+            try:
+                value = reactions.value(j)
+            except Indeterminate:
+                continue
+            known = all(x in values for x in symbols_of((value,)))
+            if known and evaluate((value,), values, FLOAT)[0] < PULLS:
+                found.append(component.owner)
+    return tuple(dict.fromkeys(found))

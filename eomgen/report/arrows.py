@@ -1,0 +1,76 @@
+"""Arrows of a drawing: forces that end at their point, couples as arcs, loads that are spread along a line."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from eomgen.report.drawing import LOAD, REACTION, Place, Sketch
+
+__all__ = ["LOAD", "REACTION", "arrow", "distributed", "moment_arc"]
+
+
+def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "", outward: bool = False) -> None:
+    """An arrow whose tip is at a place; `outward`: that begins there (velocities, displacements).
+
+    Args:
+        vector: direction and length, in the drawing's units.
+        label: at its free end.
+    """
+    (x, y), (dx, dy) = tip, vector
+    length = math.hypot(dx, dy)
+    if not length:
+        return
+    begin, end = ((x, y), (x + dx, y + dy)) if outward else ((x - dx, y - dy), (x, y))
+    panel.annotate("", end, xytext=begin, zorder=7,
+                   arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0})
+    free = end if outward else begin
+    panel.plot(*free, alpha=0)  # so that the axes hold it
+    if label:
+        sense = 1 if outward else -1
+        x, y = 8 * sense * dx / length, 8 * sense * dy / length
+        panel.annotate(label, free, xytext=(x, y), textcoords="offset points", color=color, fontsize=9, zorder=7,
+                       ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"))  # fmt: skip
+
+
+def _aligned(away: float, before: str, after: str) -> str:
+    return "center" if abs(away) < 3 else after if away > 0 else before
+
+
+def moment_arc(panel: Any, sketch: Sketch, at: Place, sense: float, *, color: str, label: str = "") -> None:
+    """A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense."""
+    r = 1.9 * sketch.symbol
+    turns = np.linspace(-0.25 * math.pi, 1.25 * math.pi, 40)
+    turns = turns if sense > 0 else turns[::-1]
+    x, y = at[0] + r * np.cos(turns), at[1] + r * np.sin(turns)
+    panel.plot(x[:-2], y[:-2], color=color, linewidth=1.5, zorder=7)
+    panel.annotate("", (x[-1], y[-1]), xytext=(x[-4], y[-4]), zorder=7,
+                   arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0})
+    if label:
+        panel.annotate(label, (at[0], at[1] + r), xytext=(0, 5), textcoords="offset points", color=color, fontsize=9,
+                       ha="center", va="bottom", zorder=7)  # fmt: skip
+
+
+def distributed(
+    panel: Any, ends: tuple[Place, Place], vectors: tuple[Place, Place], *, color: str = LOAD, label: str = ""
+) -> None:
+    """A load along a line: arrows whose tips are on it, their tails joined.
+
+    Args:
+        ends: of the line.
+        vectors: of the load there, in the drawing's units.
+    """
+    (a, b), (p, q) = (np.array(ends), np.array(vectors))
+    highest = max(float(np.linalg.norm(p)), float(np.linalg.norm(q)))
+    count = 3 + int(min(8.0, 3 * float(np.linalg.norm(b - a)) / (highest or 1.0)))
+    tails = []
+    for share in np.linspace(0, 1, count):
+        tip, vector = a + share * (b - a), p + share * (q - p)
+        tails.append(tip - vector)
+        arrow(panel, (tip[0], tip[1]), (vector[0], vector[1]), color=color)
+    panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
+    if label:
+        panel.annotate(label, tuple(np.mean(tails, axis=0)), xytext=(0, 4), textcoords="offset points", color=color,
+                       fontsize=9, ha="center", va="bottom", zorder=7)  # fmt: skip
