@@ -1,0 +1,241 @@
+"""System -> Static equations: what vanishes where the system is at rest, and stays so.
+
+    Q + J^T lam = 0,   phi = 0        at u = 0, t = 0, driven coordinates held where they start
+
+over all coordinates that are not driven, dependent ones among them. Relations between positions that a velocity row
+gives by itself (a wheel that rolls) are taken from the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.closed_instant import position_equations
+from eomgen.mechanics.dense import balanced
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.scope import Scope
+from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.work import generalized_forces, powered_forces
+from eomgen.model.part import altered
+from eomgen.model.table import Table
+from eomgen.symbolic.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.evaluation import FLOAT, evaluate, order
+from eomgen.symbolic.expressions import as_expression
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.text import to_text
+
+WORK = 20_000  # products of terms for one equation
+RANK = 1e-9  # of the largest singular value of scaled rows, below which one is 0
+
+Row = tuple[Scalar, ...]
+
+
+@dataclass(frozen=True)
+class StaticEquations:
+    """The balance of a system at rest.
+
+    Args:
+        system: of the model, its drives held.
+        held: the driven coordinates that the model moves, and that stand still here.
+        q: the coordinates sought.
+        given: what stands in place of speeds, time, inputs and driven coordinates.
+        Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
+        J: of each closing row its coefficients, lam its multiplier.
+        phi: relations between the coordinates.
+    """
+
+    system: System
+    held: tuple[str, ...]
+    q: tuple[Node, ...]
+    given: Mapping[Node, Scalar]
+    Q: Row
+    unbalanced: Row
+    J: tuple[Row, ...]
+    lam: tuple[Node, ...]
+    phi: Row
+
+    @cached_property
+    def forces(self) -> Row:
+        """Q + J^T lam."""
+        return tuple(
+            sum((row[k] * lam for row, lam in zip(self.J, self.lam, strict=True)), start=force)
+            for k, force in enumerate(self.Q)
+        )
+
+    @property
+    def equations(self) -> Row:
+        """All that vanishes."""
+        return (*self.forces, *self.phi)
+
+    @property
+    def unknowns(self) -> tuple[Node, ...]:
+        return (*self.q, *self.lam)
+
+    @property
+    def indifferent(self) -> tuple[Node, ...]:
+        """Coordinates that no equation holds: any place of theirs will do."""
+        return tuple(q for q in self.q if not any(depends_on(x, (q,)) for x in self.equations))
+
+    @property
+    def loaded(self) -> tuple[Node, ...]:
+        """The unknowns of the model that stand in the forces."""
+        unknowns = self.system.symbols.unknowns.values()
+        return tuple(x for x in unknowns if any(depends_on(force, (x,)) for force in self.Q))
+
+    def without(self, dropped: Collection[Node]) -> StaticEquations:
+        """The same over the other coordinates, which alone stand in the equations.
+
+        Raises:
+            DerivationError: a force along one of those dropped, which nothing balances.
+        """
+        for q, force in zip(self.q, self.forces, strict=True):
+            if q in dropped and not is_zero(force) and not vanishes(force):
+                raise DerivationError(f"nothing balances the force along '{q.name}': it is at rest nowhere",
+                                      f"coordinates.{q.name}")  # fmt: skip
+        kept = [k for k, q in enumerate(self.q) if q not in dropped]
+
+        def of(row: tuple[Any, ...]) -> tuple[Any, ...]:
+            return tuple(row[k] for k in kept)
+
+        return replace(self, q=of(self.q), Q=of(self.Q), unbalanced=of(self.unbalanced), J=tuple(map(of, self.J)))
+
+    def slopes(self, rows: Sequence[Row], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+        """Entries as numbers at a place."""
+        state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
+        flat = [x for row in rows for x in row]
+        return np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), -1 if rows else len(self.q))
+
+
+def rank(rows: np.ndarray) -> int:
+    """How many of the rows are independent."""
+    return int(np.linalg.matrix_rank(balanced(rows)[0], tol=RANK)) if rows.size else 0
+
+
+def static_equations(system: System) -> StaticEquations:
+    """The equations of the system at rest, its drives held.
+
+    Raises:
+        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a tie
+            that leaves no relation between positions.
+    """
+    _refuse_dry_friction(system)
+    system, held = _with_drives_held(system)
+    free = system.free or system
+    scope = free.scope
+    driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
+    q = tuple(x for x in scope.symbols.q if x not in driven)
+    _refuse_other_speeds(scope, q)
+    given = _given(free, driven)
+    rows = [readable_all(substituted(row, given), WORK) for row in free.ties.J]
+    Q = substituted(generalized_forces(free.loads), given)
+    _refuse_signs_of_rates(generalized_forces(free.loads), free)
+    unbalanced = substituted(powered_forces(free.loads), given)
+    phi = _relations(system, given, q)
+    Q, unbalanced, phi = (readable_all(x, WORK) if x else () for x in (Q, unbalanced, phi))
+    lam = free.symbols.lam
+    kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
+    return StaticEquations(system, held, q, given, Q, unbalanced, tuple(rows[i] for i in kept),
+                           tuple(lam[i] for i in kept), tuple(x for x in phi if not is_zero(x)))  # fmt: skip
+
+
+def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
+    """At rest, at t = 0."""
+    symbols, scope = free.symbols, free.scope
+    given: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
+    given |= {q: start_value(scope, scope.model.coordinates[q.name]) for q in driven}
+    inputs = substituted(tuple(free.inputs[name] for name in symbols.inputs), given)
+    return given | dict(zip(symbols.inputs.values(), inputs, strict=True))
+
+
+def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> Row:
+    """What the ties say of positions; constants that only the start fixes are taken from it."""
+    scope = system.scope
+    start = {x: start_value(scope, scope.model.coordinates[x.name]) for x in scope.symbols.q}
+    found = substituted(tuple(position_equations(system, start)), given)
+    return tuple(x for x in found if depends_on(x, q))
+
+
+def refuse_unrelated(statics: StaticEquations, q: np.ndarray, values: Mapping[Node, float]) -> None:
+    """Refuse a velocity row that leaves no relation between positions.
+
+    Raises:
+        DerivationError: rest is then possible in many places.
+    """
+    relations = statics.slopes(jacobian(statics.phi, statics.q), q, values) if statics.phi else np.zeros((0, len(q)))
+    if rank(relations) >= rank(statics.slopes(statics.J, q, values)):
+        return
+    free = statics.system.free or statics.system
+    names = [row.tie for row in free.ties.closing if row.gap is None]
+    what = f"'{names[0] if names else 'a tie'}' holds velocities and no positions: rest is possible in many places"
+    raise DerivationError(what, f"constraints.{names[0]}" if names else "", "ask it of a system that is held in place")
+
+
+# -- what is held ------------------------------------------------------------------------------------
+
+
+def _with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
+    """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
+    scope = system.scope
+    bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
+    table = dict(scope.model.coordinates)
+    moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
+    if not moved:
+        return system, ()
+    free = any(not part.driven for part in table.values())
+    for name in moved:
+        if free and not depends_on(bias[name], (scope.symbols.t,)):
+            what = f"'{name}' moves on at a constant rate, and nothing is at rest beside it"
+            raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
+        place = as_expression(to_text(start_value(scope, table[name])))
+        table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
+    model = altered(scope.model, coordinates=Table(table))
+    return system_of(model, system.modes), tuple(moved)
+
+
+def _refuse_other_speeds(scope: Scope, q: Sequence[Node]) -> None:
+    """Coordinates without a rate of their own."""
+    names = {u.name for u in scope.symbols.u}
+    lacking = [x.name for x in q if f"{x.name}'" not in names]
+    if lacking:
+        raise NotYet(f"rest of a system whose speeds are not rates is not sought yet: '{lacking[0]}'",
+                     f"coordinates.{lacking[0]}", "describe the orientation by angles")  # fmt: skip
+
+
+def _refuse_dry_friction(system: System) -> None:
+    """Coulomb's friction holds a system at rest in a range of places.
+
+    Raises:
+        DerivationError: the contact is named.
+    """
+    model = system.scope.model
+    for name, tie in model.constraints.items():
+        if getattr(getattr(tie, "friction", None), "coulomb", None) is not None:
+            raise _rubs(name, f"constraints.{name}")
+    for name, body in model.bodies.items():
+        pieces: Any = getattr(body.joint, "pieces", None) or ()
+        if any(getattr(piece.friction, "coulomb", None) is not None for piece in pieces):
+            raise _rubs(name, f"bodies.{name}.joint")
+
+
+def _rubs(name: str, where: str) -> DerivationError:
+    return DerivationError(f"'{name}' rubs: by dry friction it rests in a range of places, not in single ones", where,
+                           "leave the friction out, or ask at an instant which force it takes")  # fmt: skip
+
+
+def _refuse_signs_of_rates(Q: Row, free: System) -> None:
+    """Dry friction that is written as a force: -c*sign(x')."""
+    u = free.symbols.u
+    for node in order(Q):
+        if node.op == "sign" and any(depends_on(a, u) for a in node.args):
+            raise DerivationError("a force jumps with the sign of a rate: at rest it may have any value in between",
+                                  mend="leave it out where rest is sought")  # fmt: skip
+
+

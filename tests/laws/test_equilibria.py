@@ -1,0 +1,493 @@
+"""Places of rest: all of them, exact, with their stability; forces that hold a system; each against another way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.equilibria import Equilibria, Equilibrium, all_equilibria
+from eomgen.mechanics.holding import holding_of
+from eomgen.mechanics.system import system_of
+from eomgen.model.parts import Model
+from eomgen.symbolic.text import to_text
+from eomgen.verbs.reactions import reactions
+from eomgen.verbs.statics import statics
+
+HEAD = 'eomgen = 1\nname = "system"\nspace = "plane"\n'
+WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
+
+
+def model_of(text: str, **parameters: float | str) -> Model:
+    table = "".join(f"{name} = {value}\n" for name, value in parameters.items())
+    return eomgen.loads(f"{HEAD}[parameters]\n{table}{text}")
+
+
+def found_in(model: Model) -> Equilibria:
+    return all_equilibria(system_of(model))
+
+
+def exact(place: Equilibrium) -> dict[str, str]:
+    return {node.name: to_text(x) for node, x in place.exact.items()}
+
+
+def number(place: Equilibrium, name: str) -> float:
+    (value,) = (x for node, x in place.numbers.items() if node.name == name)
+    return value
+
+
+def accelerations(model: Model, place: Equilibrium) -> np.ndarray:
+    """Of the equations of motion, which know nothing of the search, at rest in the place."""
+    rhs = eomgen.derive(model).rhs("numpy")
+    x = np.array([number(place, name) for name in rhs.coordinates] + [0.0] * len(rhs.speeds))
+    return rhs(0.0, x, rhs.p0)
+
+
+# -- one freedom -------------------------------------------------------------------------------------
+
+UPRIGHT = """
+[coordinates]
+a = 0.1
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "a", turned = { axis = [0, 0, 1], angle = "pi/2" }, stiffness = "k" }
+"""
+
+
+def test_a_pendulum_rests_below_and_above():
+    """m g l sin(theta) = 0: theta = 0 stable, theta = pi unstable."""
+    found = found_in(eomgen.load("models/simple_pendulum.toml"))
+    assert found.complete
+    assert [(exact(e)["theta"], e.stability.kind) for e in found.found] == [("0", "stable"), ("pi", "unstable")]
+    assert [to_text(e.stability.K[0][0]) for e in found.found] == ["m*l*g", "-m*l*g"]
+
+
+@pytest.mark.parametrize("k", [0.4, 1.2, 3, 4.9, 5.1, 8])
+def test_an_upright_bar_on_a_spring_has_the_places_of_a_dense_scan(k):
+    """k a = m g l/2 sin(a): one place for k > m g l/2, else more; the upright one is then unstable."""
+    found = found_in(model_of(UPRIGHT + WEIGHT, m=1, l=1, g=10, k=k))
+    a = np.linspace(0.1 - 2 * math.pi, 0.1 + 2 * math.pi, 200_000)
+    force = k * a - 5 * np.sin(a)
+    assert found.complete and len(found.found) == np.count_nonzero(np.diff(np.sign(force)))
+    (upright,) = (e for e in found.found if exact(e).get("a") == "0")
+    assert upright.stability.kind == ("stable" if k > 5 else "unstable")
+    for e in found.found:
+        assert abs(k * number(e, "a") - 5 * math.sin(number(e, "a"))) < 1e-12
+
+
+def test_at_the_critical_stiffness_the_fourth_derivative_decides():
+    """k = m g l/2: V'' = V''' = 0, V'''' = m g l/2 > 0."""
+    (upright,) = found_in(model_of(UPRIGHT + WEIGHT, m=1, l=1, g=10, k=5)).found
+    assert exact(upright)["a"] == "0" and upright.stability.kind == "stable" and "number 4" in upright.stability.why
+
+
+TRUSS = """
+[coordinates]
+y = "h"
+[points]
+A = ["-a", 0]
+B = ["a", 0]
+[bodies.p]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = [0, "y"] }
+[forces]
+left = { kind = "spring", points = ["p.center", "A"], stiffness = "k", length = "sqrt(a^2 + h^2)" }
+right = { kind = "spring", points = ["p.center", "B"], stiffness = "k", length = "sqrt(a^2 + h^2)" }
+"""
+LOAD = '[forces.load]\nkind = "force"\npoint = "p.center"\nforce = [0, "-P"]\n'
+
+
+def test_a_flat_truss_of_two_springs_snaps_through():
+    """Without a load y = h, 0, -h; loaded beyond its limit it rests below alone."""
+    free = found_in(model_of(TRUSS, m=1, a=1, h=0.4, k=1000))
+    assert free.complete
+    assert [(exact(e)["y"], e.stability.kind) for e in free.found] == [
+        ("h", "stable"), ("0", "unstable"), ("-h", "stable")]  # fmt: skip
+    assert len(found_in(model_of(TRUSS + LOAD, m=1, a=1, h=0.4, k=1000, P=10)).found) == 3
+    (below,) = found_in(model_of(TRUSS + LOAD, m=1, a=1, h=0.4, k=1000, P=100)).found
+    assert number(below, "y") < -0.4 and below.stability.kind == "stable"
+
+
+ROCKER = """
+[coordinates]
+p = 0
+[bodies.top]
+mass = "m"
+inertia = "m*r^2"
+joint = { kind = "placed", at = ["(R + r)*sin(p) - e*sin((R + r)/r*p)", "(R + r)*cos(p) - e*cos((R + r)/r*p)"] }
+"""
+
+
+@pytest.mark.parametrize(("e", "kind"), [(0.55, "stable"), (0.45, "unstable"), (0.5, "unstable")])
+def test_a_rocker_on_a_cylinder(e, kind):
+    """Stable where its mass centre is lower above the contact than R r/(R + r); at equality V'''' < 0."""
+    found = found_in(model_of(ROCKER + WEIGHT, m=1, R=1, r=1, g=10, e=e))
+    assert found.found[0].exact and exact(found.found[0])["p"] == "0"
+    assert found.found[0].stability.kind == kind
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_place_is_missed(seed):
+    """Of a force that is a random Fourier sum, as many places as a dense scan shows, half of them stable."""
+    rng = np.random.default_rng(seed)
+    n = np.arange(1, 5)
+    a, b = (np.round(rng.uniform(-1, 1, 4), 3) for _ in range(2))
+    terms = "".join(f" + ({x})*cos({k}*q) + ({y})*sin({k}*q)" for k, x, y in zip(n, a, b, strict=True))
+    text = f"""
+[coordinates]
+q = 0
+[bodies.d]
+shape = {{ kind = "disc", mass = "m", radius = "r" }}
+joint = {{ kind = "revolute", angle = "q" }}
+[forces.f]
+kind = "couple"
+body = "d"
+couple = "0.2{terms}"
+"""
+    found = found_in(model_of(text, m=1, r=1))
+    q = np.linspace(-math.pi, math.pi, 100_001)
+    force = 0.2 + np.sum([x * np.cos(k * q) + y * np.sin(k * q) for k, x, y in zip(n, a, b, strict=True)], axis=0)
+    crossings = np.flatnonzero(np.diff(np.sign(force)))
+    assert found.complete and len(found.found) == len(crossings)
+    places = sorted(number(e, "q") for e in found.found)
+    assert places == pytest.approx(sorted(q[crossings]), abs=1e-4)
+    assert sum(e.stability.kind == "stable" for e in found.found) == len(crossings) / 2
+
+
+# -- several freedoms --------------------------------------------------------------------------------
+
+
+def chain(n: int) -> str:
+    """n rods, each hung on the one before, pulled aside at the end; angles against the ground."""
+    text = "[coordinates]\n" + "".join(f"q{k} = {0.1 * k}\n" for k in range(n))
+    for k in range(n):
+        on, angle = ("", "q0") if k == 0 else (f'on = "b{k - 1}.end", ', f"q{k} - q{k - 1}")
+        joint = f'joint = {{ kind = "revolute", {on}angle = "{angle}" }}'
+        text += f'[bodies.b{k}]\nshape = {{ kind = "rod", mass = "m", length = "l" }}\n{joint}\n'
+    return text + f'[forces.F]\nkind = "force"\npoint = "b{n - 1}.end"\nforce = ["F", 0]\n' + WEIGHT
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_a_chain_pulled_aside(n):
+    """tan(q_k) = -(n - k - 1/2) m g/F for rods counted from 0; each hangs or stands: 2^n places, one of them stable."""
+    found = found_in(model_of(chain(n), m=1, l=1, g=10, F=5))
+    assert found.complete and len(found.found) == 2**n
+    (stable,) = (e for e in found.found if e.stability.kind == "stable")
+    for k in range(n):
+        assert math.tan(number(stable, f"q{k}")) == pytest.approx(-(n - k - 0.5) * 2, abs=1e-12)
+    assert all(e.is_exact for e in found.found)
+
+
+def test_a_linear_system_has_one_place_and_it_is_exact():
+    """Two masses that hang on springs one below the other: x1 = (m1 + m2) g/k1, x2 = x1 + m2 g/k2."""
+    text = """
+[coordinates]
+x1 = {}
+x2 = {}
+[points]
+O = [0, 0]
+[bodies.a]
+shape = { kind = "particle", mass = "m1" }
+joint = { kind = "placed", at = [0, "-x1"] }
+[bodies.b]
+shape = { kind = "particle", mass = "m2" }
+joint = { kind = "placed", at = [0, "-x2"] }
+[forces]
+s1 = { kind = "spring", points = ["O", "a.center"], stiffness = "k1", length = 0, along = [0, 1] }
+s2 = { kind = "spring", points = ["a.center", "b.center"], stiffness = "k2", length = 0, along = [0, 1] }
+"""
+    positive = dict.fromkeys(("m1", "m2", "k1", "k2", "g"), "{ positive = true }")
+    found = found_in(model_of(text + WEIGHT, **positive))
+    (place,) = found.found
+    assert found.complete and exact(place) == {"x1": "g*(m1 + m2)/k1", "x2": "g*(m1*k2 + m2*k1 + m2*k2)/(k1*k2)"}
+    assert place.stability.kind == "stable"
+
+
+FOLLOWER = """
+[coordinates]
+a = 0
+b = 0
+[bodies.one]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "a", stiffness = "k" }
+[bodies.two]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "one.end", angle = "b", stiffness = "k" }
+[forces.P]
+kind = "force"
+point = "two.end"
+force = ["-P", 0]
+"""
+
+
+def test_a_follower_load_has_no_potential_energy():
+    """Its K is not symmetric and decides nothing; the same load of fixed direction has one."""
+    follower = found_in(model_of(FOLLOWER + 'axes = "two"\n', m=1, l=1, k=1, P=1)).found[0]
+    assert exact(follower) == {"a": "0", "b": "0"} and follower.stability.kind == "no potential energy"
+    dead = found_in(model_of(FOLLOWER, m=1, l=1, k=10, P=1)).found[0]
+    assert dead.stability.kind == "stable" and dead.stability.K[0][1] == dead.stability.K[1][0]
+
+
+def test_what_no_force_holds_is_left_where_it_starts():
+    """The cart of an inverted pendulum."""
+    found = found_in(eomgen.load("models/cart_pole.toml"))
+    assert [q.name for q in found.indifferent] == ["x"]
+    assert {exact(e)["theta"]: e.stability.kind for e in found.found} == {"0": "unstable", "pi": "stable"}
+
+
+# -- ties --------------------------------------------------------------------------------------------
+
+
+def four_bar_energy(alpha: float, near: np.ndarray) -> tuple[float, np.ndarray]:
+    """(V, (beta, gamma)) of models/four_bar.toml with its crank at alpha, the loop closed by Newton's method."""
+    a, b, c, d, m, g = 0.4, 1.0, 0.8, 1.1, 1.0, 9.81
+    x = near.copy()
+    for _ in range(30):
+        beta, gamma = x
+        gap = [a * math.cos(alpha) + b * math.cos(beta) - c * math.cos(gamma) - d,
+               a * math.sin(alpha) + b * math.sin(beta) - c * math.sin(gamma)]  # fmt: skip
+        J = [[-b * math.sin(beta), c * math.sin(gamma)], [b * math.cos(beta), -c * math.cos(gamma)]]
+        x = x - np.linalg.solve(J, gap)
+    heights = a / 2 * math.sin(alpha), a * math.sin(alpha) + b / 2 * math.sin(x[0]), c / 2 * math.sin(x[1])
+    return m * g * (heights[0] + 2 * heights[1] + heights[2]), x
+
+
+def test_a_four_bar_rests_where_its_energy_is_stationary():
+    """dV/d alpha = 0 and d2V/d alpha2 = K along the loop, by differences of an energy of our own."""
+    found = found_in(eomgen.load("models/four_bar.toml"))
+    assert found.complete and len(found.found) == 4
+    for e in found.found:
+        x = np.array([number(e, "beta"), number(e, "gamma")])
+        alpha, h = number(e, "alpha"), 1e-4
+        below, here, above = (four_bar_energy(alpha + s, x)[0] for s in (-h, 0, h))
+        assert abs(above - below) / (2 * h) < 1e-6
+        assert (above - 2 * here + below) / h**2 == pytest.approx(e.stability.K[0][0], rel=1e-5)
+        assert e.stability.kind == ("stable" if e.stability.K[0][0] > 0 else "unstable")
+
+
+@pytest.mark.parametrize("path", ["four_bar", "slider_crank", "elastic_pendulum", "double_pendulum", "cart_pole",
+                                  "rolling_disc_and_bar", "two_mass_oscillator"])  # fmt: skip
+def test_at_rest_the_equations_of_motion_have_no_acceleration(path):
+    """u = 0 and a = 0 solve them, each place, dependent coordinates and closing ties included."""
+    model = eomgen.load(f"models/{path}.toml")
+    found = found_in(model)
+    assert found.found
+    for e in found.found:
+        assert np.max(np.abs(accelerations(model, e)), initial=0) < 1e-11
+
+
+SCISSOR = """
+[coordinates]
+a = 0.6
+b = { dependent = true, near = 2.5 }
+x = { dependent = true, near = 1 }
+[bodies.I]
+shape = { kind = "rod", mass = 0, length = "2*l" }
+joint = { kind = "revolute", angle = "a" }
+[bodies.II]
+shape = { kind = "rod", mass = 0, length = "2*l" }
+joint = { kind = "placed", at = ["x", 0], angle = "b" }
+[constraints.pin]
+kind = "pin"
+points = ["I.center", "II.center"]
+[forces.G]
+kind = "force"
+point = "II.end"
+force = [0, "-G"]
+[forces.s]
+kind = "spring"
+points = ["I.start", "II.start"]
+stiffness = "k"
+length = 1
+along = [1, 0]
+"""
+
+
+def test_forces_without_limit_hold_nothing():
+    """Both bars upright one pin has no arm: det [Q; J] = 0, and no multiplier balances it. G cot = k(2 l cos - 1)."""
+    found = found_in(model_of(SCISSOR, l=1, G=100, k=300))
+    assert len(found.found) == 4
+    for e in found.found:
+        a = number(e, "a")
+        assert number(e, "x") == pytest.approx(2 * math.cos(a), abs=1e-12)
+        assert 300 * (2 * math.cos(a) - 1) * math.sin(a) == pytest.approx(100 * math.cos(a), abs=1e-9)
+
+
+# -- what holds a system -----------------------------------------------------------------------------
+
+TOGGLE = """
+[unknowns]
+P = "of the press"
+[coordinates]
+th = { start = "b" }
+ph = { dependent = true, near = 2.5 }
+y = { dependent = true, near = 1.6 }
+[bodies.one]
+shape = { kind = "rod", mass = 0, length = "l" }
+joint = { kind = "revolute", angle = "pi/2 - th" }
+[bodies.two]
+shape = { kind = "rod", mass = 0, length = "l" }
+joint = { kind = "revolute", on = "one.end", angle = "ph" }
+[bodies.ram]
+mass = 0
+joint = { kind = "placed", at = [0, "y"] }
+[constraints.pin]
+kind = "pin"
+points = ["two.end", "ram.origin"]
+[forces.F]
+kind = "force"
+point = "one.end"
+force = ["-F", 0]
+[forces.P]
+kind = "force"
+point = "ram.origin"
+force = [0, "-P"]
+[outputs]
+P = { value = "P", at = "equilibrium" }
+"""
+
+
+def test_a_toggle_press():
+    """P = F/(2 tan b)"""
+    model = model_of(TOGGLE, l="{ value = 1, positive = true }", F=10, b="{ value = 0.6, positive = true }")
+    (P,) = holding_of(system_of(model)).unknowns.values()
+    assert to_text(P) == "1/2*F*cos(b)/sin(b)"
+    assert eomgen.solve(model)["P"].value == pytest.approx(5 / math.tan(0.6), abs=1e-12)
+
+
+LADDER = """
+[unknowns]
+S = "in the string"
+[coordinates]
+th = "b"
+[bodies.bar]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "placed", at = ["l*cos(th)", 0], angle = "pi - th" }
+[constraints]
+floor = { kind = "support", point = "bar.start", normal = [0, 1], at = [0, 0] }
+wall = { kind = "support", point = "bar.end", normal = [1, 0], at = [0, 0] }
+[forces.S]
+kind = "force"
+point = "bar.start"
+force = ["-S", 0]
+[outputs]
+S = { value = "S", at = "equilibrium" }
+S_by_balance = "S"
+N = { value = "reaction_n(floor)", at = "equilibrium" }
+"""
+
+
+def test_a_ladder_on_a_smooth_wall_held_by_a_string():
+    """S = m g/(2 tan b), by virtual work and by the balance of the ladder; N = m g."""
+    answers = eomgen.solve(model_of(LADDER + WEIGHT, m=10, l=4, g=10, b=1))
+    assert answers["N"].exact == "m*g"
+    for name in ("S", "S_by_balance"):
+        assert answers[name].value == pytest.approx(50 / math.tan(1), rel=1e-12)
+
+
+def test_more_unknowns_than_freedoms_are_refused():
+    text = LADDER.replace('[coordinates]', 'T = "another"\n[coordinates]').replace('["-S", 0]', '["-S - T", 0]')
+    with pytest.raises(DerivationError, match="more unknowns than freedoms"):
+        holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
+
+
+def test_an_unknown_that_does_no_work_holds_nothing():
+    text = LADDER.replace('["-S", 0]', '[0, "S"]')
+    with pytest.raises(DerivationError, match="no unknown load does work"):
+        holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
+
+
+# -- what is asked -----------------------------------------------------------------------------------
+
+
+def test_outputs_and_reactions_at_rest():
+    """At the nearest place, exact: the pendulum hangs, and its hinge carries m g."""
+    model = model_of(
+        UPRIGHT.replace('turned = { axis = [0, 0, 1], angle = "pi/2" }, ', "").replace('"m"', '"m"')
+        + '[forces.weight]\nkind = "gravity"\nacceleration = ["g", 0]\n[outputs]\n'
+        'a = { value = "a", at = "equilibrium" }\nX = { value = "reaction_x(bar)", at = "equilibrium" }\n',
+        **dict.fromkeys(("m", "l", "k", "g"), "{ positive = true }"),
+    )
+    answers = eomgen.solve(model)
+    assert answers["a"].exact == "0" and answers["X"].exact == "-m*g"
+    found = reactions(model, at="equilibrium")
+    assert not found.failed and found.payload["reactions"]["reaction_x(bar)"]["exact"] == "-m*g"
+
+
+def test_the_verb_of_statics_gives_the_places_of_rest():
+    model = eomgen.load("models/simple_pendulum.toml")
+    payload = statics(model, format="json").payload
+    assert [e["coordinates"]["theta"]["exact"] for e in payload["equilibria"]] == ["0", "pi"]
+    assert payload["complete"] and payload["equilibria"][0]["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
+    text = statics(model).text
+    assert "There are 2 places of rest" in text and "stable" in text
+    assert r"\frac{\partial^{2} V}{\partial q^{2}}" in statics(model, format="latex").text
+    with pytest.raises(UsageError, match="structures that stand"):
+        statics(model, reaction="reaction_x(rod)")
+
+
+# -- what has no places ------------------------------------------------------------------------------
+
+BOX = """
+[coordinates]
+y = 0
+[bodies.b]
+shape = { kind = "rectangle", mass = "m", width = 1, height = 1 }
+joint = { kind = "planar", x = "x", y = "y", angle = "th" }
+"""
+
+
+def test_a_contact_that_would_have_to_pull_is_named():
+    box = BOX.replace("y = 0", "y = 0\nx = 0\nth = 0")
+    text = box + """
+[constraints.floor]
+kind = "support"
+point = "b.center"
+normal = [0, 1]
+unilateral = true
+[forces]
+up = { kind = "force", point = "b.center", force = ["1 - x", "20*x"] }
+turn = { kind = "torsion_spring", body = "b", stiffness = 3 }
+[outputs]
+th = { value = "th", at = "equilibrium" }
+"""
+    assert "'floor' would have to pull" in (eomgen.solve(model_of(text + WEIGHT, m=1, g=10))["th"].message or "")
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    (BOX.replace('x = "x"', 'x = "0"').replace('angle = "th"', 'angle = "0"') + WEIGHT, "nothing balances the force"),
+    (BOX.replace("y = 0", "y = 0\nx = 0\nth = 0") + WEIGHT + '[constraints.f]\nkind = "support"\n'
+     'point = "b.center"\nnormal = [0, 1]\nfriction = 0.3\n', "'f' rubs"),
+    (BOX.replace("y = 0", 'y = 0\nx = { motion = "2*t" }').replace('angle = "th"', 'angle = "0"') + WEIGHT,
+     "moves on at a constant rate"),
+])  # fmt: skip
+def test_what_rests_nowhere_or_anywhere_is_refused(text, words):
+    with pytest.raises(DerivationError, match=words):
+        found_in(model_of(text, m=1, g=10))
+
+
+def test_a_drive_is_held_where_it_starts():
+    """A shaken mass: at rest the seat of its spring is where it is at t = 0, and that is said."""
+    text = """
+[coordinates]
+y = { motion = "0.3*cos(2*t)" }
+x = 0
+[bodies.b]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", 0] }
+[bodies.seat]
+mass = 0
+joint = { kind = "placed", at = ["y", 0] }
+[forces.s]
+kind = "spring"
+points = ["seat.origin", "b.center"]
+stiffness = "k"
+length = 0
+along = [1, 0]
+"""
+    text = text.replace("cos(2*t)", "(1 + sin(2*t))")
+    found = found_in(model_of(text, m=1, k=2))
+    assert found.statics.held == ("y",) and exact(found.found[0]) == {"y": "3/10", "x": "3/10"}
