@@ -1,0 +1,190 @@
+"""Model -> Kinematics: places, velocities and accelerations at one instant, however the model gives them.
+
+A model with [given], or of bodies and ties alone, has one configuration, and velocities that ties and given equations
+say. A model with coordinates is taken at its start, or where a condition is first met.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from math import isfinite
+
+from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.journey import Journey
+from eomgen.mechanics.freedom import counted, redundant_rows
+from eomgen.mechanics.kinematic_state import KinematicState, State
+from eomgen.mechanics.motion_kind import Kinds
+from eomgen.mechanics.snapshot import Snapshot, snapshot_of
+from eomgen.mechanics.start import fixed_by_position
+from eomgen.model.fields import Equation
+from eomgen.model.part import altered, made
+from eomgen.model.parts import Given, Model
+from eomgen.moments import Moment, parameters_of
+from eomgen.report.kinematics_result import Kinematics
+from eomgen.situation import Situation, exact_numbers
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.expressions import Expression, parse_equation
+from eomgen.symbolic.graph import Node, is_zero
+from eomgen.symbolic.text import text_size
+
+LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
+
+
+def state_of(model: Model, at: Equation | None = None) -> KinematicState:
+    """The motion of a model at an instant.
+
+    Args:
+        at: the condition that is first met then; None: the start.
+    Raises:
+        UsageError: an instant of a model that has no motion in time.
+        DerivationError: nothing can move; more than one rate is missing; given velocities contradict one another.
+    """
+    if model.given is None and (model.coordinates or at is not None):
+        return _on_the_way(model, at)
+    if at is not None:
+        raise UsageError("[given] speaks of one configuration: there is no other instant",
+                         mend="leave --at out, or move the model by coordinates")  # fmt: skip
+    return _of_snapshot(model)
+
+
+# -- one configuration, given velocities -------------------------------------------------------------
+
+
+def _of_snapshot(model: Model) -> KinematicState:
+    snapshot = snapshot_of(model)
+    known = snapshot.velocities
+    snapshot.refuse_several()
+    rate, symbol = snapshot.open_rate, None
+    if rate:
+        symbol = _symbol(snapshot, rate)
+        snapshot = snapshot.assuming(rate, symbol)
+    velocity = () if model.given is None else model.given.velocity or ()
+    found = KinematicState(
+        snapshot.system, snapshot.moving, {} if rate else _accelerated(snapshot), known.freedoms,
+        counted(snapshot.system.ties), "in this configuration", tuple(equation.text for equation in velocity), rate,
+        symbol, snapshot.exact,
+    )  # fmt: skip
+    if known.freedoms == 0 and _rests(found):
+        raise DerivationError(f"nothing can move: {_held(model)} as a structure, with 0 freedoms",
+                              mend="for reactions: eomgen statics MODEL; for a mechanism take a tie away")  # fmt: skip
+    return found
+
+
+def _held(model: Model) -> str:
+    ties = ", ".join(f"'{name}'" for name in (*model.constraints, *model.trusses))
+    return f"{ties} hold the bodies" if ties else "the joints hold the bodies"
+
+
+def _accelerated(snapshot: Snapshot) -> State:
+    """With the accelerations where ties and given equations determine them all."""
+    return {} if snapshot.accelerations.free else snapshot.state
+
+
+def _symbol(snapshot: Snapshot, rate: str) -> Node:
+    """omega_I for omega(I), v for the velocity of a point."""
+    function, _, rest = rate.removesuffix(")").partition("(")
+    name = f"{function}_{rest}" if function.startswith("omega") else f"{function}_{rest.partition('.')[0]}"
+    while name in snapshot.system.scope.names:
+        name += "_"
+    return snapshot.system.scope.graph.symbol(name)
+
+
+def _rests(state: KinematicState) -> bool:
+    """Whether no body moves."""
+    return all(is_zero(x) for field in state.fields.values() for x in (*field.v, *field.w))
+
+
+# -- a motion in time ---------------------------------------------------------------------------------
+
+
+def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
+    moment, when = _moment(Journey(model, at_rest=False), at), "at the start" if at is None else f"when {at.text}"
+    situation, exact, numbers = moment.situation, moment.exact, moment.numbers
+    symbols = situation.system.symbols
+    needed = (*symbols.q, *symbols.u, *([symbols.t] if _sees_time(situation) else []))
+    whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
+    moving = dict(exact) if whole else exact_numbers(numbers)
+    if not moving and (symbols.q or symbols.u):
+        raise DerivationError("the state has no closed form, and without values of all parameters no number",
+                              mend="give the parameters values")  # fmt: skip
+    moving = {**{symbols.t: 0}, **moving}
+    ties = situation.system.ties
+    freedoms = len(symbols.u) - len(ties.closing) + len(redundant_rows(ties))
+    count = counted((situation.system.free or situation.system).ties)
+    found = KinematicState(situation.system, moving, {}, freedoms, count, when, exact=whole)
+    if at is None and freedoms == 1 == len(symbols.u) and _rests(found):
+        (u,) = symbols.u
+        return replace(found, moving={**moving, u: u}, rate=u.name, symbol=u)
+    return replace(found, accelerated=_with_accelerations(situation, moving, numbers))
+
+
+def _sees_time(situation: Situation) -> bool:
+    """Whether time itself stands in where bodies are and how they move."""
+    links, t = situation.system.motion.links, situation.system.symbols.t
+    return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
+
+
+def _moment(journey: Journey, at: Equation | None) -> Moment:
+    """The start, or where the condition is met; in numbers where the ties place more than one coordinate."""
+    if at is not None:
+        return journey.until(at)
+    many = journey.numbers and len(fixed_by_position(journey.situation.system)) > 1
+    return Moment(journey.situation, {} if many else journey.start, journey.numbers, "at the start")
+
+
+def _with_accelerations(situation: Situation, moving: State, numbers: Mapping[Node, float]) -> State:
+    """With the accelerations by the equations of motion, in numbers where formulas are long; {}: nothing has mass."""
+    symbols = situation.system.symbols
+    if not symbols.u:
+        return moving
+    try:
+        raw = substituted(situation.accelerations, moving)
+        if not numbers or sum(map(text_size, raw)) <= LONG:
+            state = situation.complete(moving)
+            return state if all(a in state for a in symbols.a) else {}
+        values = {**parameters_of(situation), **numbers}
+        found = [situation.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
+    except EomgenError:
+        return {}
+    inputs = situation.complete(moving, Expression.number(0))
+    return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))} if all(map(isfinite, found)) else {}
+
+
+# -- as a user asks for it ------------------------------------------------------------------------------
+
+
+def kinematics(
+    model: Model, at: Equation | str | None = None, *, given: Sequence[Equation | str] = (),
+    relative: Sequence[tuple[str, str]] = (),
+) -> Kinematics:  # fmt: skip
+    """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
+
+    Args:
+        at: the instant: an equation that is first met then; None: the start, or the one configuration.
+        given: velocities besides those of the model: "omega(crank) = 2".
+        relative: (point, body) pairs: the point as it is seen from the body.
+    Raises:
+        ExpressionError: a text that is no equation.
+        ModelError: an equation with unknown names.
+        DerivationError: nothing can move; too few or too many velocities are given.
+    """
+    equations = tuple(map(_equation, given))
+    state = state_of(_with_given(model, equations), None if at is None else _equation(at))
+    moves = model.given is None and not equations and bool(model.coordinates)
+    kinds = Kinds(state.system, {} if state.symbol is not None else state.moving) if moves else None
+    return Kinematics(state, kinds, tuple(relative))
+
+
+def _equation(text: Equation | str) -> Equation:
+    return text if isinstance(text, Equation) else Equation(*parse_equation(text), text=text)
+
+
+def _with_given(model: Model, equations: Sequence[Equation]) -> Model:
+    """The model that gives these velocities too, checked as a whole."""
+    if not equations:
+        return model
+    own = model.given or made(Given, {})
+    return dataclasses.replace(model, given=altered(own, velocity=(*(own.velocity or ()), *equations)))

@@ -1,0 +1,65 @@
+"""eomgen kinematics: velocities, accelerations and centres of rotation at an instant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.errors import ExpressionError, ModelError, UsageError
+from eomgen.model.parts import Model
+from eomgen.velocities import kinematics as found_in
+from eomgen.verbs.given import nearest
+from eomgen.verbs.outcome import Outcome, prepared
+
+
+def kinematics(
+    model: Model, *, format: str = "text", plot: str | None = None, at: str | None = None, given: Sequence[str] = (),
+    relative: Sequence[str] = (),
+) -> Outcome:  # fmt: skip
+    """The motion at one instant.
+
+    Args:
+        format: text, latex, markdown or json.
+        plot: a picture's file.
+        at: the instant, an equation; None: the start, or the one configuration.
+        given: velocities besides those of the model: "omega(crank) = 2".
+        relative: points as they are seen from moving bodies: "P in disc".
+    Raises:
+        UsageError: no equation; no such point or body.
+    """
+    pairs = tuple(_pair(model, text) for text in relative)
+    try:
+        found = found_in(model, at, given=given, relative=pairs)
+    except ExpressionError as error:
+        raise UsageError(f"{error.what} (in {_asked(at, given)})", mend=error.mend) from error
+    except ModelError as error:
+        if not given:
+            raise
+        raise UsageError(f"--given: {error.what}", mend=error.mend) from error
+    if plot is not None:
+        found.plot(prepared(plot))
+    wrong = found.disagreement
+    failed = f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
+    if format == "json":
+        return Outcome("", found.as_dict(), failed)
+    return Outcome(found.render(format), {}, failed)
+
+
+def _asked(at: str | None, given: Sequence[str]) -> str:
+    return " ".join([*([f'--at "{at}"'] if at else []), *(f'--given "{text}"' for text in given)])
+
+
+def _pair(model: Model, text: str) -> tuple[str, str]:
+    """(point, body) of "P in disc".
+
+    Raises:
+        UsageError: it is not written so, or there is no such point or body.
+    """
+    point, word, body = (part.strip() for part in text.partition(" in "))
+    if not word:
+        raise UsageError(f'--relative "{text}" is no point in a body', mend='write --relative "bead.center in hoop"')
+    if body not in model.bodies:
+        raise UsageError(f"--relative: there is no body '{body}'", mend=nearest(body, model.bodies))
+    points = [*model.points, *(f"{name}.{own}" for name in model.bodies for own in model.body_points(name))]
+    if point not in points:
+        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest(point, points))
+    return point, body
