@@ -1,0 +1,139 @@
+"""Chapters 9 and 10 and the turntable: what `solve` answers is what differentiated positions give, exactly and in units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import mpmath
+import pytest
+from derivations import MODELS
+from seed_answers_c import ANSWERS, BOOK_SURDS, PRINTED, UNITS
+from seed_oracle_c import DIGITS, ORACLES, OTHER, STATEMENT
+
+import eomgen
+from eomgen.model.values import numeric_parameters, start_values
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.expressions import as_expression, parse
+from eomgen.symbolic.graph import Graph
+
+ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+SETS = ("statement", "other")
+FIFTY = fifty_digits()
+STATE = {"x": "0.23", "y": "-0.41", "x'": "0.37", "y'": "-0.19", "xi": "0.53", "eta": "0.29"}
+"""A state, for the outputs that are functions of it."""
+
+
+@cache
+def model_of(system: str, numbers: str = "statement") -> eomgen.Model:
+    """The model file; or the same with every parameter another number."""
+    model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
+    if numbers == "statement":
+        return model
+    changed = {name: replace(model.parameters[name], value=as_expression(x)) for name, x in OTHER[system].items()}
+    return replace(model, parameters=dict(model.parameters) | changed)
+
+
+@cache
+def answers(system: str, numbers: str = "statement") -> dict[str, Any]:
+    return eomgen.solve(model_of(system, numbers))
+
+
+def value_of(text: str, state: Mapping[str, Any]) -> Any:
+    """A text of the grammar at a state, with 50 digits."""
+    graph = Graph()
+    symbols = {name: graph.symbol(name) for name in state}
+    scalar = parse(text).evaluate(symbols | {"pi": graph.pi})
+    return evaluate((scalar,), {symbols[name]: x for name, x in state.items()}, FIFTY)[0]
+
+
+@cache
+def state_of(system: str, numbers: str) -> dict[str, Any]:
+    """Parameters of a set, and the state."""
+    given = (STATEMENT if numbers == "statement" else OTHER)[system]
+    return {name: value_of(text, {}) for name, text in (STATE | given).items()}
+
+
+@cache
+def by_hand(system: str, numbers: str) -> dict[str, Any]:
+    with mpmath.workdps(DIGITS):
+        return ORACLES[system]({name: mpmath.mpf(x) for name, x in state_of(system, numbers).items()})
+
+
+def in_unit(system: str, output: str, value: Any) -> Any:
+    return 100 * value if UNITS[system][output].startswith("cm") else value
+
+
+def close(a: Any, b: Any) -> bool:
+    return bool(abs(mpmath.mpf(a) - mpmath.mpf(b)) <= 1e-30 * max(1.0, abs(float(b))))
+
+
+def test_the_files_have_the_numbers_of_the_statements():
+    for system, texts in STATEMENT.items():
+        file = numeric_parameters(model_of(system))
+        assert file == pytest.approx({name: float(value_of(text, {})) for name, text in texts.items()}, rel=1e-15)
+        assert all(value_of(OTHER[system][name], {}) != value_of(text, {}) for name, text in texts.items())
+
+
+@pytest.mark.parametrize("numbers", SETS)
+@pytest.mark.parametrize("system", ANSWERS)
+def test_the_answers_by_hand_are_the_derivatives_of_the_positions(system, numbers):
+    """To 30 digits, and every one that is asked."""
+    found = by_hand(system, numbers)
+    assert set(found) == set(ANSWERS[system])
+    for output, text in ANSWERS[system].items():
+        assert close(value_of(text, state_of(system, numbers)), found[output]), output
+
+
+@pytest.mark.parametrize(("system", "output"), [(system, output) for system in PRINTED for output in PRINTED[system]])
+def test_the_book_prints_these_numbers(system, output):
+    """Mended, to half a unit of its last digit."""
+    text = PRINTED[system][output]
+    digits = len(text.partition(".")[2])
+    value = in_unit(system, output, by_hand(system, "statement")[output])
+    assert abs(float(value) - float(text)) <= 0.500001 * 10**-digits
+
+
+@pytest.mark.parametrize("system", ANSWERS)
+def test_the_file_names_what_is_asked_in_its_unit(system):
+    outputs = model_of(system).outputs
+    assert {name: str(output.unit or "") for name, output in outputs.items()} == UNITS[system]
+
+
+@pytest.mark.parametrize("numbers", SETS)
+@pytest.mark.parametrize(("system", "output"), ASKED)
+def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
+    """The text that solve gives for the statement, read back at both sets, to 30 digits."""
+    answer = answers(system)[output]
+    assert answer.exact is not None, answer.message
+    found = value_of(answer.exact, state_of(system, numbers))
+    assert close(found, in_unit(system, output, by_hand(system, numbers)[output])), answer.exact
+
+
+@pytest.mark.parametrize("numbers", SETS)
+@pytest.mark.parametrize(("system", "output"), ASKED)
+def test_the_number_is_the_one_of_the_positions(system, output, numbers):
+    """A function of the state at the start."""
+    model, answer = model_of(system, numbers), answers(system, numbers)[output]
+    starts = [value for values in start_values(model) for value in values.items()]
+    state = {**state_of(system, numbers), **dict(starts)}
+    expected = in_unit(system, output, value_of(ANSWERS[system][output], state))
+    assert answer.value is not None, answer.message
+    assert answer.value == pytest.approx(float(expected), rel=1e-12, abs=1e-12)
+    assert answer.unit == UNITS[system][output]
+
+
+@pytest.mark.parametrize(("system", "output"), BOOK_SURDS)
+def test_exact_answers_are_the_books_at_its_numbers(system, output):
+    """In the book's units: sqrt(61 - 30*sqrt(2))/5."""
+    found = value_of(answers(system)[output].exact, state_of(system, "statement"))
+    assert close(found, value_of(BOOK_SURDS[system, output], {}))
+
+
+@pytest.mark.parametrize(("system", "output"), ASKED)
+def test_exact_answers_are_short(system, output):
+    """No longer than a reader's own: at most three times the formula by hand, and 60 characters."""
+    exact = answers(system)[output].exact
+    assert len(exact) <= 3 * len(ANSWERS[system][output]) + 60, exact
