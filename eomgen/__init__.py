@@ -6,6 +6,9 @@
     equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
+    eomgen.statics(model)                     # Statics: reactions by virtual work and by equilibrium, diagrams
+    eomgen.kinematics(model, at="t = 2")      # Kinematics: centres of rotation, velocities, accelerations, plot
+    eomgen.inertia(model, about="O")          # Inertia: masses, mass centres, tensors, principal moments and axes
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
@@ -35,7 +38,11 @@ _HOMES = {
     "model.reader": ("load", "loads"),
     "equations": ("Equations",),
     "pipeline": ("derive", "simulate"),
+    "report.inertia_result": ("Inertia", "inertia"),
+    "report.statics_result": ("Statics", "statics"),
     "simulation.trajectory": ("Trajectory",),
+    "report.kinematics_result": ("Kinematics",),
+    "velocities": ("kinematics",),
 }  # fmt: skip
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)

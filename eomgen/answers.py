@@ -15,12 +15,14 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
 from eomgen.journey import Journey
-from eomgen.mechanics.outputs import later
+from eomgen.mechanics.outputs import asks_motion, later
+from eomgen.mechanics.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
+from eomgen.model.fields import AtRest, Equation
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
-from eomgen.moments import Moment
+from eomgen.moments import Moment, resting
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
@@ -129,10 +131,35 @@ class _Solver:
             return self._at(output)
         if output.from_ is not None:
             return self._of_configuration(output)
+        if self._is_of_the_instant(output.value):
+            return self._of_the_instant(output)
         return self._of_state(output)
 
     def _in_unit(self, scalar: Scalar, output: Output) -> Scalar:
         return scalar if output.unit is None else output.unit.from_si(scalar, self.situation.system.scope.graph.pi)
+
+    # -- at the one instant that [given] speaks of -----------------------------------------------
+
+    def _is_of_the_instant(self, formula: Expression) -> bool:
+        """Whether a formula asks velocities where no time runs: with [given], or of bodies and ties alone."""
+        given = self.model.given
+        if given is None:
+            return not self.model.coordinates and asks_motion(formula)
+        texts = [side for equations in (given.velocity, given.acceleration) for equation in equations or ()
+                 for side in (equation.left, equation.right)]  # fmt: skip
+        unknown = self.model.unknowns.keys() & {name for text in texts for name in text.names}
+        return asks_motion(formula) or not unknown.isdisjoint(formula.names)
+
+    @cached_property
+    def snapshot(self) -> Snapshot:
+        return snapshot_of(self.model)
+
+    def _of_the_instant(self, output: Output) -> Answer:
+        scalar = self.snapshot.value(output.value)
+        if output.unit is not None:
+            scalar = output.unit.from_si(scalar, self.snapshot.system.scope.graph.pi)
+        found = self._started(self.snapshot.simple(scalar), "velocities under the ties")
+        return found if self.snapshot.exact else replace(found, exact=None)
 
     # -- functions of the state, and of the configuration ---------------------------------------
 
@@ -181,9 +208,13 @@ class _Solver:
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        system = self.situation.system
         known = exact_parameters(self.model)
         names = {x.name for x in symbols_of((scalar,))}
+        if names <= known.keys():
+            return evaluate((scalar,), {x: float(known[x.name]) for x in symbols_of((scalar,))}, FLOAT)[0]
+        if names <= self.model.parameters.keys():
+            raise MissingValues(tuple(name for name in self.model.parameters if name in names and name not in known))
+        system = self.situation.system
         names |= {x.name for name in names & self.model.inputs.keys() for x in symbols_of((system.inputs[name],))}
         missing = tuple(name for name in self.model.parameters if name in names and name not in known)
         if missing:
@@ -202,7 +233,12 @@ class _Solver:
     def _at(self, output: Output) -> Answer:
         """At the instant when a condition holds: exact where the motion can be followed exactly, else a number."""
         assert output.at is not None
-        moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
+        if isinstance(output.at, AtRest):
+            if output.from_ or output.side:
+                raise DerivationError("a place of rest has no way that leads there", mend="leave out `from` and `side`")
+            moment = self._resting
+        else:
+            moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
         situation = moment.situation
         try:
             exact = situation.simple(self._in_unit(situation.at(output.value, moment.exact), output))
@@ -213,6 +249,11 @@ class _Solver:
             return _valued(Answer(text, None, "", moment.method), self._at_start(exact), "at the instant")
         except MissingValues as error:
             return Answer(text, None, "", moment.method, error.what)
+
+    @cached_property
+    def _resting(self) -> Moment:
+        """Where all forces balance, or the start held by unknowns."""
+        return resting(self.situation.system)
 
     def _number_at(self, moment: Moment, output: Output) -> float:
         """The value in floating point.
@@ -243,7 +284,7 @@ def _refuse_later(output: Output) -> None:
     Raises:
         NotYet: one of their functions comes later.
     """
-    sides = [] if output.at is None else [output.at.left, output.at.right]
+    sides = [output.at.left, output.at.right] if isinstance(output.at, Equation) else []
     for call in _calls((output.value, *sides)):
         if waits := later(call.name):
             raise NotYet(waits)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = 1
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
-LATER = ("statics", "kinematics", "linearize", "verify", "inertia", "sweep")
+LATER = ("linearize", "verify", "sweep")
 FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
 
 
@@ -168,6 +168,19 @@ def _common(function: Callable[..., int]) -> Callable[..., int]:
     return MODEL(JSON(OUTPUT(function)))
 
 
+def _written(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of what is written step by step, and drawn."""
+    format_ = click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
+                           help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
+    plot = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
+    return _common(format_(plot(function)))
+
+
+def _form(wants_json: bool, format_: str | None, output: str | None) -> str:
+    """The form of a result: as asked, else by the ending of the file."""
+    return "json" if wants_json else format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
+
+
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="eomgen")
 def main() -> None:
@@ -212,12 +225,10 @@ def derive(
     """Derive the equations of motion and certify them."""
     from eomgen.verbs.derive import derive as derived
 
-    chosen = format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
-    wants_json = wants_json or chosen == "json"
+    form = _form(wants_json, format_, output)
     with _reading(model) as declared:
-        form = "json" if wants_json else chosen
         outcome = derived(declared, method=method, format=form, certify=not no_certify, full=full)
-    return _deliver(outcome, wants_json, output)
+    return _deliver(outcome, form == "json", output)
 
 
 @main.command()
@@ -233,7 +244,8 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
 
 @main.command()
 @_common
-@click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
+@click.option("--at", metavar="EQUATION",
+              help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".')  # fmt: skip
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 def reactions(
     model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...]
@@ -248,6 +260,53 @@ def reactions(
     with _reading(model) as declared:
         outcome = found(declared, at=at, from_rest=from_rest)
     return _deliver(outcome, wants_json, output)
+
+
+@main.command()
+@_written
+@click.option("--reaction", metavar="NAME", help='Only this one by virtual work: "reaction_y(A)".')
+@click.option("--influence", metavar="NAME", help='Its influence line too, for a unit load: "reaction_y(A)".')
+def statics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
+            **options: Any) -> int:  # fmt: skip
+    """Give every reaction of a structure at rest, by virtual work and by equilibrium; or where a system is at rest."""
+    from eomgen.verbs.statics import statics as found
+
+    form = _form(wants_json, format_, output)
+    with _reading(model) as declared:
+        outcome = found(declared, format=form, plot=plot, **options)
+    return _deliver(outcome, form == "json", output)
+
+
+@main.command()
+@_written
+@click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
+@click.option("--given", multiple=True, metavar="EQUATION", help='A velocity: "omega(crank) = 2".')
+@click.option("--relative", multiple=True, metavar='"POINT in BODY"', help="A point as it is seen from a moving body.")
+def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
+               **options: Any) -> int:  # fmt: skip
+    """Give velocities, accelerations and centres of rotation at an instant."""
+    from eomgen.verbs.kinematics import kinematics as found
+
+    form = _form(wants_json, format_, output)
+    with _reading(model) as declared:
+        outcome = found(declared, format=form, plot=plot, **options)
+    return _deliver(outcome, form == "json", output)
+
+
+@main.command()
+@_written
+@click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
+@click.option("--about", metavar="POINT", help="About this point too.")
+@click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
+def inertia(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
+            **options: Any) -> int:  # fmt: skip
+    """Give masses, mass centres, moments and products of inertia, principal axes."""
+    from eomgen.verbs.inertia import inertia as found
+
+    form = _form(wants_json, format_, output)
+    with _reading(model) as declared:
+        outcome = found(declared, format=form, plot=plot, **options)
+    return _deliver(outcome, form == "json", output)
 
 
 @main.command()

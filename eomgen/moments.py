@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from eomgen.errors import DerivationError
+from eomgen.mechanics.equilibria import all_equilibria
+from eomgen.mechanics.holding import holding_of
 from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.static_equations import static_equations
+from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted
@@ -66,6 +71,41 @@ def placed(situation: Situation, known: Mapping[Node, Scalar], numbers: Mapping[
     located = Located({**parameters_of(situation), **numbers}, situation.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
     return {**known, **places_of(equations, unknown, located)}
+
+
+def resting(system: System, guess: Mapping[str, float] | None = None) -> Moment:
+    """The place at which all forces balance, the nearest to the start; with unknowns in the loads, the start itself.
+
+    Args:
+        system: as it is at the start.
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        DerivationError: there is none; a contact would have to pull there.
+    """
+    statics = static_equations(system)
+    if statics.loaded:
+        return _held(system)
+    equilibria = all_equilibria(system, guess)
+    place = equilibria.nearest()
+    system = place.statics.system
+    if pulls := place.pulling:
+        raise DerivationError(f"'{pulls[0]}' would have to pull where the other forces balance",
+                              f"constraints.{pulls[0]}", "without it the system rests elsewhere")  # fmt: skip
+    held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
+    exact = {**place.exact, **_still(system)}
+    numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
+    return Moment(Situation(system), exact, numbers, f"balance of all forces at rest{held}")
+
+
+def _held(system: System) -> Moment:
+    """The start, held by the unknowns of the loads."""
+    holding = holding_of(system)
+    system = holding.statics.system
+    return Moment(Situation(system), {**holding.place, **holding.unknowns, **_still(system)}, {}, "virtual work")
+
+
+def _still(system: System) -> dict[Node, Scalar]:
+    return {system.symbols.t: 0, **dict.fromkeys(system.symbols.u, 0)}
 
 
 def parameters_of(situation: Situation) -> dict[Node, float]:

@@ -20,6 +20,7 @@ from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
+from eomgen.model.unknowns import refuse_motion
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.course import modes_at_start
 from eomgen.simulation.independence import Independence
@@ -43,11 +44,12 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     Raises:
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
-        DerivationError: the model has no equations of motion; by "kinetostatic", a body is held by nothing, or a force
+        DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is held by nothing, or a force
             acts at no place.
     """
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
+    refuse_motion(model)
     system = system_of(model, modes_at_start(model))
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion

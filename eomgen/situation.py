@@ -26,8 +26,10 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import values_at_a_state
 from eomgen.mechanics.start import fixed_by_position
 from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.unknown_loads import still
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
+from eomgen.model.unknowns import in_loads, refuse_motion
 from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
@@ -62,7 +64,9 @@ class Situation:
 
         Raises:
             ModelError: a free coordinate moves no mass.
+            DerivationError: a force is unknown.
         """
+        refuse_motion(self.model)
         assembly = with_friction(self.system, recursive.assemble(self.system))
         refuse_massless(assembly)
         return assembly
@@ -100,10 +104,17 @@ class Situation:
         return self.eliminated(formula.evaluate(self.system.scope.names, value))
 
     def eliminated(self, scalar: Scalar) -> Scalar:
-        """A scalar with accelerations and multipliers replaced by the equations of motion."""
+        """A scalar with accelerations and multipliers replaced by the equations of motion, unknowns by the balance."""
+        scalar = self._known(scalar, self._quantities)
         if not depends_on(scalar, (*self.system.symbols.a, *self.system.symbols.lam)):
             return scalar
         return substituted((scalar,), self.unknowns)[0]
+
+    def _known(self, scalar: Scalar, quantities: Quantities) -> Scalar:
+        """A scalar with the unknowns of loads replaced by what they are at rest."""
+        symbols = self.system.symbols.unknowns
+        held = [p for p in symbols.values() if depends_on(scalar, (p,))]
+        return substituted((scalar,), {p: quantities.reactions.unknown(p.name) for p in held})[0] if held else scalar
 
     def simple(self, scalar: Scalar) -> Scalar:
         """A scalar in its most readable form; as it came where multiplying out made it longer still."""
@@ -141,6 +152,7 @@ class Situation:
         quantities = Quantities(self.system, state)
         scalar = formula.evaluate(self.system.scope.names, quantities.value)
         (scalar,) = substituted((scalar,), state)
+        (scalar,) = substituted((self._known(scalar, quantities),), state)
         symbols = self.system.symbols
         left = [x.name for x in (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
                 if depends_on(scalar, (x,))]  # fmt: skip
@@ -152,13 +164,16 @@ class Situation:
         """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
+        if in_loads(self.model):
+            return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state
         return {**state, **self._unknowns_at(state)}
 
     def method_for(self, formula: Expression) -> str:
         """What eliminates reactions and accelerations from the formula; "" where it holds none."""
-        if any(call.name in ASKING_REACTIONS for call in formula.calls):
+        unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
+        if unknown or any(call.name in ASKING_REACTIONS for call in formula.calls):
             return "balance of the bodies"
         return "equations of motion" if self.needs_equations(formula) else ""
 

@@ -119,11 +119,13 @@ def test_ties_that_cannot_close_are_not_counted():
     assert "do not close near the start values: right_hinge" in found.not_counted
 
 
-def test_kinds_that_are_not_built_yet_are_named_instead_of_counted():
-    """degrees of freedom: not counted yet (truss)"""
+def test_nodes_of_a_truss_are_particles_and_members_are_ties():
+    """1 = 3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (ties)"""
     truss = '[trusses.T]\nnodes = { A = [0, 0], B = [1, 0] }\nmembers = ["A-B"]\n'
-    found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + truss)
-    assert (found.by_rank, found.not_counted) == (None, "truss")
+    pins = '[constraints]\na = { kind = "pin", points = ["T.A"] }\nb = { kind = "pin", points = ["T.B"] }\n'
+    found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + truss + pins)
+    assert (found.by_rank, found.by_formula, found.not_counted) == (1, 0, "")
+    assert found.formula == "3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (ties)"
 
 
 DEPENDENT = "[coordinates]\nq1 = 1.0\nq2 = { dependent = true, near = 0.1 }\nq3 = { dependent = true, near = 1.1 }\n"

@@ -10,7 +10,7 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
     ("version", "errors"), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
-    ("proof",), ("certificate", "instants", "situation"), ("moments",), ("journey",), ("answers",), ("equations",),
+    ("proof",), ("certificate", "instants", "situation"), ("moments",), ("journey",), ("answers", "velocities"), ("equations",),
     ("pipeline",), ("verbs", "notebook"), ("cli",), ("__main__",),
 )  # fmt: skip
 RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}

@@ -9,7 +9,8 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.outputs import ASKING_REACTIONS, COMPONENTS, MAGNITUDES, TURNING, Quantities, later
+from eomgen.mechanics.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
+from eomgen.mechanics.outputs import ASKING_REACTIONS, COMPONENTS, MAGNITUDES, OF_MOTION, TURNING, Quantities, later
 from eomgen.mechanics.system import system_of
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.situation import accelerations_and_multipliers
@@ -258,5 +259,5 @@ def test_the_momentum_changes_by_the_generalized_force():
 def test_every_function_of_the_model_file_works_or_says_what_it_waits_for():
     """The functions that the reader knows are those that are built here and those that come later."""
     built = {*COMPONENTS, *MAGNITUDES, *TURNING, "angle", "omega", "epsilon", "kinetic_energy", "potential_energy"}
-    built |= {"power", "generalized_force", "momentum"} | ASKING_REACTIONS
+    built |= {"power", "generalized_force", "momentum"} | ASKING_REACTIONS | OF_MOTION | {*MOMENTS_OF_INERTIA}
     assert {name for name in FUNCTIONS if not later(name)} == built

@@ -91,9 +91,6 @@ def test_what_the_reference_puts_off_is_refused_by_name(piece):
     "more",
     [
         {"speeds": {"w": "theta'"}},
-        {"trusses": {"T": {"nodes": {"a": [0, 0], "b": [1, 0]}, "members": ["a-b"]}}},
-        {"unknowns": {"F": "a force"}, "forces": {"f": {"kind": "force", "point": "arm.end", "force": ["F", 0]}}},
-        {"bodies": {"b": {"mass": 1, "parts": [{"kind": "disc", "radius": 1}]}}},
     ],
     ids=lambda more: "-".join(more),
 )

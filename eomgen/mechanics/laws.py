@@ -2,7 +2,7 @@
 
 Coordinates are taken one after the other: as soon as all that the acceleration of one holds are t, itself, and others
 whose laws are known, it is one equation in one unknown, and is solved where it is linear with constant coefficients; so
-are pairs without damping. A coordinate whose rate is a known function of time is integrated.
+are pairs that have no damping. A coordinate whose rate is a known function of time is integrated.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from itertools import combinations
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.linear_motion import Constants, Line, pair, solution
+from eomgen.mechanics.coupled_motion import Pair, pair_solution
+from eomgen.mechanics.linear_motion import Constants, Line, solution
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
@@ -100,22 +101,16 @@ class _Laws:
         return {}
 
     def _by_pair(self, speeds: Mapping[Node, Scalar], laws: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
-        """Two coordinates with linear equations of their own, without damping."""
+        """Two coordinates with linear equations of their own."""
         for two in combinations(speeds, 2):
             q = [x for u in two if (x := self._coordinate(u)) is not None]
             if len(q) < 2:
                 continue
             a = substituted([speeds[u] for u in two], laws)
-            if self._vary([derivative(x, y) for x in a for y in q]):
+            pair = self._pair(a, q, two)
+            if pair is None:
                 continue
-            a = tuple(simplest(x, WORK, self.positive) for x in a)
-            A = [[derivative(x, y) for y in q] for x in a]
-            b = [simplest(x - row[0] * q[0] - row[1] * q[1], WORK, self.positive) for x, row in zip(a, A, strict=True)]
-            constant = (*A[0], *A[1], *b)
-            if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constant):
-                continue
-            start = [[self.start[x] for x in q], [self.start[u] for u in two]]
-            law = pair(A, b, start, self._constants)
+            law = pair_solution(pair, [self.start[x] for x in q], [self.start[u] for u in two], self._constants)
             if law is not None:
                 rates = (derivative(x, self.system.symbols.t) for x in law)
                 return dict(zip((*q, *two), (*law, *rates), strict=True))
@@ -131,6 +126,17 @@ class _Laws:
             return None
         f = simplest(a - A * q - B * u, WORK, self.positive)
         return None if depends_on(f, self._moving) else Line(A, B, f)
+
+    def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> Pair | None:
+        """a as A q + B u + b with constants, or None."""
+        if self._vary([derivative(x, y) for x in a for y in (*q, *u)]):
+            return None
+        a = tuple(simplest(x, WORK, self.positive) for x in a)
+        A, B = ([[derivative(x, y) for y in of] for x in a] for of in (q, u))
+        rest = [x - sum(derivative(x, y) * y for y in (*q, *u)) for x in a]
+        b = [simplest(x, WORK, self.positive) for x in rest]
+        constants = (*A[0], *A[1], *B[0], *B[1], *b)
+        return None if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants) else Pair(A, B, b)
 
     def _vary(self, coefficients: Sequence[Scalar]) -> bool:
         """Whether numbers at two states show that one of the coefficients is none: it changes with what moves."""

@@ -1,14 +1,13 @@
-"""Linear equations of motion with constant coefficients -> their solutions in closed form.
+"""A linear equation of motion with constant coefficients -> its solution in closed form.
 
-    q'' = A q + B q' + f(t)          one coordinate
-    q'' = A q + b                    two coordinates, by the eigenvalues of A
+    q'' = A q + B q' + f(t)
 
 A root of a number of unknown sign is real or imaginary: `sign` decides, and where it cannot, there is no answer (None).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
@@ -65,43 +64,14 @@ def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: Constants) -> 
     if is_zero(A):
         return q0 + u0 * t if is_zero(B) else q0 + over(u0, B) * (function("exp", B * t) - 1)
     d = over(B, 2)
-    waves = _waves(of.simple(d * d + A), of)
-    if waves is None:
+    found = waves(of.simple(d * d + A), of)
+    if found is None:
         return None
-    even, odd, w = waves
+    even, odd, w = found
     return function("exp", d * t) * (of.simple(q0) * even + of.simple(over(u0 - d * q0, w)) * odd)
 
 
-def pair(
-    A: Sequence[Sequence[Scalar]], b: Sequence[Scalar], start: Sequence[Sequence[Scalar]], of: Constants
-) -> tuple[Scalar, Scalar] | None:
-    """(q1, q2) of q'' = A q + b:  f(A) v = sum over k of f(lambda_k) (A - lambda_other) v / (lambda_k - lambda_other).
-
-    Args:
-        start: (q0, u0), each of two.
-    """
-    half = over(A[0][0] + A[1][1], 2)
-    inside = of.simple(half * half - (A[0][0] * A[1][1] - A[0][1] * A[1][0]))
-    if of.sign(inside) != 1:
-        return None
-    root = of.simple(sqrt(inside))
-    total: list[Scalar] = [0, 0]
-    t = of.t
-    for sign in (1, -1):
-        own, other = of.simple(half + sign * root), half - sign * root
-        waves = _waves(own, of)
-        if waves is None:
-            return None
-        even, odd, w = waves
-        gained = over(t * t, 2) if is_zero(own) else over(even - 1, own)
-        for wave, v in zip((even, over(odd, w), gained), (*start, b), strict=True):
-            for i in range(2):
-                share = A[i][0] * v[0] + A[i][1] * v[1] - other * v[i]
-                total[i] = total[i] + wave * of.simple(over(share, own - other))
-    return total[0], total[1]
-
-
-def _waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
+def waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
     """(cosh(w t), sinh(w t), w) with w^2 = D; of a negative D (cos(w t), sin(w t), w) with w^2 = -D; of 0 (1, t, 1)."""
     t, sign = of.t, of.sign(D)
     if sign is None:

@@ -14,14 +14,18 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion, ground_place
+from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import primitive
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, UniformField
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
+
+READABLE = 2000  # products of terms for a length or a direction
 
 
 @dataclass(frozen=True)
@@ -33,12 +37,14 @@ class Applied:
         loads: forces and couples, whether or not they have a potential.
         potential: V [J], or None where it has none.
         placeless: it is an energy of coordinates alone, which acts at no place.
+        spread: what is spread along lines, of which `loads` holds the resultants.
     """
 
     name: str
     loads: tuple[Load, ...]
     potential: Scalar | None
     placeless: bool
+    spread: tuple[SpreadLoad, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -199,6 +205,10 @@ class SystemScene:
         """Whether the scalar is zero whatever the values of its symbols."""
         return scalar == 0 if type(scalar) is not Node else equal_at_random_states([(scalar, 0)]).equal
 
+    def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """The scalars multiplied out, roots of squares of positive parameters taken."""
+        return readable_all(scalars, READABLE, positive_parameters(self.motion.scope))
+
     def worth(self, scalar: Scalar) -> float | None:
         """The number that the scalar is at the start with the model's values (None: some are missing)."""
         scope = self.motion.scope
@@ -224,7 +234,8 @@ def loads_of(motion: Motion) -> Loads:
     for name, force in motion.scope.model.forces.items():
         if not force.works:
             raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
-        applied.append(Applied(name, tuple(force.loads(scene)), force.potential(scene), force.placeless))
+        loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
+        applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
     efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
     _refuse_accelerations(motion, applied, efforts)
     return Loads(motion, tuple(applied), tuple(efforts))

@@ -12,49 +12,87 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.centers import finite_center
 from eomgen.mechanics.drive import drive, multiplier
 from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
+from eomgen.mechanics.field import (
+    Field,
+    acceleration_pole,
+    curvature_radius,
+    field_of,
+    least_speed,
+    normal_part,
+    tangential_part,
+)
 from eomgen.mechanics.inertia import kinetic_energy
+from eomgen.mechanics.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
+from eomgen.mechanics.inertia_about import Asked
+from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.relative_motion import COMPONENTS as PARTS_OF_MOTION
+from eomgen.mechanics.relative_motion import MAGNITUDES as SIZES_OF_PARTS
+from eomgen.mechanics.relative_motion import axes_of, part_of_motion
+from eomgen.mechanics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
+from eomgen.model.constraints.members import ends_asked
 from eomgen.model.forces.load import Place
-from eomgen.symbolic.derivative import derivative
-from eomgen.symbolic.expressions import Call, Expression, Reference
+from eomgen.symbolic.derivative import derivative, substituted
+from eomgen.symbolic.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
 
+WORK = 20_000  # products of terms for making a component readable
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
 _AXES = {"x": 0, "y": 1, "z": 2}
 COMPONENTS = {kind + axis: (n, i) for kind, n in _ORDERS.items() for axis, i in _AXES.items()}
 """Functions of a point: (time derivatives, component)."""
 
 GROUND = "ground"
+ALONG_THE_PATH: dict[str, Callable[[Vector, Vector], Scalar]] = {
+    "tangential_acceleration": tangential_part,
+    "normal_acceleration": normal_part,
+    "curvature_radius": curvature_radius,
+}
+"""Functions of a point's velocity and acceleration."""
 MAGNITUDES = {"speed": 1, "acceleration": 2}
 TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)) for axis, i in _AXES.items()}
 """Functions of a body: (time derivatives, component)."""
 
 LATER = {
     "linearization": ("mass", "damping", "stiffness", "frequency"),
-    "centres of rotation": ("rotation_center",),
-    "moments of inertia": ("inertia",),
 }
-"""What later versions bring, and how their functions begin."""
+"""What later versions bring: the names of its functions."""
 
 
 def later(function: str) -> str:
     """What a function of the outputs waits for, in words; "" where it works."""
-    for what, heads in LATER.items():
-        if any(function == head or function.startswith(head + "_") for head in heads):
+    for what, names in LATER.items():
+        if function in names:
             return f"{what} come with a later version" if what.endswith("s") else f"{what} comes with a later version"
     return ""
+
+
+OF_MOTION = frozenset((
+    *(name for name, (n, _) in COMPONENTS.items() if n), *MAGNITUDES, *TURNING, *ALONG_THE_PATH, *PARTS_OF_MOTION,
+    *SIZES_OF_PARTS, "omega", "epsilon", "rotation_center_x", "rotation_center_y", "acceleration_pole_x",
+    "acceleration_pole_y", "least_speed", "kinetic_energy", "power", "angular_momentum_x", "angular_momentum_y",
+    "angular_momentum_z",
+))  # fmt: skip
+"""Functions of velocities and accelerations."""
+
+
+def asks_motion(formula: Expression) -> bool:
+    """Whether velocities or accelerations stand in a formula, by the functions that it calls."""
+    return any(call.name in OF_MOTION for call in formula.calls)
 
 
 COMPONENTS_OF_REACTIONS = {f"reaction_{axis}": i for axis, i in _AXES.items()}
 COUPLES = {"reaction_couple": 2, **{f"reaction_couple_{axis}": i for axis, i in _AXES.items()}}
 _ALONE = ("reaction_n", "reaction_t", "tension", "multiplier", "drive")
-ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, *_ALONE))
+ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, *_ALONE, *KINDS))
 """Functions for which the balance of the bodies is needed."""
 
 
@@ -86,6 +124,11 @@ class Quantities:
             raise NotYet(f"'{call}': {waits}")
         if call.name == "tension":
             return self._tension(call)
+        if call.name in KINDS:
+            return self._section_force(call)
+        if call.name in MOMENTS_OF_INERTIA:
+            asked = Asked(call, self.system.motion, lambda entries: substituted(tuple(entries), self.at))
+            return MOMENTS_OF_INERTIA[call.name](asked)
         names = [_name(call, argument) for argument in call.args]
         if call.name in ASKING_REACTIONS:
             return self._reaction(call, *names)
@@ -93,8 +136,16 @@ class Quantities:
             n, i = COMPONENTS[call.name]
             return self.of_point(n, *names)[i]
         if call.name in MAGNITUDES:
-            vector = self.of_point(MAGNITUDES[call.name], *names)
+            (vector,) = self._here(self.of_point(MAGNITUDES[call.name], *names))
             return sqrt(dot(vector, vector))
+        if call.name in PARTS_OF_MOTION:
+            part, i = PARTS_OF_MOTION[call.name]
+            return part_of_motion(self.system.motion, part, *names)[i]
+        if call.name in SIZES_OF_PARTS:
+            (vector,) = self._here(part_of_motion(self.system.motion, SIZES_OF_PARTS[call.name], *names))
+            return sqrt(dot(vector, vector))
+        if call.name in ALONG_THE_PATH:
+            return ALONG_THE_PATH[call.name](*self._here(self.of_point(1, *names), self.of_point(2, *names)))
         if call.name in TURNING:
             n, i = TURNING[call.name]
             return self.of_body(n, *names)[i]
@@ -121,15 +172,45 @@ class Quantities:
         return self.reactions.component("couple", COUPLES[call.name], owner, side, frame)
 
     def _tension(self, call: Call) -> Scalar:
-        """tension(rope) or tension(rope, 2)."""
+        """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
         owner, *strand = call.args
         name = _name(call, owner)
-        if name in self.system.scope.model.trusses:
-            raise NotYet(f"'{call}': trusses come with a later version")
+        tie = self.system.scope.model.constraints.get(name)
+        if tie is not None and tie.table == "trusses":
+            return self.reactions.member(name, *self._ends(call))
         number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
         if not isinstance(number, int) or len(strand) > 1:
             raise DerivationError(f"'{call}': the second argument is the number of the strand, from 1")
         return self.reactions.tension(name, number)
+
+    def _section_force(self, call: Call) -> Scalar:
+        """bending_moment(beam, a), shear_force(beam, a, before)."""
+        body, x, *side = call.args
+        sides = [_name(call, name) for name in side]
+        if any(name not in ("before", "after") for name in sides):
+            raise DerivationError(f"'{call}': the third argument is `before` or `after`")
+        names = self.system.scope.names
+        distance = (parse(x.name) if isinstance(x, Reference) else x).evaluate(names)  # L-c reads like a member
+        return self._beam(_name(call, body)).value(call.name, distance, *sides)
+
+    def _beam(self, body: str) -> SectionForces:
+        if body not in self.system.motion.index:
+            raise DerivationError(f"'{body}' is no body with section forces")
+        if body not in self._beams:
+            self._beams[body] = section_forces(self.reactions, body)
+        return self._beams[body]
+
+    @cached_property
+    def _beams(self) -> dict[str, SectionForces]:
+        """The section forces of the bodies of which they were asked."""
+        return {}
+
+    def _ends(self, call: Call) -> tuple[str, str]:
+        """The nodes of the member that an output asks for."""
+        ends = ends_asked(call)
+        if ends is None:
+            raise DerivationError(f"'{call}' names no member of a truss", mend=f"write tension({call.args[0]}, n1-n2)")
+        return ends
 
     def _multiplier(self, tie: str) -> Scalar:
         """lam of a tie of one row; of one without a place it stands in the equations of motion."""
@@ -138,14 +219,67 @@ class Quantities:
             return self.reactions.multiplier(tie)
         return multiplier(self.system, tie)
 
-    def of_point(self, order: int, point: str, frame: str = GROUND) -> Vector:
-        """Position (order 0), velocity (1) or acceleration (2) of a point, ground axes or those of `frame` [m, s]."""
+    def of_point(self, order: int, point: str, frame: str = GROUND, axes: str = "") -> Vector:
+        """Position (order 0), velocity (1) or acceleration (2) of a point, seen from `frame` [m, s].
+
+        Args:
+            axes: of the components: a body's or the ground's; those of `frame` where it is left out.
+        """
         motion = self.system.motion
         place = motion.position(self._place(point))
         if frame in motion.index:
             pose = motion.link(frame).pose
             place = apply(transposed(pose.R), minus(place, pose.p))
-        return self._rate(place, order)
+        seen = self._rate(place, order)
+        if axes in ("", frame):
+            return seen
+        return apply(transposed(axes_of(motion, axes)), apply(axes_of(motion, frame), seen))
+
+    def _here(self, *vectors: Vector) -> tuple[Vector, ...]:
+        """The vectors at the given state, readable; as they are where none is given."""
+        if not self.at:
+            return vectors
+        positive = positive_parameters(self.system.scope)
+        values = substituted([x for vector in vectors for x in vector], self.at)
+        flat = iter([simplest(x, WORK, positive) for x in values])
+        return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
+
+    def _field(self, body: str) -> Field:
+        """The field of a body at the given state."""
+        field = field_of(self.system.motion, body)
+        return Field(*self._here(field.p, field.v, field.a, field.w, field.e))
+
+    def center(self, body: str, other: str = GROUND) -> Vector:
+        """The centre of rotation of a body against the ground or another body.
+
+        Raises:
+            DerivationError: it is at infinity, or there is none; in space there is no single one to be asked for.
+        """
+        if self.system.scope.model.space != "plane":
+            raise DerivationError(f"rotation_center({body}): it is asked of plane motion")
+        whose = f"body '{body}'" + (f" against '{other}'" if other != GROUND else "")
+        return finite_center(self._field(body).against(self._field(other)), whose)
+
+    def pole(self, body: str) -> Vector:
+        """The point of a body that has no acceleration.
+
+        Raises:
+            DerivationError: there is none; in space there is no single one to be asked for.
+        """
+        if self.system.scope.model.space != "plane":
+            raise DerivationError(f"acceleration_pole({body}): it is asked of plane motion")
+        return acceleration_pole(self._field(body))
+
+    def least_speed(self, start: str, end: str) -> Scalar:
+        """The least speed of the points of a body between two of its points."""
+        places = [self._place(point) for point in (start, end)]
+        body, other = (GROUND if owner is None else owner for owner, _ in places)
+        if body != other:
+            what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"
+            raise DerivationError(what, mend="name two points of one body")
+        first, last = self._here(*map(self.system.motion.position, places))
+        positive = positive_parameters(self.system.scope)
+        return least_speed(self._field(body), first, last, lambda x: simplest(x, WORK, positive))
 
     def of_body(self, order: int, body: str, frame: str = GROUND) -> Vector:
         """Angular velocity (order 1) or acceleration (2) of a body, ground axes or those of `frame` [rad, s]."""
@@ -196,9 +330,6 @@ class Quantities:
         return vector_of(rate if order == 1 else scope.with_accelerations(rate))
 
     def _place(self, point: str) -> Place:
-        owner, _ = self.system.scope.model.resolve_point(point)
-        if owner in self.system.scope.model.trusses:
-            raise NotYet(f"'{point}': trusses come with a later version")
         return self.system.motion.place(point)
 
     def _speed(self, coordinate: str, function: str) -> int:
@@ -218,6 +349,11 @@ _OTHERS: dict[str, Callable[..., Scalar]] = {
     "angle": Quantities.angle,
     "omega": lambda quantities, *names: quantities.turning(1, *names),
     "epsilon": lambda quantities, *names: quantities.turning(2, *names),
+    "rotation_center_x": lambda quantities, *names: quantities.center(*names)[0],
+    "rotation_center_y": lambda quantities, *names: quantities.center(*names)[1],
+    "acceleration_pole_x": lambda quantities, *names: quantities.pole(*names)[0],
+    "acceleration_pole_y": lambda quantities, *names: quantities.pole(*names)[1],
+    "least_speed": Quantities.least_speed,
     "generalized_force": Quantities.generalized_force,
     "momentum": Quantities.momentum,
     "kinetic_energy": lambda quantities, *names: energy_of_motion(quantities.system, *names),

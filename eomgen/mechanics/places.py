@@ -11,7 +11,7 @@ q is eliminated by cos^2 + sin^2 = 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -20,12 +20,14 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.solving import has_period, roots, vanishes
+from eomgen.symbolic.text import text_size
 
 AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable
+SHORT = 40  # characters of a root that is put into other equations first
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class Located:
 
     def root(self, equation: Scalar, node: Node) -> Scalar | None:
         """The root of the equation that the node is worth there."""
-        return self.chosen(roots(equation, node, self.positive), node, equation)
+        return self.chosen(roots(equation, node, self.positive, LIMIT), node, equation)
 
 
 def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
@@ -78,14 +80,16 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
     relations: dict[Node, Scalar] = {}
     found: dict[Node, Scalar] = {}
     while left:
-        left = [x for x in substituted(left, {**relations, **found}) if not is_zero(x) and not vanishes(x)]
+        left = [x for x in substituted(left, {**relations, **found}) if _held(x, unknowns) and not vanishes(x)]
         step = _single(left, unknowns, located) or _relation(left, unknowns, located)
         if step is not None:
             node, value, used = step
-            target = relations if depends_on(value, unknowns) else found
             relations = dict(zip(relations, substituted(tuple(relations.values()), {node: value}), strict=True))
+            target = relations if depends_on(value, unknowns) else found
             target[node] = value
             del left[used]
+        elif of_loop := _of_loop(left, unknowns, located):
+            found |= of_loop
         elif not _joined(left, unknowns, located):
             break
     found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
@@ -114,32 +118,57 @@ def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Locat
     several: Step | None = None
     for i, equation in enumerate(left):
         for q in _held(equation, unknowns):
-            candidates = roots(equation, q, located.positive)
+            candidates = roots(equation, q, located.positive, LIMIT)
             root = located.chosen(candidates, q, equation)
             if root is not None and len(candidates) == 1:
                 return q, root, i
             if root is not None and several is None:
                 several = q, root, i
-    pairs = _pair_of_loop(left, unknowns)
-    return None if pairs is not None else several
+    return None if any(_loops(left, unknowns)) else several
+
+
+def _of_loop(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
+    """The unknowns of two equations that hold no third one, each by the equation without the other; {}: none such.
+
+    One that has a short root comes alone: put in, it leaves a shorter one for the other. So a parallelogram hands on
+    the angle of its crank itself, rather than an arc tangent that is worth it.
+    """
+    found: dict[Node, Scalar] = {}
+    for i, j, q, first, second in _loops(left, unknowns):
+        two = _held(left[i], unknowns)
+        other = next(x for x in two if x is not q)
+        if len(two) > 2 or two != _held(left[j], unknowns) or other in found:
+            continue
+        root = located.root(_without_angle(first, second, located), other)
+        if root is not None:
+            found[other] = root
+            if text_size(root) <= SHORT:
+                return {other: root}
+    return found
 
 
 def _joined(left: list[Scalar], unknowns: Collection[Node], located: Located) -> bool:
     """In place of one equation of a loop, the one without the angle that both hold; False where there is no loop."""
-    found = _pair_of_loop(left, unknowns)
-    if found is None:
+    loop = next(_loops(left, unknowns), None)
+    if loop is None:
         return False
-    _, j, (a1, b1, r1), (a2, b2, r2) = found
-    below = a1 * b2 - a2 * b1
-    cosine, sine = r2 * b1 - r1 * b2, r1 * a2 - r2 * a1
-    left[j] = simplest(cosine * cosine + sine * sine - below * below, LIMIT, located.positive)
+    _, j, _, first, second = loop
+    left[j] = _without_angle(first, second, located)
     return True
 
 
 Waves = tuple[Scalar, Scalar, Scalar]
 
 
-def _pair_of_loop(left: Sequence[Scalar], unknowns: Collection[Node]) -> tuple[int, int, Waves, Waves] | None:
+def _without_angle(first: Waves, second: Waves, located: Located) -> Scalar:
+    """cos^2 + sin^2 = 1 of the waves that two equations fix."""
+    (a1, b1, r1), (a2, b2, r2) = first, second
+    below = a1 * b2 - a2 * b1
+    cosine, sine = r2 * b1 - r1 * b2, r1 * a2 - r2 * a1
+    return simplest(cosine * cosine + sine * sine - below * below, LIMIT, located.positive)
+
+
+def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple[int, int, Node, Waves, Waves]]:
     """Two equations a cos q + b sin q + r = 0 of one unknown q that fix both waves, with other unknowns in them."""
     for i, j in combinations(range(len(left)), 2):
         for q in _held(left[i], unknowns):
@@ -147,8 +176,7 @@ def _pair_of_loop(left: Sequence[Scalar], unknowns: Collection[Node]) -> tuple[i
                 continue
             first, second = _waves(left[i], q), _waves(left[j], q)
             if first and second and not vanishes(first[0] * second[1] - second[0] * first[1]):
-                return i, j, first, second
-    return None
+                yield i, j, q, first, second
 
 
 def _waves(equation: Scalar, q: Node) -> Waves | None:

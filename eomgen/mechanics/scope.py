@@ -95,7 +95,7 @@ def scope_of(model: Model) -> Scope:
     model = in_parts(model)
     graph = Graph()
     t = graph.symbol("t")
-    parameters = {name: graph.symbol(name) for name in model.parameters}
+    parameters = {name: graph.constant(name) for name in model.parameters}
     q = tuple(graph.symbol(name) for name in model.coordinates)
     free = [name for name, c in model.coordinates.items() if not c.driven]
     u = tuple(graph.symbol(name + "'") for name in free)

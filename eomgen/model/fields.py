@@ -164,6 +164,26 @@ class EquationRule:
 
 
 @dataclass(frozen=True)
+class AtRest:
+    """The place at which all forces balance, instead of an instant."""
+
+    text: str = "equilibrium"
+
+
+@dataclass(frozen=True)
+class InstantRule(EquationRule):
+    """An equation that says when, or the word "equilibrium"."""
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if isinstance(raw, AtRest) or raw == AtRest.text:
+            return AtRest()
+        return EquationRule.read(self, raw, path, found)
+
+    def schema(self, definitions: dict) -> dict:
+        return {"type": "string", "description": "an equation, like theta = pi/2, or equilibrium"}
+
+
+@dataclass(frozen=True)
 class VectorRule:
     """A list of expressions, two in the plane and three in space (or always `length`).
 

@@ -6,9 +6,10 @@ from typing import Annotated, ClassVar
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
 from eomgen.model.containers import ListRule, TableRule
-from eomgen.model.fields import UNIT, Equation, EquationRule, NameRule, OutputRule, TextRule
+from eomgen.model.fields import UNIT, AtRest, Equation, EquationRule, InstantRule, NameRule, OutputRule, TextRule
 from eomgen.model.forces import Force
 from eomgen.model.joints import Joint
+from eomgen.model.joints.base import Turns
 from eomgen.model.kinds import (
     ConstantAngle,
     Coordinates,
@@ -117,12 +118,14 @@ class Piece(Part):
     Args:
         shape: its form; its mass only where the densities are not equal.
         at: where the shape's origin is, body axes, 2 or 3 [m].
-        angle: about `axis` (default z) [rad].
+        turned: fixed rotations, each about the axes that the one before left.
+        angle: after them, about `axis` (default z) [rad].
     """
 
     title: ClassVar[str] = "a piece"
     shape: ShapeField = field(metadata={"inline": True})
     at: Place | None = None
+    turned: Turns | None = None
     angle: ConstantAngle | None = None
     axis: SpaceDirection | None = None
     hole: Flag = False
@@ -205,7 +208,7 @@ class Output(Part):
 
     Args:
         value: an expression that may call functions of the motion.
-        at: the instant: an equation; the first time after the start at which it holds.
+        at: the instant: an equation; the first time after the start at which it holds; or "equilibrium".
         from_: "start" or "rest" (`from` in a file).
         side: just before or just after the instant.
         unit: in which the result is given (None: SI).
@@ -214,7 +217,7 @@ class Output(Part):
     shorthand: ClassVar[str] = "value"
     title: ClassVar[str] = "output"
     value: Annotated[Expression, OutputRule()]
-    at: Annotated[Equation, EquationRule()] | None = None
+    at: Annotated[Equation | AtRest, InstantRule()] | None = None
     from_: Annotated[str, TextRule(("start", "rest"))] | None = None
     side: Annotated[str, TextRule(("before", "after"))] | None = None
     unit: UnitText | None = None
@@ -265,13 +268,18 @@ class Model(Part):
         names = ["origin"]
         if part.shape is not None:
             names += part.shape.point_names
-        elif part.mass is not None or part.center is not None:
+        elif part.mass is not None or part.center is not None or part.parts is not None:
             names.append("center")
         return tuple(dict.fromkeys([*names, *part.points]))
 
     def resolve_point(self, point: str) -> tuple[str | None, str]:
-        """(body, its point) of "arm.end"; (None, point) of a point of the ground; (truss, node) of "T.n1"."""
+        """(body, its point) of "arm.end"; (None, point) of a point of the ground; (truss, node) of "T.n1".
+
+        In a model in parts a node is a body: ("T.n1", "origin").
+        """
         owner, dot, name = point.partition(".")
+        if dot and point in self.bodies:
+            return point, "origin"
         return (owner, name) if dot else (None, owner)
 
     def place(self, at: tuple[Expression, ...] | str) -> tuple[Expression, ...]:

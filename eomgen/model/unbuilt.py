@@ -9,23 +9,18 @@ def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
 
 
 def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
-    """Joints and composite bodies among them."""
+    """Joints among them."""
     waiting = []
     for name, body in model.bodies.items():
         if body.joint is not None and not body.joint.works_in(model.space):
             waiting.append((f"bodies.{name}.joint", f"{body.joint.kind} joint"))
-        if body.parts is not None:
-            waiting.append((f"bodies.{name}.parts", "parts"))
     return tuple(waiting)
 
 
 def unbuilt_ties(model: Model) -> tuple[tuple[str, str], ...]:
-    """Constraints and trusses among them: what cannot be counted in the degrees of freedom."""
-    waiting = []
-    for name, tie in model.constraints.items():
-        if not tie.works_in(model.space):
-            waiting.append((f"constraints.{name}", tie.kind))
-    return (*waiting, *((f"trusses.{name}", "truss") for name in model.trusses))
+    """Constraints among them: what cannot be counted in the degrees of freedom."""
+    ties = model.constraints.items()
+    return tuple((f"constraints.{name}", tie.kind) for name, tie in ties if not tie.works_in(model.space))
 
 
 def _unbuilt_forces(model: Model) -> tuple[tuple[str, str], ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.mechanics.balance import BodyEquation
+from eomgen.model.trusses import called
 from eomgen.report.bounded import FULL
 from eomgen.report.motion_steps import Pair
 from eomgen.report.reaction_names import Lettered
@@ -87,7 +88,8 @@ def _body(
         total = _balanced(reader, letters, equation)
         statements.append(Formula((total, 0)))
         length += 0 if isinstance(total, Omitted) else text_size(total)
-    return Step(f"body_{body}", f"Body {body}", tuple(statements)), length
+    title = called(body).capitalize().split()[0] + f" {body}"
+    return Step(f"body_{body}", title, tuple(statements)), length
 
 
 def _inertia_name(equation: BodyEquation, plane: bool) -> Name:

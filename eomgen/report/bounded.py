@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from eomgen.report.latex_names import escaped
 from eomgen.report.reading import Reader, omitted
-from eomgen.report.statements import Code, Formula, Omitted, Prose, Side, Statement
+from eomgen.report.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement
+from eomgen.report.text import side_text
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size
 
+WIDE = 96  # characters of a table, all columns beside one another
 PAGE = 5000  # characters of formulas in one step
 FULL = Code("eomgen derive MODEL --full")
 
@@ -25,6 +28,25 @@ def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Si
             kept.append(Formula((name, shown, *then)))
             length += text_size(shown)
     return (*kept, *_rest(left_out, len(kept))) if left_out else tuple(kept)
+
+
+def tabled(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]]) -> tuple[Statement, ...]:
+    """A table; where its columns do not fit beside one another a formula for each of its cells."""
+    lines = [head, *([cell if isinstance(cell, str) else side_text(cell) for cell in row] for row in rows)]
+    if sum(max(map(len, column)) + 2 for column in zip(*lines, strict=True)) <= WIDE:
+        return (Grid(head, tuple(rows)),)
+    return tuple(
+        Formula((_named(row[0], what), cell))
+        for row in rows for what, cell in zip(head[1:], row[1:], strict=True) if not isinstance(cell, str)
+    )  # fmt: skip
+
+
+def _named(first: Cell, what: str) -> Law:
+    """What a cell is, by its row and its column."""
+    if isinstance(first, Law):
+        return Law(f"{first.text}, {what}", rf"{first.latex},\ \text{{{escaped(what)}}}")
+    words = f"{first if isinstance(first, str) else side_text(first)}, {what}"
+    return Law(words, rf"\text{{{escaped(words)}}}")
 
 
 def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:

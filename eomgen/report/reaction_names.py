@@ -84,10 +84,13 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
 
 
 def _letters(balance: Balance, component: Component) -> str:
-    """B_x, N_wall, T_rope_2, M_E: what the symbol is called."""
+    """B_x, N_wall, T_rope_2, N_n1_n2, M_E: what the symbol is called."""
     if component.label in AXES:
         return "_".join(filter(None, (component.owner, component.side, component.label)))
     kind, _, number = component.label.partition(" ")
+    if kind == "tension" and component.side:
+        trusses = [name for name, tie in balance.system.scope.model.constraints.items() if hasattr(tie, "ends")]
+        return "_".join(("N", *([component.owner] if len(trusses) > 1 else []), *component.side.split("-")))
     return "_".join(filter(None, (LETTERS[kind], component.owner, number or _strand(balance, component))))
 
 
@@ -104,6 +107,8 @@ def meaning(balance: Balance, component: Component) -> str:
     """What a component is, on which body, and in which sense, in words."""
     kind = component.label.partition(" ")[0]
     on = _on(balance, component)
+    if kind == "tension" and component.side:
+        return f"tension of member {component.side} of {component.owner}"
     if kind == "tension":
         strand = _strand(balance, component)
         return f"tension of {component.owner}" + (f", strand {strand}" if strand else "")

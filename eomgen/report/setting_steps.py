@@ -17,7 +17,7 @@ INPUTS = ("input", "meaning", "unit", "value")
 
 def setting_steps(system: System) -> tuple[Step, ...]:
     """Data, degrees of freedom, coordinates."""
-    return (_data(system), _freedom(system), _coordinates(system))
+    return (data_step(system), _freedom(system), _coordinates(system))
 
 
 def listed(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:
@@ -33,7 +33,7 @@ def count(number: int, noun: str, plural: str = "") -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
 
 
-def _data(system: System) -> Step:
+def data_step(system: System) -> Step:
     """What is given."""
     model, symbols = system.scope.model, system.symbols
     values = exact_parameters(model)

@@ -54,6 +54,8 @@ def first_arrival(
         NeverReached: the path ends, or goes on for long, before there is one.
     """
     x = np.array(x, dtype=float)
+    if not np.all(np.isfinite(f(s, x))):
+        raise NeverReached("the motion has no finite rates at the start")
     path = _Path(f, g)
     first = float(g(s, x))
     with np.errstate(all="ignore"):

@@ -26,6 +26,7 @@ from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.simulation.arrival import first_arrival
 from eomgen.simulation.configurations import Configurations
+from eomgen.simulation.stepping import Stepping, march
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import inner
@@ -34,6 +35,7 @@ from eomgen.symbolic.solving import roots, vanishes
 
 RESTING = 1e-11  # of the rates at the start, against those of a configuration nearby
 TOLERANCE = 1e-12  # of the integration to a given time
+FINE = Stepping(rtol=TOLERANCE, atol=TOLERANCE, most_steps=100_000)
 MEND = "give it a speed"
 
 State = dict[Node, Scalar]
@@ -112,17 +114,18 @@ class Locating:
         return lambda t, x: float(functions(t, x)[0])
 
     def _at_time(self) -> Numbers:
-        """The state at a time that is given by itself."""
-        from scipy.integrate import solve_ivp
+        """The state at a time that is given by itself.
 
+        Raises:
+            RunFailed: the motion does not go on until then.
+        """
         end = self._given_time()
         if end <= self.t0:
             return self._state(end, self._x0)
-        with np.errstate(all="ignore"):
-            run = solve_ivp(self._motion, (self.t0, end), self._x0, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE)
-        if not run.success or not np.all(np.isfinite(run.y[:, -1])):
-            raise RunFailed(f"the motion ends at t = {run.t[-1]:.6g} s, before the instant")
-        return self._state(end, run.y[:, -1])
+        run = march(self._motion, (self.t0, end), self._x0, how=FINE)
+        if run.status != "finished" or not np.all(np.isfinite(run.last)):
+            raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
+        return self._state(end, run.last)
 
     def _given_time(self) -> float:
         """The first t, from the start on, at which a condition on t alone holds."""
@@ -158,7 +161,7 @@ class Locating:
         """Whether given motions, or forces that change with time, can end a rest."""
         symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
         moving = (symbols.t, *(q for q in symbols.q if coordinates[q.name].driven))
-        return any(depends_on(a, moving) for a in self.accelerations)
+        return any(depends_on(x, moving) for x in (*self.accelerations, *self.system.scope.nu))
 
     def _is_singular(self) -> bool:
         """Whether the ties do not determine which way the start is left."""

@@ -1,7 +1,8 @@
 """The sine and cosine of a linear argument, and their inverses: signs, quarter turns and exact values.
 
 sin(-x) = -sin(x), sin(x + pi/2) = cos(x), cos(pi/6) = sqrt(3)/2, sin(x + 2*pi/3) = cos(x + pi/6);
-cos(acos(x)) = x, sin(acos(x)) = sqrt(1 - x^2), cos(2 atan(x)) = (1 - x^2)/(1 + x^2), acos(1/2) = pi/3.
+cos(acos(x)) = x, sin(acos(x)) = sqrt(1 - x^2), cos(2 atan(x)) = (1 - x^2)/(1 + x^2), acos(1/2) = pi/3,
+sin(atan2(3, 4)) = 3/5.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def circular(graph: Any, name: str, a: Scalar) -> Scalar:
     if type(a) is Node and a.op == "symbol":
         return graph.held(name, (a,))
     terms = linear_terms(a)
-    inverse = next((atom for atom, c in terms.items() if _unfolds(atom, c)), None)
+    inverse = next((atom for atom, c in terms.items() if _unfolds(graph, atom, c)), None)
     if inverse is not None:
         return _of_inverse(graph, name, a, inverse, int(terms[inverse]))
     turn = Fraction(terms.pop(graph.pi, 0)) % 2  # in units of pi
@@ -100,12 +101,14 @@ def _signed_square(a: Scalar) -> tuple[int, Number] | None:
     return None
 
 
-def _unfolds(atom: Node | None, c: Number) -> bool:
+def _unfolds(graph: Any, atom: Node | None, c: Number) -> bool:
     """Whether the sine of c times the atom is known without the atom: c asin(x), with a whole c."""
-    if atom is None or atom.op not in ("asin", "acos", "atan") or type(c) is not int or abs(c) > LARGEST_MULTIPLE:
+    if atom is None or type(c) is not int or abs(c) > LARGEST_MULTIPLE:
         return False
-    x = atom.args[0]
-    return atom.op == "atan" or type(x) is Node or abs(x) <= 1
+    if atom.op == "atan2":  # one of what moves has a value at (0, 0) too, where there is no direction
+        return graph.is_constant(atom)
+    within = atom.op in ("asin", "acos") and (type(atom.args[0]) is Node or abs(atom.args[0]) <= 1)
+    return within or atom.op == "atan"
 
 
 def _of_inverse(graph: Any, name: str, a: Scalar, atom: Node, c: int) -> Scalar:
@@ -119,18 +122,30 @@ def _of_inverse(graph: Any, name: str, a: Scalar, atom: Node, c: int) -> Scalar:
     return graph.add(graph.mul(sin_rest, cosine), graph.mul(cos_rest, sine))
 
 
+def _of_slope(graph: Any, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
+    """(cos, sin) of the direction of (x, y)."""
+    length = graph.sqrt(graph.add(graph.mul(x, x), graph.mul(y, y)))
+    return graph.div(x, length), graph.div(y, length)
+
+
+def _of_double_slope(graph: Any, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
+    """(cos, sin) of twice the angle of the direction of (x, y)."""
+    square = graph.mul(y, y)
+    below = graph.add(graph.mul(x, x), square)
+    return (
+        graph.div(graph.add(graph.mul(x, x), graph.neg(square)), below),
+        graph.div(graph.mul(2, graph.mul(x, y)), below),
+    )
+
+
 def _turned(graph: Any, atom: Node, n: int) -> tuple[Scalar, Scalar]:
     """(cos, sin) of n times the atom."""
     x = atom.args[0]
-    square = graph.mul(x, x)
-    if atom.op == "atan" and n % 2 == 0:  # twice the angle needs no root
-        below = graph.add(1, square)
-        point, n = (graph.div(graph.add(1, graph.neg(square)), below), graph.div(graph.mul(2, x), below)), n // 2
-    elif atom.op == "atan":
-        root = graph.sqrt(graph.add(1, square))
-        point = graph.div(1, root), graph.div(x, root)
+    if atom.op in ("atan", "atan2"):  # of y/x; twice the angle needs no root
+        y, x = (*atom.args, 1)[:2]
+        point, n = (_of_double_slope(graph, y, x), n // 2) if n % 2 == 0 else (_of_slope(graph, y, x), n)
     else:
-        other = graph.sqrt(graph.add(1, graph.neg(square)))
+        other = graph.sqrt(graph.add(1, graph.neg(graph.mul(x, x))))
         point = (x, other) if atom.op == "acos" else (other, x)
     cosine, sine = 1, 0
     for _ in range(n):

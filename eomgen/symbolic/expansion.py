@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.atoms import RADIAN, Atoms, Opaque
-from eomgen.symbolic.evaluation import order, united
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order, united
 from eomgen.symbolic.factoring import square_root
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.terms import (
@@ -34,6 +34,7 @@ from eomgen.symbolic.terms import (
     wave,
 )
 
+CERTAIN = 1e-30  # of a constant, above which its sign is known at 50 digits
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one
 _TURNS = {  # cos(turn * pi) = coefficient * sqrt(root)
@@ -105,19 +106,84 @@ class Expansion:
             return self._root(parts[0])
         if op == "pow" and type(x.args[1]) is int:
             return self.power(parts[0], x.args[1])
-        if op in ("abs", "sign"):
-            return self._of_sign(op, parts[0])
-        return self._function(op, tuple(parts))
+        if op == "abs":
+            return self._absolute(parts[0])
+        if op in ("min", "max"):
+            return self._extreme(op, *parts)
+        return self._sign(parts[0]) if op == "sign" else self._function(op, tuple(parts))
 
-    def _of_sign(self, op: str, f: Terms) -> Terms:
-        """abs(f) or sign(f), the positive number and symbols that all terms hold taken out of it."""
-        if op == "abs" and self.all_positive(f):
-            return f
+    def _sign(self, f: Terms) -> Terms:
+        """sign(f), the positive number and symbols that all terms hold taken out of it."""
         powers = tuple((atom, e) for atom, e in common_monomial(f) if self._is_positive(atom))
+        return self._function("sign", (self._without(f, powers),))
+
+    def _absolute(self, f: Terms) -> Terms:
+        """abs(f), outside it what has no sign: the number, even powers that all terms hold, a sum of known sign."""
+        if self.all_positive(f):
+            return f
+        powers = common_monomial(f)
+        inside = tuple((atom, odd) for atom, e in powers if (odd := self._odd(atom, e)))
+        outside = tuple((atom, e - self._odd(atom, e)) for atom, e in powers if e != self._odd(atom, e))
+        rest = self._without(f, powers)
+        if (sign := self._known_sign(rest)) is not None:
+            outer, rest = scaled(rest, sign), constant(1)
+        else:
+            outer = constant(1)
+        bare = self._function("abs", (times(rest, {(inside, ()): 1}),))
+        return self.product({(outside, ()): tidy(content(f))}, self.product(outer, bare))
+
+    def _extreme(self, op: str, a: Terms, b: Terms) -> Terms:
+        """min or max of a and b; one of them where it is known which."""
+        sign = self._known_sign(plus(a, b, -1))
+        if sign is None:
+            return self._function(op, (a, b))
+        return a if (sign > 0) is (op == "max") else b
+
+    def _known_sign(self, f: Terms) -> int | None:
+        """1 where f >= 0 wherever it has a value, -1 where f <= 0; None where that is unknown."""
+        above, below = self.cleared(f)
+        sign = self._sign_of_sum(above, f)
+        for atom, e in below.items():
+            if sign is not None and e % 2:
+                of_divisor = self._sign_of_sum(self.atoms.opaque[atom].arguments[0], f)
+                sign = None if of_divisor is None else sign * of_divisor
+        return sign
+
+    def _sign_of_sum(self, f: Terms, whole: Terms) -> int | None:
+        """The same of a sum that stands in `whole`, of which no value exists where one of its roots has none."""
+        roots = [self.atoms.opaque[atom].arguments[0] for monomial, _ in whole for atom, _ in monomial
+                 if self.atoms.is_a(atom, "sqrt")]  # fmt: skip
+        for sign in (1, -1):
+            if self._is_never_negative(scaled(f, sign)) or scaled(f, sign) in roots:
+                return sign
+        return self._sign_of_constant(self.atoms.node(f))
+
+    def _is_never_negative(self, f: Terms) -> bool:
+        """Whether every monomial is positive and its number outweighs its waves: 1 + cos(2 x) >= 0."""
+        least: dict[Monomial, Number] = {}
+        for (monomial, w), c in f.items():
+            if not self.all_positive({(monomial, ()): 1}):
+                return False
+            least[monomial] = least.get(monomial, 0) + (-abs(Fraction(c)) if w else c)
+        return all(number >= 0 for number in least.values())
+
+    def _sign_of_constant(self, x: Scalar) -> int | None:
+        if type(x) is not Node or any(node.op == "symbol" for node in order((x,))):
+            return None
+        try:
+            (value,) = evaluate((x,), {}, fifty_digits())
+        except NoValue:
+            return None
+        return (1 if value > 0 else -1) if abs(value) > CERTAIN else None
+
+    def _odd(self, atom: int, e: int) -> int:
+        """What of x^e has a sign: 0 where x has none, or e is even; else 1 or -1."""
+        return 0 if e % 2 == 0 or self._has_no_sign(atom) else 1 if e > 0 else -1
+
+    def _without(self, f: Terms, powers: Monomial) -> Terms:
+        """f over its content and over a monomial that all its terms hold."""
         inverted, _ = inverse(powers)
-        number = content(f)
-        inside = self._function(op, (times(f, {(inverted, ()): tidy(1 / number)}),))
-        return inside if op == "sign" else self.product({(powers, ()): tidy(number)}, inside)
+        return times(f, {(inverted, ()): tidy(1 / content(f))}) if f else f
 
     def product(self, a: Terms, b: Terms) -> Terms:
         """a b, with atom^2 = f for atoms sqrt(f)."""
@@ -160,19 +226,21 @@ class Expansion:
         return self.graph.pow(nodes[0], nodes[1]) if op == "pow" else self.graph.call(op, *nodes)
 
     def _without_squared_roots(self, a: Terms) -> Terms:
-        roots = {atom for atom in self.atoms.opaque if self.atoms.is_a(atom, "sqrt")}
-        if not roots:
+        """The sum with sqrt(f)^2 = f and |f|^2 = f^2."""
+        square = {atom: 1 if x.op == "sqrt" else 2 for atom, x in self.atoms.opaque.items() if x.op in ("sqrt", "abs")}
+        if not square:
             return a
         result: Terms = {}
         for (monomial, w), c in a.items():
-            squared = [(atom, e) for atom, e in monomial if atom in roots and e >= 2]
+            squared = [(atom, e) for atom, e in monomial if atom in square and e // 2 and e != -1]
             if not squared:
                 accumulate(result, (monomial, w), c)
                 continue
             rest = tuple((atom, e % 2 if (atom, e) in squared else e) for atom, e in monomial)
             part: Terms = {(tuple((atom, e) for atom, e in rest if e), w): c}
             for atom, e in squared:
-                part = self.product(part, self.power(self.atoms.opaque[atom].arguments[0], e // 2))
+                whole = self.power(self.atoms.opaque[atom].arguments[0], square[atom] * abs(e // 2))
+                part = self.product(part, whole if e > 0 else self.reciprocal(whole))
             result = plus(result, part)
         return result
 
@@ -212,7 +280,9 @@ class Expansion:
 
     def _is_positive(self, atom: int) -> bool:
         is_sum = self.atoms.is_a(atom, "sum")
-        return atom in self.positive or (is_sum and self.all_positive(self.atoms.opaque[atom].arguments[0]))
+        if is_sum:
+            return self.all_positive(self.atoms.opaque[atom].arguments[0])
+        return atom == self.graph.pi.index or atom in self.positive
 
     def all_positive(self, f: Terms) -> bool:
         """Whether every term is positive."""
@@ -222,7 +292,9 @@ class Expansion:
         )
 
     def _has_no_sign(self, atom: int) -> bool:
-        return self._is_positive(atom) or self.atoms.is_a(atom, "sqrt") or self.atoms.is_a(atom, "exp")
+        if self.atoms.is_a(atom, "max"):
+            return any(self.all_positive(f) for f in self.atoms.opaque[atom].arguments)
+        return self._is_positive(atom) or any(self.atoms.is_a(atom, op) for op in ("sqrt", "exp", "abs"))
 
     def _constant_root(self, root: Scalar) -> Terms:
         """c sqrt(n), as the graph folds the root of a number, as a term."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from eomgen.symbolic.graph import Number
@@ -28,8 +29,15 @@ def factored(f: Terms) -> list[tuple[Terms, int]]:
     if found is None:
         return [(f, 1)]
     polynomial, atoms = found
-    _, parts = polynomial.factor_list()
+    _, parts = irreducible(polynomial)
     return [(_terms(part, atoms), n) for part, n in parts if len(part) > 1]
+
+
+@lru_cache(maxsize=2000)
+def irreducible(polynomial: Any) -> tuple[Any, tuple[tuple[Any, int], ...]]:
+    """(number, irreducible factors and their powers) of an element of sympy's ring; remembered, as formulas recur."""
+    number, parts = polynomial.factor_list()
+    return number, tuple(parts)
 
 
 def square_root(f: Terms) -> Terms | None:

@@ -48,7 +48,9 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple, Node] = {}
+        self._adopted: dict[Node, Node] = {}
         self.pi = self.held("pi", ())
+        self._constants = {self.pi}
 
     def __len__(self) -> int:
         return len(self._nodes)
@@ -64,6 +66,18 @@ class Graph:
     def symbol(self, name: str) -> Node:
         """The symbol of this name (the same node for the same name)."""
         return self.held("symbol", (name,))
+
+    def constant(self, name: str) -> Node:
+        """The symbol of a number that stays the same."""
+        symbol = self.symbol(name)
+        self._constants.add(symbol)
+        return symbol
+
+    def is_constant(self, x: Scalar) -> bool:
+        """Whether x is made of numbers and of symbols that stay the same."""
+        if type(x) is not Node or x in self._constants:
+            return True
+        return x.op != "symbol" and all(map(self.is_constant, x.args))
 
     # -- arithmetic ---------------------------------------------------------------------------
 
@@ -377,7 +391,9 @@ class Graph:
             raise TypeError("two expressions of different graphs cannot be combined")
         if a.op == "pi":
             return self.pi
-        return self.held(a.op, tuple(self.adopted(x) for x in a.args))
+        if a not in self._adopted:
+            self._adopted[a] = self.held(a.op, tuple(self.adopted(x) for x in a.args))
+        return self._adopted[a]
 
 
 CONSTANTS = Graph()

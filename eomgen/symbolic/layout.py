@@ -13,6 +13,7 @@ from heapq import heappop, heappush
 from typing import Any
 
 from eomgen.symbolic.decimals import decimal_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.graph import Node, Number, Scalar
 
 SUMS = frozenset(("add", "sub", "neg"))
@@ -75,6 +76,7 @@ def plus_first(products: list[Product]) -> list[Product]:
 
 def _turned(product: Product, named: Container[Node]) -> Product:
     """The product with the sign of a factor turned where it reads better: -(x - 1) is 1 - x, and l/r - 1 too."""
+    product = _turned_below(product, named)
     for i, (base, exponent) in enumerate(product.numerator):
         if exponent % 2 and base not in named and base.op == "add" and _is_less_than(base.args[0], 0):
             rest = base.args[1]
@@ -83,6 +85,22 @@ def _turned(product: Product, named: Container[Node]) -> Product:
                 above = (*product.numerator[:i], turned, *product.numerator[i + 1 :])
                 return Product(-product.coefficient, above, product.denominator)
     return product
+
+
+def _turned_below(product: Product, named: Container[Node]) -> Product:
+    """-a/(x - 1) as a/(1 - x), and a/(pi - 4), whose divisor is negative, as -a/(4 - pi)."""
+    for i, (base, exponent) in enumerate(product.denominator):
+        if base in named or base.op != "add" or not _is_less_than(base.args[0], 0):
+            continue
+        if (exponent % 2 and product.coefficient < 0) or _is_negative_constant(base):
+            below = (*product.denominator[:i], (base.graph.neg(base), exponent), *product.denominator[i + 1 :])
+            return Product((-1) ** exponent * product.coefficient, product.numerator, below)
+    return product
+
+
+def _is_negative_constant(x: Node) -> bool:
+    """pi - 4"""
+    return all(node.op in ("add", "mul", "pi") for node in order((x,))) and evaluate((x,), {}, FLOAT)[0] < 0
 
 
 def _is_less_than(x: Scalar, limit: int) -> bool:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.polynomials import Polynomials
-from eomgen.symbolic.terms import Terms, TooLarge, common_monomial, constant
+from eomgen.symbolic.terms import Key, Terms, TooLarge, common_monomial, constant
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought
@@ -39,6 +41,16 @@ def fraction_of(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
 
 
 def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
+    """The quotient reduced as it is; or with no roots of numbers below, where that is no longer."""
+    found = _divided(expansion, numerator, denominator)
+    rational = _rational_below(expansion, *found)
+    if rational is None:
+        return found
+    other = _divided(expansion, *rational)
+    return min(other, found, key=lambda quotient: sum(map(len, quotient)))
+
+
+def _divided(expansion: Expansion, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
     if len(numerator) * len(denominator) > LARGEST_PRODUCT:
         return numerator, denominator
     try:
@@ -50,6 +62,32 @@ def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator:
         return numerator, denominator
     above, below = ring.without_common_divisor(above, below)
     return ring.terms(above), ring.terms(below)
+
+
+def _rational_below(expansion: Expansion, above: Terms, below: Terms) -> tuple[Terms, Terms] | None:
+    """Both times the conjugates of the denominator: (a + sqrt(3) b)(a - sqrt(3) b) = a^2 - 3 b^2.
+
+    A divisor with a root in it, (a + sqrt(3) b)^2 written out, is common to both where it divides each term above.
+    None where no root of a number is below, or the products would be too large.
+    """
+    roots = _roots(below)
+    if not roots:
+        return None
+    from sympy import primefactors
+
+    primes = {p for root in roots for p in primefactors(root)}
+    largest = (len(above) + len(below)) * len(below) ** (2 ** len(primes))
+    if largest > min(LARGEST_PRODUCT, expansion.limit - expansion.work):
+        return None
+    for p in sorted(primes):
+        conjugate = {key: -c if any(root % p == 0 for root in _roots((key,))) else c for key, c in below.items()}
+        above, below = expansion.product(above, conjugate), expansion.product(below, conjugate)
+    return above, below
+
+
+def _roots(terms: Iterable[Key]) -> set[int]:
+    """The numbers whose roots stand in the terms."""
+    return {-atom for monomial, _ in terms for atom, _ in monomial if atom < 0}
 
 
 def powers_in(expansion: Expansion, terms: Terms) -> list[tuple[Terms, int]]:

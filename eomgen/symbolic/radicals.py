@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.symbolic.expansion import Expansion
+from eomgen.symbolic.factoring import irreducible
 from eomgen.symbolic.graph import Number
 from eomgen.symbolic.polynomials import Element, Polynomials
 from eomgen.symbolic.quotient import fraction_of
@@ -80,7 +81,7 @@ class _Roots:
         element = self._element(terms)
         if len(element) > MOST_TERMS or max(map(sum, element.monoms())) > LARGEST_DEGREE:
             raise TooLarge(f"a polynomial of more than {MOST_TERMS} terms or degree {LARGEST_DEGREE}")
-        c, parts = element.factor_list()
+        c, parts = irreducible(element)
         number, factors = Fraction(int(c.numerator), int(c.denominator)), []
         for p, e in parts:
             turned = self._is_positive(-p)

@@ -34,18 +34,21 @@ VANISHES = 1e-7  # of a residual at such a state
 INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
 
 
-def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = ()) -> tuple[Scalar, ...]:
+def roots(
+    equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = LIMIT
+) -> tuple[Scalar, ...]:
     """The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn.
 
     Args:
         positive: symbols that stand for positive numbers.
+        limit: products of terms for each step of the search.
     """
     if not depends_on(equation, (unknown,)):
         return ()
     assert type(equation) is Node
     found: list[Scalar] = []
-    for candidate in _Search(unknown, frozenset(positive)).roots(_in_exponentials(equation, unknown)):
-        x = simplest(candidate, LIMIT, positive)
+    for candidate in _Search(unknown, frozenset(positive), limit).roots(_in_exponentials(equation, unknown)):
+        x = simplest(candidate, limit, positive)
         if x not in found and _may_be_root(equation, unknown, x):
             found.append(x)
     return tuple(found)
@@ -74,16 +77,18 @@ class _Search:
     Args:
         x: the unknown.
         positive: symbols that stand for positive numbers.
+        limit: products of terms for each step.
         squarings: how often the equation may still be squared.
     """
 
     x: Node
     positive: frozenset[Node]
+    limit: int
     squarings: int = MOST_SQUARINGS
 
     def roots(self, equation: Scalar) -> Iterator[Scalar]:
         """Root by root, factor by factor."""
-        expansion = Expansion(self.x.graph, LIMIT, self.positive)
+        expansion = Expansion(self.x.graph, self.limit, self.positive)
         try:
             f, _ = expansion.cleared(expansion.of(equation))
             f, fresh = wave_free(expansion, f)
@@ -127,14 +132,14 @@ class _Search:
             return
         node = expansion.atoms.node
         for y in self._quadratic(expansion, c0, c1, c2) if c2 else [-over(node(c0), node(c1))]:
-            yield from self._unpowered(simplest(y, LIMIT, self.positive), k)
+            yield from self._unpowered(simplest(y, self.limit, self.positive), k)
 
     def _quadratic(self, expansion: Expansion, c0: Terms, c1: Terms, c2: Terms) -> Iterator[Scalar]:
         """(-c1 +- sqrt(c1^2 - 4 c0 c2))/(2 c2)"""
         discriminant = plus(expansion.product(c1, c1), expansion.product(c0, c2), -4)
         node = expansion.atoms.node
         whole = square_root(discriminant) if discriminant else {}
-        root = self.x.graph.sqrt(simplest(node(discriminant), LIMIT, self.positive)) if whole is None else node(whole)
+        root = self.x.graph.sqrt(simplest(node(discriminant), self.limit, self.positive)) if whole is None else node(whole)
         for sign in (1, -1):
             yield over(sign * root - node(c1), 2 * node(c2))
 

@@ -16,7 +16,7 @@ _NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS}
 _NAME = r"[^\W\d²³¹⁰⁴-⁹][^\W²³¹⁰⁴-⁹]*"
 _TOKEN = re.compile(rf"(?P<number>{_NUMBER})|(?P<name>{_NAME}'*)|(?P<sign>\*\*|[-+*/^(),=])")
 _SPACE = re.compile(r"\s*")
-_REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w+)*(?:-\w+(?:\.\w+)*)*)\s*[,)]")
+_REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w+)*(?:\s*-\s*\w+(?:\.\w+)*)*)\s*[,)]")
 _DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
 
 _MENDS = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eomgen.mechanics.freedom import Freedom, freedom_of
+from eomgen.mechanics.snapshot import mobility_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
@@ -23,14 +24,16 @@ def check(model: Model) -> Outcome:
     lines = [f"{model.name}: no problems found", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
+    mobility = mobility_of(model) if not model.coordinates and (model.constraints or model.trusses) else None
     lines += _freedom_lines(model, freedom)
+    lines += [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
     lines += [f"open at the start: {listed(away)}"] if away else []
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
     payload = {
         "ok": True, "name": model.name, "space": model.space, "bodies": list(model.bodies),
         "coordinates": list(model.coordinates), "driven": driven, "dependent": dependent, "missing_values": missing,
         "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
-        "not_counted": freedom.not_counted or None,
+        "not_counted": freedom.not_counted or None, "mobility": mobility,
         "open_at_start": away, "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],

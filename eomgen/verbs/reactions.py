@@ -17,12 +17,13 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.balance import balance_of
 from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.system import System
+from eomgen.mechanics.system import System, system_of
 from eomgen.model.checks.outputs import FUNCTIONS
-from eomgen.model.fields import Equation
+from eomgen.model.fields import AtRest, Equation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
+from eomgen.model.unknowns import in_loads
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
@@ -45,16 +46,17 @@ def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...]
         UsageError: no equation, or no coordinate of that name.
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    equations = pipeline.derive(model, "kinetostatic")
-    system = equations.system
+    held = bool(in_loads(model))
+    equations = None if held else pipeline.derive(model, "kinetostatic")
+    system = system_of(model) if equations is None else equations.system
     asked = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
-    if at is None and not from_rest:
+    if equations is not None and at is None and not from_rest:
         found = _formulas(equations, asked)
     else:
         found = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
-    space = null_space(system, equations.graph) if open_ else []
+    space = null_space(system, equations.graph) if open_ and equations is not None else []
     payload = {"name": model.name, "reactions": {name: answer.as_dict() for name, answer in found.items()},
                **({"null_space": space} if space else {})}  # fmt: skip
     notes = () if found else ("nothing reacts: no body is held by joints or ties",)
@@ -99,8 +101,8 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
 
 def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Answer]:
     """The answers to outputs that ask for the reactions, with their units."""
-    instant = None if at is None else _equation(at)
-    from_ = "rest" if from_rest else None if at is None else "start"
+    instant = None if at is None else _instant(at)
+    from_ = "rest" if from_rest else "start" if isinstance(instant, Equation) else None
     values = [parse(named.name, references=True) for named in asked]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {at}", outputs=Table(outputs))
@@ -108,7 +110,9 @@ def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest
     return {named.name: dataclasses.replace(found[f"o{k}"], unit=named.unit) for k, named in enumerate(asked)}
 
 
-def _equation(text: str) -> Equation:
+def _instant(text: str) -> Equation | AtRest:
+    if text.strip() == AtRest.text:
+        return AtRest()
     try:
         return Equation(*parse_equation(text), text=text)
     except ExpressionError as error:

@@ -354,3 +354,28 @@ def test_a_path_that_ends_before_is_refused(ends):
     """x = 10 is not met within 5, nor where the path ends at 2."""
     with pytest.raises(NeverReached):
         first_arrival(lambda t, x: np.array([1.0]), lambda t, x: x[0] - 10, 0.0, [0.0], **ends)
+
+
+def test_a_motion_without_a_beginning_is_refused_at_once():
+    """A damper of no length has no direction: no step of time is short enough, and that is said."""
+    model = eomgen.loads("""
+eomgen = 1
+name = "damper of no length"
+space = "plane"
+[coordinates]
+s = { start = 0, speed = 1 }
+[points]
+O = [0, 0]
+[bodies.box]
+shape = { kind = "particle", mass = 2 }
+joint = { kind = "placed", at = ["s", 0] }
+[forces.drag]
+kind = "damper"
+points = ["box.center", "O"]
+damping = 0.4
+[outputs]
+s = { value = "s", at = "t = 1" }
+""")
+    assert "no finite value" in (eomgen.solve(model)["s"].message or "")
+    with pytest.raises(NeverReached, match="no finite rates"):
+        first_arrival(lambda t, x: np.array([math.nan]), lambda t, x: x[0] - 1, 0.0, [0.0])

@@ -321,9 +321,30 @@ stiffness = "k"
 length = "l"
 along = [1, 0]
 """
+PUCK = HEAD + """
+[coordinates]
+x = { start = "l", speed = "v" }
+y = { start = 0.1, speed = -1 }
+[bodies.puck]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[forces.push]
+kind = "force"
+point = "puck.center"
+force = [FORCES]
+"""
+PUSHES = {
+    "puck on a turntable": "\"m*(c^2*x + 2*c*y')\", \"m*(c^2*y - 2*c*x')\"",
+    "puck on a turntable that leans": "\"m*(c^2*x + 2*c*y') + F\", \"m*(c^2*y - 2*c*x')\"",
+    "pendulum of Foucault": "\"-k*x + 2*c*y'\", \"-k*y - 2*c*x'\"",
+    "charge in crossed fields": "\"F + c*y'\", \"-c*x'\"",
+    "spring and gyroscopic force": "\"-k*x + c*y'\", \"-2*k*y - c*x'\"",
+    "a pair without a root of its own": "\"m*(x - y)\", \"m*(x - y) + F\"",
+}
 LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()} | {
     "two masses and a spring": HEAD + TWO_MASSES.replace("FORCES", "angle = 0"),
     "two masses, one to the ground": HEAD + TWO_MASSES.replace("FORCES", 'stiffness = "3*k"'),
+    **{name: PUCK.replace("FORCES", force) for name, force in PUSHES.items()},
     "throw with linear drag": HEAD
     + '[coordinates]\nx = { start = 0, speed = "v" }\ny = { start = "l", speed = "2*v" }\n[bodies.ball]\n' + PARTICLE
     + 'joint = { kind = "placed", at = ["x", "y"] }\n[forces.drag]\nkind = "force"\npoint = "ball.center"\n'

@@ -4,9 +4,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
+from eomgen.model.composite import sources
 from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.orientation import SEQUENCES
 
+MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 SPACE_ONLY = ("cylindrical", "screw", "universal", "spherical")
 
 
@@ -31,12 +33,32 @@ def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
     if body.shape is not None and body.shape.mass is None and (*path, "shape", "mass") not in catalog.broken:
         what = f"the shape of body '{name}' has no 'mass'"
         yield Finding((*path, "shape"), what, "give 'mass' (0 for a massless body)")
-    if body.parts is not None and body.mass is None and any(piece.shape.mass is None for piece in body.parts):
-        what = f"body '{name}' has parts but no 'mass'"
-        yield Finding(path, what, "give the net mass, or a mass to each part", key=True)
+    if body.parts is not None and (*path, "parts") not in catalog.broken and (*path, "mass") not in catalog.broken:
+        yield from _sharing((*path, "parts"), name, body)
     if _needs_inertia(body) and (*path, "inertia") not in catalog.broken and _turns(catalog, name):
         what = f"body '{name}' can turn but has no 'inertia'"
         yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
+
+
+def _sharing(path: Path, name: str, body: Any) -> Iterator[Finding]:
+    """Parts without a mass of their own: in what they share the rest, and that equal densities can be meant."""
+    sharing = [k for k, piece in enumerate(body.parts) if piece.shape.mass is None]
+    for k in sharing:
+        piece = body.parts[k]
+        if piece.shape.dimension == 0:
+            yield Finding((*path, k), f"a particle among the parts of body '{name}' has no 'mass'", "give its mass")
+        elif body.mass is None and not piece.hole:
+            what = f"part {k + 1} of body '{name}' has no 'mass', and neither has the body"
+            yield Finding((*path, k), what, "give the net mass of the body, or a mass to each part")
+        elif body.mass is None and len(of := sources(body.parts, k)) != 1:
+            what = f"the mass of the hole, part {k + 1} of body '{name}', is not known: "
+            what += f"it may be cut out of {len(of)} parts" if of else "no part is of its kind"
+            yield Finding((*path, k), what, "give its mass (what it takes away), or the net mass of the body")
+    kinds = {body.parts[k].shape.dimension: body.parts[k].shape.kind for k in sharing}
+    if body.mass is not None and len(kinds) > 1 and 0 not in kinds:
+        told = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
+        what = f"the parts of body '{name}' have no common density: {told}"
+        yield Finding(path, what, "give a mass to the parts of one kind: the others share the rest", key=True)
 
 
 def _needs_inertia(body: Any) -> bool:

@@ -76,7 +76,13 @@ class Catalog:
         """Every point that a tie or a force may name."""
         names = list(self.table("points"))
         names += [f"{body}.{point}" for body in self.table("bodies") for point in self.body_points(body)]
-        return names + [f"{t}.{n}" for t, part in self.table("trusses").items() if part for n in part.nodes or {}]
+        return names + list(self.nodes)
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """The nodes of all trusses: "T.n1"."""
+        trusses = self.table("trusses").items()
+        return tuple(f"{name}.{node}" for name, truss in trusses if truss for node in truss.nodes or {})
 
 
 def _expressions_in(value: Any) -> Iterator[Expression]:

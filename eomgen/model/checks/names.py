@@ -57,7 +57,8 @@ def _points(catalog: Catalog) -> Iterator[Finding]:
 def _points_of_its_own(part) -> tuple[str, ...]:
     if part.shape is not None:
         return part.shape.point_names
-    return ("origin", "center") if part.mass is not None or part.center is not None else ()
+    heavy = any(source is not None for source in (part.mass, part.center, part.parts))
+    return ("origin", "center") if heavy else ()
 
 
 def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Finding]:

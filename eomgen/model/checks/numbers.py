@@ -7,11 +7,11 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, in_order, number_of
 from eomgen.model.checks.catalog import Catalog
+from eomgen.model.checks.made import made
+from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, Path, shown, whereabouts
 from eomgen.symbolic.expressions import Expression
-
-ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
 
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:
@@ -27,6 +27,7 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
     yield from _directions(catalog, values)
     yield from _positive(catalog, values)
     yield from _inertias(catalog, values)
+    yield from made(catalog, values)
 
 
 def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterator[Finding]:
@@ -95,21 +96,8 @@ def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
 
 
 def _triangle(name: str, path: Path, moments: list[float], count: int) -> Iterator[Finding]:
-    if len(moments) == count and not _possible(moments):
+    if len(moments) == count and not possible(moments):
         told = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
         mend = "a principal moment is at most the sum of the others; measured = true waives this for published data"
         yield Finding(path, what, mend)
-
-
-def _possible(moments: list[float]) -> bool:
-    """J = tr(I)/2 - I has no negative eigenvalue (its principal minors are not negative)."""
-    xx, yy, zz, xy, yz, zx = moments if len(moments) == 6 else (*moments, 0.0, 0.0, 0.0)
-    half = (xx + yy + zz) / 2
-    a, b, c = half - xx, half - yy, half - zz
-    size = max(abs(x) for x in (xx, yy, zz, xy, yz, zx)) or 1.0
-    determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
-    second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
-    return (
-        min(a, b, c) >= -ROUNDING * size and min(second) >= -ROUNDING * size**2 and determinant >= -ROUNDING * size**3
-    )

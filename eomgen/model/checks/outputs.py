@@ -6,29 +6,47 @@ from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.checks.references import missing_point
+from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, nearest
-from eomgen.symbolic.expressions import Call, Expression, Reference
+from eomgen.symbolic.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.functions import NAMES
 
 
 @dataclass(frozen=True)
 class Signature:
-    """What a function takes: the kind of each argument, and how many there must be at least."""
+    """What a function takes: the kind of each argument, the least number of them, and of what there may be more."""
 
     kinds: tuple[str, ...]
     least: int
+    more: str = ""
 
 
 def _functions() -> dict[str, Signature]:
     point, pair = Signature(("point", "body"), 1), Signature(("body", "body"), 1)
-    table = {name: point for name in ("x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "speed", "acceleration")}
+    components, parts = Signature(("point", "body", "body"), 1), Signature(("point", "body", "body"), 2)
+    table = {f"{order}{axis}": components for order in ("", "v", "a") for axis in "xyz"}
+    sizes = ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius")
+    table |= {name: point for name in sizes}
+    kinds_of_parts = ("transport_v", "transport_a", "coriolis_a", "euler_a", "centripetal_a")
+    table |= {f"{part}{axis}": parts for part in kinds_of_parts for axis in "xyz"}
+    of_parts = ("transport_speed", *(f"{p}_acceleration" for p in ("transport", "coriolis", "euler", "centripetal")))
+    table |= {name: Signature(("point", "body"), 2) for name in of_parts}
+    table |= {f"acceleration_pole_{axis}": Signature(("body",), 1) for axis in "xy"}
+    table["least_speed"] = Signature(("point", "point"), 2)
     turning = ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y")
     table |= {name: pair for name in (*turning, *(f"{n}_{axis}" for n in ("omega", "epsilon") for axis in "xyz"))}
     reactions = [f"reaction_{c}" for c in ("x", "y", "z", "n", "t", "couple", "couple_x", "couple_y", "couple_z")]
     table |= {name: Signature(("reaction", "body"), 1) for name in reactions}
     table |= {name: Signature(("coordinate", "coordinate"), 2) for name in ("mass", "damping", "stiffness")}
-    table |= {f"inertia_{name}": Signature(("any",) * 6, 0) for name in ("point", "axis", "product", "tensor")}
+    table |= {
+        name: Signature(kinds, len(kinds), "body")
+        for name, kinds in {
+            "inertia_point": ("point",), "inertia_axis": ("point", "point or axis"), "inertia_plane": ("point", "axis"),
+            "inertia_product": ("point", "axis", "axis"), "inertia_tensor": ("point", "axis", "axis"),
+            "principal_moment": ("point", "number"), **{f"angular_momentum_{axis}": ("point",) for axis in "xyz"},
+        }.items()
+    }  # fmt: skip
     return table | {
         "kinetic_energy": Signature(("body",), 0),
         "potential_energy": Signature(("body or force",), 0),
@@ -37,11 +55,14 @@ def _functions() -> dict[str, Signature]:
         "drive": Signature(("coordinate",), 1),
         "momentum": Signature(("coordinate or speed",), 1),
         "frequency": Signature(("number",), 1),
+        "mass_of": Signature(("body", "number"), 1),
+        **{name: Signature(("body", "number", "side"), 2) for name in ("axial_force", "shear_force", "bending_moment")},
         "multiplier": Signature(("tie",), 1),
         "tension": Signature(("tie or truss", "any", "any"), 1),
     }
 
 
+AXES = ("x", "y", "z")
 FUNCTIONS = _functions()
 """The functions of the motion, by name."""
 
@@ -67,22 +88,38 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
         mend = nearest(call.name, [*FUNCTIONS, *NAMES])
         yield Finding(leaf.path, f"unknown function '{call.name}'", mend, call.column, len(call.name))
         return
-    if not signature.least <= len(call.args) <= len(signature.kinds):
+    kinds = signature.kinds + (signature.more,) * (len(call.args) - len(signature.kinds) if signature.more else 0)
+    if not signature.least <= len(call.args) <= len(kinds):
         most = len(signature.kinds)
         count = str(most) if most == signature.least else f"{signature.least} to {most}"
-        what = f"{call.name} takes {count} argument{'' if count == '1' else 's'}, not {len(call.args)}"
+        count = f"at least {signature.least}" if signature.more else count
+        what = f"{call.name} takes {count} argument{'' if count in ('1', 'at least 1') else 's'}, not {len(call.args)}"
         yield Finding(leaf.path, what, _usage(call.name, signature), call.column, len(call.name))
         return
-    for argument, kind in zip(call.args, signature.kinds, strict=False):
+    if call.name == "tension" and isinstance(call.args[0], Reference):
+        yield from _member(catalog, leaf, call, call.args[0].name)
+    for argument, kind in zip(call.args, kinds, strict=False):
         wrong = _argument(catalog, argument, kind)
         if wrong is not None:
             what, mend, column, length = wrong
             yield Finding(leaf.path, f"{what} (in {call})", mend, column, length)
 
 
+def _member(catalog: Catalog, leaf: Leaf, call: Call, owner: str) -> Iterator[Finding]:
+    """Of a truss the tension of one of its members can be asked."""
+    truss = catalog.table("trusses").get(owner)
+    if truss is None or truss.members is None:
+        return
+    ends = ends_asked(call)
+    if ends is None or set(ends) not in [set(member.split("-")) for member in truss.members]:
+        what = f"truss '{owner}' has no member '{'-'.join(ends)}'" if ends else f"'{call}' names no member"
+        mend = nearest("-".join(ends or ()), truss.members) or f"tension({owner}, {truss.members[0]})"
+        yield Finding(leaf.path, what, mend, call.column, len(call.name))
+
+
 def _usage(name: str, signature: Signature) -> str:
     shown = [k if i < signature.least else f"[{k}]" for i, k in enumerate(signature.kinds)]
-    return f"{name}({', '.join(shown)})"
+    return f"{name}({', '.join([*shown, *([f'[{signature.more}, ...]'] if signature.more else [])])})"
 
 
 def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int, int] | None:
@@ -94,16 +131,32 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
             return None
         start = min((c for c in argument.columns if c >= 0), default=0)
         return f"a {kind} is needed, not '{argument.text}'", "", start, len(argument.text)
+    if kind == "side":
+        known = ("before", "after")
+        return None if argument.name in known else _unknown(argument, kind, known)
     if kind == "number":
-        symbols = catalog.allowed[""]
-        return None if argument.name in symbols else _unknown(argument, kind, symbols)
-    if kind == "point":
+        if "." in argument.name:
+            return _unknown(argument, kind, catalog.allowed[""])
+        return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
+    if kind.endswith("axis"):
+        if argument.name in AXES:
+            return None
+        if kind == "axis":
+            return _unknown(argument, kind, AXES)
+    if kind.startswith("point"):
         wrong = missing_point(catalog, argument.name)
         return None if wrong is None else (wrong[0], wrong[1], argument.column + wrong[2], wrong[3])
     if kind == "reaction":
         return _reaction(catalog, argument)
     known = _known(catalog, kind)
     return None if argument.name in known else _unknown(argument, kind, known)
+
+
+def _names_in(catalog: Catalog, expression: Expression, column: int) -> tuple[str, str, int, int] | None:
+    """The first name of a number's expression that nothing declares; the expression stands at the column."""
+    symbols = catalog.allowed[""]
+    unknown = [(name, column + k) for name, k in expression.occurrences if name not in symbols]
+    return _unknown(Reference(*unknown[0]), "name", symbols) if unknown else None
 
 
 def _known(catalog: Catalog, kind: str) -> list[str]:
@@ -125,7 +178,7 @@ def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int
     owner, dot, side = argument.name.partition(".")
     ties, bodies = catalog.table("constraints"), catalog.table("bodies")
     if owner in ties:
-        if dot and side not in bodies and side != "ground":
+        if dot and side not in bodies and side != "ground" and side not in catalog.nodes:
             return f"unknown body '{side}'", nearest(side, bodies), argument.column + len(owner) + 1, len(side)
         return None
     if owner in bodies:

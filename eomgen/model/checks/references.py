@@ -17,6 +17,7 @@ def references(catalog: Catalog) -> Iterator[Finding]:
             yield from _vector(catalog, leaf)
         elif isinstance(leaf.rule, AxialRule):
             yield from _axial(catalog, leaf)
+    yield from _idle_nodes(catalog)
 
 
 def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | None:
@@ -93,6 +94,18 @@ def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
         yield from _told(leaf, _missing_own(catalog, owner, name, len(owner) + 1))
 
 
+def _idle_nodes(catalog: Catalog) -> Iterator[Finding]:
+    """Nodes that no member joins to a truss."""
+    for name, truss in catalog.table("trusses").items():
+        if truss is None or truss.members is None:
+            continue
+        joined = {node for member in truss.members for node in member.split("-")}
+        for node in truss.nodes or {}:
+            if node not in joined:
+                what = f"node '{node}' of truss '{name}' has no member"
+                yield Finding(("trusses", name, "nodes", node), what, "join it by a member, or leave it out", key=True)
+
+
 def _declared(table: str, what: str) -> Callable[[Catalog, Leaf], Iterator[Finding]]:
     def check(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
         known = catalog.table(table)
@@ -114,6 +127,9 @@ def _member(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
     if len(ends) != 2 or ends[0] == ends[1]:
         yield Finding(leaf.path, f"'{leaf.value}' is no member", 'a member joins two nodes: "n1-n2"')
         return
+    before = [set(member.split("-")) for member in (truss.members or ())[: int(leaf.path[-1])]]
+    if set(ends) in before:
+        yield Finding(leaf.path, f"member '{leaf.value}' of truss '{leaf.path[1]}' stands there twice", "leave one out")
     for k, node in enumerate(ends):
         if truss.nodes is not None and node not in truss.nodes:
             column = 0 if k == 0 else len(ends[0]) + 1
