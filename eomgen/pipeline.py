@@ -44,8 +44,8 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     Raises:
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
-        DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is held by nothing, or a force
-            acts at no place.
+        DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
+            held by nothing, or a force acts at no place.
     """
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")

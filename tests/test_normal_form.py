@@ -310,6 +310,18 @@ def test_a_solved_form_is_cancelled(the):
     assert equal(x_acceleration, (m * s * (l * w**2 + g * c)) / (M + m * s**2))
 
 
+def test_common_divisors_with_roots_of_numbers_cancel(graph, the):
+    """(m^2 - 3 k^2)/(m - sqrt(3) k) = m + sqrt(3) k, and 1/(m - sqrt(3) k) is left as it is."""
+    m, k = the("m k")
+    root, other = graph.sqrt(3), graph.sqrt(2)
+    assert to_text(cancelled((m * m - 3 * k * k) / (m - root * k))) == "sqrt(3)*k + m"
+    assert to_text(cancelled(k / (m - root * k))) == "k/(m - sqrt(3)*k)"
+    square = m * m + (5 - 2 * root) * k * k
+    below = m**4 + (10 - 4 * root) * m * m * k * k + (37 - 20 * root) * k**4
+    assert equal(cancelled(square * (4 + other) * k / below), (4 + other) * k / square)
+    assert to_text(cancelled(square * square * k / below)) == "k"
+
+
 def test_common_divisors_with_sines_cancel(the):
     """(1 - c^2)/s = s; (s^2 - a^2)/(s - a) = s + a."""
     theta, a = the("theta k")

@@ -103,6 +103,9 @@ def test_a_period_is_seen():
         "cos(2*atan(x))": "(1 - x^2)/(1 + x^2)",
         "sin(2*asin(x))": "2*x*sqrt(1 - x^2)",
         "acos(-1/2)": "2*pi/3",
+        "sin(atan2(3, -4))": "3/5",
+        "cos(2*atan2(-3, 4))": "0.28",
+        "cos(atan2(1, -1) + x)": "-1/2*sqrt(2)*cos(x) - 1/2*sqrt(2)*sin(x)",
         "asin(sqrt(3)/2)": "pi/3",
         "atan(-1)": "-pi/4",
         "exp(-log(x))": "1/x",
@@ -115,6 +118,15 @@ def test_functions_of_inverse_functions_fold(text, folded):
     assert a is b or to_text(a) == folded
     values = {names[name]: 0.3 for name in NAMES}
     assert evaluate((a,), values, FLOAT) == pytest.approx(evaluate((b,), values, FLOAT))
+
+
+def test_the_direction_of_what_stays_the_same_is_that_of_its_triangle():
+    """cos(atan2(h, b)) = b/sqrt(b^2 + h^2) of constants; what moves may come to (0, 0), which has no direction."""
+    graph = Graph()
+    h, b, x = graph.constant("h"), graph.constant("b"), graph.symbol("x")
+    fixed, moving = (graph.call("cos", graph.call("atan2", y, b)) for y in (h, x))
+    assert to_text(fixed) == "b/sqrt(b^2 + h^2)"
+    assert to_text(moving) == "cos(atan2(x, b))"
 
 
 @pytest.mark.parametrize("function", ["sin", "cos"])

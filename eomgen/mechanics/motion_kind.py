@@ -10,7 +10,7 @@ it turns about that axis, and moves helically where omega.v does not vanish: by 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -145,33 +145,11 @@ def fixed_point(field: Field) -> Vector:
 # -- at one instant --------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class AtInstant:
-    """The field of a body at one instant.
-
-    Args:
-        name: "rest", "translation", "rotation" or "helical motion".
-        at: of a rotation or helical motion, the point of its axis nearest to the body's origin.
-        invariants: omega.omega and omega.v.
-    """
-
-    name: str
-    at: Vector | None
-    invariants: tuple[Scalar, Scalar]
-
-
-def instant_of(field: Field, short: Callable[[Scalar], Scalar]) -> AtInstant:
-    """The kind of a field whose entries are known.
-
-    Args:
-        short: puts a scalar into readable form.
-    """
-    square, product = short(dot(field.w, field.w)), short(dot(field.w, field.v))
-    invariants = (square, product)
-    if vanishes(square):
-        return AtInstant(REST if all(vanishes(x) for x in field.v) else TRANSLATION, None, invariants)
-    x, y, z = map(short, axis_point(field))
-    return AtInstant("rotation" if vanishes(product) else HELICAL, (x, y, z), invariants)
+def instant_kind(field: Field) -> str:
+    """The kind of a field at one instant: rest, translation, rotation, helical motion."""
+    if all(vanishes(x) for x in field.w):
+        return REST if all(vanishes(x) for x in field.v) else TRANSLATION
+    return "rotation" if vanishes(dot(field.w, field.v)) else HELICAL
 
 
 def in_body(system: System, body: str, place: Vector) -> Vector:

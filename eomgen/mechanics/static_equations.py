@@ -32,7 +32,7 @@ from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.solving import vanishes
 from eomgen.symbolic.text import to_text
 
-WORK = 20_000  # products of terms for one equation
+WORK = 5_000  # products of terms for one equation
 RANK = 1e-9  # of the largest singular value of scaled rows, below which one is 0
 
 Row = tuple[Scalar, ...]
@@ -135,8 +135,9 @@ def static_equations(system: System) -> StaticEquations:
     _refuse_other_speeds(scope, q)
     given = _given(free, driven)
     rows = [readable_all(substituted(row, given), WORK) for row in free.ties.J]
-    Q = substituted(generalized_forces(free.loads), given)
-    _refuse_signs_of_rates(generalized_forces(free.loads), free)
+    forces = generalized_forces(free.loads)
+    _refuse_signs_of_rates(forces, free)
+    Q = substituted(forces, given)
     unbalanced = substituted(powered_forces(free.loads), given)
     phi = _relations(system, given, q)
     Q, unbalanced, phi = (readable_all(x, WORK) if x else () for x in (Q, unbalanced, phi))

@@ -23,6 +23,7 @@ from eomgen.symbolic.spatial import Matrix, Pose, Vector, apply
 BODY, GROUNDED, LOAD, REACTION = "#2f5d8a", "#5a5a5a", "#b03a2e", "#2e7d4f"
 FILL, PAPER = "#c9d8e8", "#ffffff"
 SYMBOL = 0.028  # size of hinges and supports, of the drawing's extent
+AWAY = 10  # from a line to its name [points]
 ARROW = 0.13  # length of the longest arrow, of the extent
 
 Place = tuple[float, float]
@@ -140,25 +141,46 @@ def _body(panel: Any, sketch: Sketch, link: Link, named: bool) -> None:
     lines = sketch.lines(link)
     colors = [color for _, color in sketch.outlines(link)] or [FILL] * len(lines)
     for line, color in zip(lines, colors, strict=True):
-        closed = len(line) > 3 and np.allclose(line[0], line[-1])
+        closed = _is_closed(line)
         if closed:
             panel.fill(*line.T, color=color, alpha=0.6 if color == FILL else 1.0, linewidth=0)
         panel.plot(*line.T, color=BODY, linewidth=1.4 if closed else 2.6, solid_capstyle="round", zorder=2)
     if lines and named:
-        panel.annotate(_escaped(link.name), _middle(lines[0]), color=BODY, fontsize=9, ha="center", va="center",
-                       bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0}, zorder=6)  # fmt: skip
+        panel.annotate(_escaped(link.name), _middle(lines[0]), xytext=_beside(lines[0]), textcoords="offset points",
+                       color=BODY, fontsize=9, ha="center", va="center", zorder=6)  # fmt: skip
     if not lines and not is_node(link.name):
         panel.plot(*sketch.place(link.pose.p), marker="o", markersize=6, color=BODY, zorder=3)
 
 
+def _is_closed(line: np.ndarray) -> bool:
+    return len(line) > 3 and bool(np.allclose(line[0], line[-1]))
+
+
 def _middle(line: np.ndarray) -> Place:
     """Half-way along an open line, the middle of a closed one."""
-    if np.allclose(line[0], line[-1]):
-        x, y = line.mean(axis=0)
+    if _is_closed(line):
+        x, y = line[:-1].mean(axis=0)
         return float(x), float(y)
-    pieces = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    x, y = (float(np.interp(pieces.sum() / 2, [0, *np.cumsum(pieces)], column)) for column in line.T)
+    run = _run(line)
+    x, y = (float(np.interp(run[-1] / 2, run, column)) for column in line.T)
     return x, y
+
+
+def _beside(line: np.ndarray) -> Place:
+    """From the middle to the name [points]: above an open line, or left of it; nothing for a closed one."""
+    if _is_closed(line):
+        return (0.0, 0.0)
+    run = _run(line)
+    k = min(int(np.searchsorted(run, run[-1] / 2, side="right")), len(line) - 1)
+    x, y = line[k] - line[k - 1]
+    across = np.array([-y, x]) / (np.hypot(x, y) or 1.0)
+    up = across if across[1] > 1e-9 or (abs(across[1]) <= 1e-9 and across[0] < 0) else -across
+    return float(AWAY * up[0]), float(AWAY * up[1])
+
+
+def _run(line: np.ndarray) -> np.ndarray:
+    """How far along the line each of its points is."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
 
 
 def _points(panel: Any, sketch: Sketch) -> None:

@@ -14,7 +14,7 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.parts import Model
 from eomgen.report import rendered
-from eomgen.report.equilibrium_steps import equilibrium_steps, number_of, values_of
+from eomgen.report.equilibrium_steps import equilibrium_steps, numbers_of, values_of
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.setting_steps import data_step
 from eomgen.report.statements import Derivation
@@ -57,6 +57,7 @@ class Resting:
         return {
             "name": self.model.name,
             "equilibria": [_place(place) for place in self.places],
+            **(_reactions(self.places[0]) if self.places else {}),
             "complete": self.found.complete,
             "where": self.found.where,
             "indifferent": [q.name for q in self.found.indifferent],
@@ -88,19 +89,25 @@ def resting_places(model: Model, system: System) -> Resting:
 
 
 def _place(place: Equilibrium) -> dict[str, Any]:
-    values = values_of(place)
-    _, reactions, why = reactions_or_why(place)
     return {
         "coordinates": {q.name: _of(place, q) for q in place.statics.system.symbols.q},
         "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
         "stability": _stability(place.stability),
         "pulling": list(place.pulling),
+    }
+
+
+def _reactions(place: Equilibrium) -> dict[str, Any]:
+    """Those at the first place."""
+    _, reactions, why = reactions_or_why(place)
+    numbers = numbers_of([each.value for each in reactions], values_of(place))
+    return {
         "reactions": {
             each.named.name: {
                 "exact": to_text(each.value) if place.is_exact and each.value is not None else None,
-                "value": number_of(each.value, values), "unit": each.named.unit,
+                "value": number, "unit": each.named.unit,
                 "message": None if each.value is not None else "statically indeterminate",
-            } for each in reactions
+            } for each, number in zip(reactions, numbers, strict=True)
         },
         "message": why or None,
     }  # fmt: skip

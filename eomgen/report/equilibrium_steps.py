@@ -150,7 +150,8 @@ def _reactions(place: Equilibrium) -> tuple[Step, ...]:
         return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)
     if not found:
         return ()
-    rows = tuple(_reaction_row(place, reactions, each, values_of(place)) for each in found)
+    numbers = numbers_of([each.value for each in found], values_of(place))
+    rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
     kept = [k for k in range(5) if any(row[k] != "" for row in rows)]
     head = ("reaction", "meaning", "exact", "value", "unit")
     grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
@@ -159,10 +160,9 @@ def _reactions(place: Equilibrium) -> tuple[Step, ...]:
 
 
 def _reaction_row(
-    place: Equilibrium, reactions: Reactions, each: RestingReaction, values: Mapping[Node, float]
+    place: Equilibrium, reactions: Reactions, each: RestingReaction, number: float | None
 ) -> tuple[Cell, ...]:
     named = each.named
-    number = number_of(each.value, values)
     exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
     return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit
 
@@ -173,8 +173,9 @@ def values_of(place: Equilibrium) -> dict[Node, float]:
     return {system.symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
 
 
-def number_of(x: Scalar | None, values: Mapping[Node, float]) -> float | None:
-    """The scalar as a number; None where it has none."""
-    if x is None or not set(symbols_of((x,))) <= values.keys():
-        return None
-    return float(evaluate((x,), values, FLOAT)[0]) + 0.0
+def numbers_of(scalars: Sequence[Scalar | None], values: Mapping[Node, float]) -> list[float | None]:
+    """The scalars as numbers, None where one has none."""
+    ready = [x is not None and set(symbols_of((x,))) <= values.keys() for x in scalars]
+    found = iter(evaluate([x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None],
+                          values, FLOAT))  # fmt: skip
+    return [float(next(found)) + 0.0 if is_ready else None for is_ready in ready]

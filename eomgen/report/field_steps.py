@@ -70,7 +70,7 @@ def kinds_step(motions: Sequence[BodyMotion], particles: Iterable[str] = ()) -> 
 
 
 def _sentence(motion: BodyMotion, particle: bool) -> Iterator[Piece]:
-    kind, now = motion.kind, motion.instant.name
+    kind, now = motion.kind, motion.now
     yield f"{motion.body}: "
     if kind is None:
         yield f"{now} at this instant."
@@ -160,7 +160,7 @@ def _in_space(moving: Sequence[BodyMotion]) -> Iterator[Statement]:
     yield from tabled(VECTORS, rows)
     yield Prose(("The two invariants of the field; the axis of the motion at this instant goes through the point ",
                  CENTER, " from the origin of the body, the advance along it per radian is omega.v/omega.omega:"))
-    yield from tabled(INVARIANTS, [(m.body, *m.instant.invariants) for m in moving])
+    yield from tabled(INVARIANTS, [(m.body, *m.invariants) for m in moving])
 
 
 def _pair(place: Vector | None) -> tuple[Cell, Cell]:
@@ -209,10 +209,10 @@ def _payload(motion: BodyMotion, centrodes: Centrodes | None) -> dict[str, Any]:
         "at": _texts(None if kind is None else kind.at),
         "axis": _texts(None if kind is None else kind.axis),
         "pitch": None if kind is None or kind.pitch is None else to_text(kind.pitch),
-        "at_instant": motion.instant.name,
+        "at_instant": motion.now,
         "omega": _texts(field.w),
         "epsilon": _texts(field.e),
-        "invariants": [to_text(x) for x in motion.instant.invariants],
+        "invariants": [to_text(x) for x in motion.invariants],
         "center": _texts(motion.center),
         "pole": _texts(motion.pole),
         "least_speed": None if motion.slowest is None else to_text(motion.slowest[2]),

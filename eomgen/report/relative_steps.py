@@ -36,6 +36,7 @@ NAMES = {
     "transport_acceleration": Law("a_t", "a_{t}"), "relative_acceleration": Law("a_r", "a_{r}"),
     "coriolis": Law("a_C", "a_{C}"), "acceleration": Law("a", "a"),
 }  # fmt: skip
+FORCES = {"m*a_r": Law("m*a_r", "m a_{r}"), "-m*a_O": Law("-m*a_O", "-m a_{O}")}
 VELOCITIES = ("transport_velocity", "relative_velocity", "velocity")
 ACCELERATIONS = ("origin", "euler", "centripetal", "transport_acceleration", "relative_acceleration", "coriolis",
                  "acceleration")  # fmt: skip
@@ -73,8 +74,10 @@ def relative_payload(system: System, point: str, body: str, state: Mapping[Node,
 def parts_of(system: System, point: str, body: str, readable: Readable) -> dict[str, Vector]:
     """The parts of velocity and acceleration by name, axes of the body, readable."""
     parts = composition_of(system.motion, point, body)
-    found = {name: getattr(parts, name) for name in NAMES if name != "origin"} | {"origin": parts.carrier.a}
-    return {name: readable.vector(apply(transposed(parts.R), found[name])) for name in NAMES}
+    own = {"relative_velocity": parts.relative[1], "relative_acceleration": parts.relative[2]}
+    ground = {name: getattr(parts, name) for name in NAMES if name != "origin"} | {"origin": parts.carrier.a}
+    seen = {name: apply(transposed(parts.R), x) for name, x in ground.items()} | own
+    return {name: readable.vector(seen[name]) for name in NAMES}
 
 
 def _table(
@@ -104,16 +107,14 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
     """m a_r = F - m a_t - m a_C in the axes of the body; F: what is applied, and reactions."""
     parts = composition_of(system.motion, f"{particle}.origin", body)
     m, letters = mass_properties(system.scope, particle).m, axes(system)
-    R_to = transposed(parts.R)
-    forces = (
-        (Law("m*a_r", "m a_{r}"), times(m, parts.relative_acceleration)),
-        ("applied", applied_force(system, particle)),
-        (Law("-m*a_O", "-m a_{O}"), times(-m, parts.carrier.a)),
-        ("Euler", times(-m, parts.euler)),
-        ("centrifugal", times(-m, parts.centripetal)),
-        ("Coriolis", times(-m, parts.coriolis)),
-    )
-    rows = [(name, *readable.vector(apply(R_to, x))[: len(letters)]) for name, x in forces]
+    ground = {
+        "applied": applied_force(system, particle),
+        "-m*a_O": times(-m, parts.carrier.a), "Euler": times(-m, parts.euler),
+        "centrifugal": times(-m, parts.centripetal), "Coriolis": times(-m, parts.coriolis),
+    }  # fmt: skip
+    forces = {"m*a_r": times(m, parts.relative[2])}
+    forces |= {name: apply(transposed(parts.R), x) for name, x in ground.items()}
+    rows = [(FORCES.get(name, name), *readable.vector(x)[: len(letters)]) for name, x in forces.items()]
     words = (f"In the axes of {body}, ", IN_FRAME, ": F is what is applied, and the reactions of joints and ties; "
              "of the rest, transport brings the Euler and the centrifugal force.")  # fmt: skip
     statements: tuple[Statement, ...] = (Prose(words), *tabled(("force", *letters), rows))

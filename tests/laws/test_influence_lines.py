@@ -1,4 +1,4 @@
-"""An influence line is what the balance of the bodies gives for a unit load at each place, by the released mechanism."""
+"""An influence line is what the balance gives for a unit load at each place, found from the released mechanism."""
 
 from __future__ import annotations
 

@@ -63,6 +63,7 @@ def _functions() -> dict[str, Signature]:
 
 
 AXES = ("x", "y", "z")
+SIDES = ("before", "after")
 FUNCTIONS = _functions()
 """The functions of the motion, by name."""
 
@@ -132,8 +133,7 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
         start = min((c for c in argument.columns if c >= 0), default=0)
         return f"a {kind} is needed, not '{argument.text}'", "", start, len(argument.text)
     if kind == "side":
-        known = ("before", "after")
-        return None if argument.name in known else _unknown(argument, kind, known)
+        return None if argument.name in SIDES else _unknown(argument, kind, SIDES)
     if kind == "number":
         if "." in argument.name:
             return _unknown(argument, kind, catalog.allowed[""])
