@@ -15,8 +15,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
 from eomgen.journey import Journey
+from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.outputs import asks_motion, later
-from eomgen.mechanics.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
 from eomgen.model.fields import AtRest, Equation

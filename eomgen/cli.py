@@ -184,7 +184,7 @@ def _form(wants_json: bool, format_: str | None, output: str | None) -> str:
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="eomgen")
 def main() -> None:
-    """Equations of motion of mechanical systems: derived, certified, typeset, simulated, compiled.
+    """Mechanical systems: equations of motion, reactions, structures at rest, mechanisms; exact, step by step.
 
     MODEL is a text file that declares the system (- reads it from stdin); begin with `eomgen new NAME`.
     """
@@ -264,11 +264,16 @@ def reactions(
 
 @main.command()
 @_written
-@click.option("--reaction", metavar="NAME", help='Only this one by virtual work: "reaction_y(A)".')
-@click.option("--influence", metavar="NAME", help='Its influence line too, for a unit load: "reaction_y(A)".')
+@click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
+@click.option("--influence", metavar="NAME", help='Influence line of a reaction, member or section force: "reaction_y(A)".')
 def statics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
             **options: Any) -> int:  # fmt: skip
-    """Give every reaction of a structure at rest, by virtual work and by equilibrium; or where a system is at rest."""
+    """Give reactions at rest by virtual work, or the places of rest.
+
+    Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
+    mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
+    system that is free to move: where it is at rest, and whether that is stable.
+    """
     from eomgen.verbs.statics import statics as found
 
     form = _form(wants_json, format_, output)
@@ -280,11 +285,15 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
 @main.command()
 @_written
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
-@click.option("--given", multiple=True, metavar="EQUATION", help='A velocity: "omega(crank) = 2".')
-@click.option("--relative", multiple=True, metavar='"POINT in BODY"', help="A point as it is seen from a moving body.")
+@click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
+@click.option("--relative", multiple=True, metavar='"POINT in BODY"', help="Motion of a point on a moving body: transport, relative, Coriolis.")
 def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
                **options: Any) -> int:  # fmt: skip
-    """Give velocities, accelerations and centres of rotation at an instant."""
+    """Give velocities and centres of rotation at one instant.
+
+    Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
+    rotation with the lines on which they are found, spins, velocities and accelerations of points, kinds of motion.
+    """
     from eomgen.verbs.kinematics import kinematics as found
 
     form = _form(wants_json, format_, output)
@@ -300,7 +309,11 @@ def kinematics(model: str, wants_json: bool, output: str | None, format_: str | 
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
 def inertia(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
             **options: Any) -> int:  # fmt: skip
-    """Give masses, mass centres, moments and products of inertia, principal axes."""
+    """Give masses, mass centres, moments of inertia, principal axes.
+
+    Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
+    tensor (minus) and of the textbook (plus).
+    """
     from eomgen.verbs.inertia import inertia as found
 
     form = _form(wants_json, format_, output)

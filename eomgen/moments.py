@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equilibria import all_equilibria
-from eomgen.mechanics.holding import holding_of
+from eomgen.mechanics.equilibria.holding import holding_of
+from eomgen.mechanics.equilibria.search import all_equilibria
+from eomgen.mechanics.equilibria.static_equations import static_equations
 from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.static_equations import static_equations
 from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.situation import Situation

@@ -25,8 +25,8 @@ from eomgen.mechanics.outputs import ASKING_REACTIONS, Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import values_at_a_state
 from eomgen.mechanics.start import fixed_by_position
+from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.unknown_loads import still
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion

@@ -14,16 +14,16 @@ from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.journey import Journey
+from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.freedom import counted, redundant_rows
-from eomgen.mechanics.kinematic_state import KinematicState, State
-from eomgen.mechanics.motion_kind import Kinds
-from eomgen.mechanics.snapshot import Snapshot, snapshot_of
+from eomgen.mechanics.instant.kinematic_state import KinematicState, State
+from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.start import fixed_by_position
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
 from eomgen.model.parts import Given, Model
 from eomgen.moments import Moment, parameters_of
-from eomgen.report.kinematics_result import Kinematics
+from eomgen.report.kinematics.result import Kinematics
 from eomgen.situation import Situation, exact_numbers
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.expressions import Expression, parse_equation

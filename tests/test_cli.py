@@ -28,7 +28,10 @@ TRUSS = str(ROOT / "tests" / "truss.toml")
 BOLT_CUTTER = str(ROOT / "models" / "bolt_cutter.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = str(MODELS / "seeds" / "ch22_p3.toml")  # asks for its linearization too, which comes later
-VERBS = ["new", "check", "derive", "solve", "reactions", "simulate", "codegen", "schema", "doctor"]
+VERBS = [
+    "new", "check", "derive", "solve", "reactions", "statics", "kinematics", "inertia", "simulate", "codegen", "schema",
+    "doctor",
+]  # fmt: skip
 
 FALL = """
 eomgen = 1

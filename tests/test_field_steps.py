@@ -7,12 +7,12 @@ import pytest
 import eomgen
 from eomgen import report
 from eomgen.journey import Journey
-from eomgen.mechanics.centrodes import all_centrodes
-from eomgen.mechanics.motion_kind import Kinds
+from eomgen.mechanics.fields.centrodes import all_centrodes
+from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.moments import parameters_of
-from eomgen.report.centrode_plot import centrode_panel
-from eomgen.report.field_steps import field_payload, field_steps
-from eomgen.report.relative_steps import relative_payload, relative_steps
+from eomgen.report.kinematics.centrode_plot import centrode_panel
+from eomgen.report.kinematics.field_steps import field_payload, field_steps
+from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.statements import Derivation
 from eomgen.situation import Situation
 from eomgen.symbolic.expressions import parse

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from eomgen.errors import ModelError
 from eomgen.mechanics.kinematics import Link, Motion, spin_between
-from eomgen.mechanics.made_of import made_of
+from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.scope import Scope
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.graph import Scalar

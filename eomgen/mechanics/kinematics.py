@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, NotYet
-from eomgen.mechanics.made_of import made_of
+from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.scope import Scope
 from eomgen.model.joints.base import Z, oriented
 from eomgen.symbolic.derivative import jacobian, symbols_of

@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
-from eomgen.mechanics.centers import finite_center
 from eomgen.mechanics.drive import drive, multiplier
 from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
-from eomgen.mechanics.field import (
+from eomgen.mechanics.fields.field import (
     Field,
     acceleration_pole,
     curvature_radius,
@@ -24,15 +23,16 @@ from eomgen.mechanics.field import (
     normal_part,
     tangential_part,
 )
+from eomgen.mechanics.fields.relative_motion import COMPONENTS as PARTS_OF_MOTION
+from eomgen.mechanics.fields.relative_motion import MAGNITUDES as SIZES_OF_PARTS
+from eomgen.mechanics.fields.relative_motion import axes_of, part_of_motion
 from eomgen.mechanics.inertia import kinetic_energy
-from eomgen.mechanics.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
-from eomgen.mechanics.inertia_about import Asked
+from eomgen.mechanics.instant.centers import finite_center
+from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
+from eomgen.mechanics.masses.inertia_about import Asked
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import Reactions, reactions_of
-from eomgen.mechanics.relative_motion import COMPONENTS as PARTS_OF_MOTION
-from eomgen.mechanics.relative_motion import MAGNITUDES as SIZES_OF_PARTS
-from eomgen.mechanics.relative_motion import axes_of, part_of_motion
-from eomgen.mechanics.section_forces import KINDS, SectionForces, section_forces
+from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.constraints.members import ends_asked

@@ -27,6 +27,7 @@ from eomgen.symbolic.text import text_size
 
 AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable
+PAGE = 1000  # characters of a root
 SHORT = 40  # characters of a root that is put into other equations first
 
 
@@ -54,9 +55,14 @@ class Located:
         return abs(self.value(x) - number) <= AGREES * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
-        """The candidate that the node is worth there, whole turns added where the equation does not see them."""
+        """The candidate that the node is worth there, whole turns added where the equation does not see them.
+
+        One of more than a page is none: no reader follows it, and what depends on it would be longer still.
+        """
         turn = 2 * node.graph.pi
         for candidate in candidates:
+            if text_size(candidate) > PAGE:
+                continue
             away = (self.numbers.get(node, math.nan) - self.value(candidate)) / math.tau
             turns = round(away) if math.isfinite(away) else 0
             shifted = candidate + turns * turn if turns else candidate

@@ -21,11 +21,11 @@ from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.named_reactions import named_reactions
-from eomgen.mechanics.rest import at_rest
+from eomgen.mechanics.statics.rest import at_rest
+from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced, with_unknowns
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.unheld import refuse_unheld
-from eomgen.mechanics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced, with_unknowns
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero

@@ -16,8 +16,8 @@ from eomgen.mechanics.balance import DIRECTIONS, Balance
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.loose_motion import refuse_loose
-from eomgen.mechanics.structure import structure_of
+from eomgen.mechanics.statics.loose_motion import refuse_loose
+from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.evaluation import evaluate, fifty_digits

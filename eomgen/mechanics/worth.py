@@ -12,8 +12,8 @@ from functools import cached_property
 from random import Random
 from typing import Any
 
-from eomgen.mechanics.rest import values_of_parameters
 from eomgen.mechanics.scope import Scope
+from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.derivative import symbols_of
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar

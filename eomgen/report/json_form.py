@@ -56,7 +56,8 @@ def _statement(statement: Statement) -> dict[str, Any]:
     if isinstance(statement, Formula):
         return {"kind": "formula", "text": formula_text(statement)}
     if isinstance(statement, Grid):
-        return {"kind": "grid", "head": list(statement.head), "rows": [list(map(cell_text, r)) for r in statement.rows]}
+        head, *lines = (list(map(cell_text, row)) for row in (statement.head, *statement.rows))
+        return {"kind": "grid", "head": head, "rows": lines}
     rows = [
         {"symbol": side_text(row.symbol), "meaning": row.meaning, "unit": row.unit, "value": row.value}
         for row in statement.rows

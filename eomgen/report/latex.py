@@ -9,6 +9,7 @@ from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
 from eomgen.report.latex_names import escaped, notation, upright
 from eomgen.report.statements import (
+    Cell,
     Code,
     Derivation,
     Entry,
@@ -234,11 +235,13 @@ def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas that may go over pages; columns of long words are wrapped."""
     alignment = "".join(f"p{{{WORDS}mm}}" if _is_wordy(grid, k) else "l" for k in range(len(grid.head)))
     lines = [rf"\begin{{longtable}}{{@{{}}{alignment}@{{}}}}",
-             " & ".join(escaped(name) for name in grid.head) + r" \\ \hline \noalign{\vskip 3pt} \endhead"]  # fmt: skip
-    for row in grid.rows:
-        cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$" for cell in row)
-        lines.append(" & ".join(cells) + r" \\")
+             _cells(setter, grid.head) + r" \\ \hline \noalign{\vskip 3pt} \endhead"]  # fmt: skip
+    lines += [_cells(setter, row) + r" \\" for row in grid.rows]
     return "\n".join([*lines, r"\end{longtable}"])
+
+
+def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
+    return " & ".join(escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$" for cell in row)
 
 
 def _is_wordy(grid: Grid, column: int) -> bool:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from eomgen.report.statements import Law
+
 SMALL = (
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
     " omega varphi vartheta varepsilon"
@@ -40,6 +42,12 @@ def symbol_latex(name: str, base: str = "") -> str:
     return _dotted(base or _letters(letters), len(name) - len(bare)) + (
         f"_{{{subscript}}}" if subscript and not base else ""
     )
+
+
+def lettered(text: str) -> Law:
+    """A letter, with an index or without: v_x, J_xy, omega."""
+    letter, _, index = text.partition("_")
+    return Law(text, _letters(letter) + (f"_{{{index}}}" if index else ""))
 
 
 def _dotted(base: str, dots: int) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex
 from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Code, Derivation, Grid, Piece, Prose, Statement, Table
+from eomgen.report.statements import Cell, Code, Derivation, Grid, Piece, Prose, Statement, Table
 
 name = "markdown"
 
@@ -64,9 +64,11 @@ def _table(setter: Setter, table: Table) -> str:
 
 def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas; a bar inside a formula would end its cell."""
-    lines = ["| " + " | ".join(map(escaped, grid.head)) + " |", "|" + "---|" * len(grid.head)]
-    for row in grid.rows:
-        cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
-                 for cell in row)  # fmt: skip
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+    lines = [_cells(setter, grid.head), "|" + "---|" * len(grid.head)]
+    return "\n".join([*lines, *(_cells(setter, row) for row in grid.rows)])
+
+
+def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
+    cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
+             for cell in row)  # fmt: skip
+    return "| " + " | ".join(cells) + " |"

@@ -131,11 +131,11 @@ class Grid:
     """A table of any columns.
 
     Args:
-        head: the names of the columns.
+        head: the names of the columns, words or letters.
         rows: words or formulas, one cell for each column.
     """
 
-    head: tuple[str, ...]
+    head: tuple[Cell, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
 
@@ -150,7 +150,7 @@ def parts_of(statement: Statement) -> list[Piece | Side]:
         return list(statement.pieces)
     if isinstance(statement, Table):
         return [row.symbol for row in statement.rows]
-    return [cell for row in statement.rows for cell in row]
+    return [cell for row in (statement.head, *statement.rows) for cell in row]
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ def cell_text(cell: Cell) -> str:
 
 def _grid_lines(grid: Grid) -> list[str]:
     """Columns as wide as what stands in them; where they do not fit beside one another, the last one is wrapped."""
-    rows = [grid.head, *(tuple(map(cell_text, row)) for row in grid.rows)]
+    rows = [tuple(map(cell_text, row)) for row in (grid.head, *grid.rows)]
     *widths, last = (max(map(len, column)) for column in zip(*rows, strict=True))
     most = max(30, WIDTH - len(INDENT) - sum(width + 2 for width in widths))
     lines: list[str] = []

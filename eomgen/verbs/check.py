@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eomgen.mechanics.freedom import Freedom, freedom_of
-from eomgen.mechanics.snapshot import mobility_of
+from eomgen.mechanics.instant.snapshot import mobility_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters

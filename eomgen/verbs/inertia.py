@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from eomgen.model.parts import Model
-from eomgen.report.inertia_picture import plot_inertia
-from eomgen.report.inertia_result import inertia as found_in
+from eomgen.report.inertia.picture import plot_inertia
+from eomgen.report.inertia.result import inertia as found_in
 from eomgen.verbs.outcome import Outcome
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from eomgen.errors import UsageError
-from eomgen.mechanics.rest_contacts import modes_at_rest
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
-from eomgen.report.equilibrium_picture import plot_resting
-from eomgen.report.equilibrium_result import has_freedoms, resting_places
-from eomgen.report.statics_picture import plot_statics
-from eomgen.report.statics_result import statics as found_in
+from eomgen.report.statics.equilibrium_picture import plot_resting
+from eomgen.report.statics.equilibrium_result import has_freedoms, resting_places
+from eomgen.report.statics.picture import plot_statics
+from eomgen.report.statics.result import statics as found_in
 from eomgen.verbs.outcome import Outcome, listed
 
 

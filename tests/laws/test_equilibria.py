@@ -9,8 +9,8 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.equilibria import Equilibria, Equilibrium, all_equilibria
-from eomgen.mechanics.holding import holding_of
+from eomgen.mechanics.equilibria.holding import holding_of
+from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.text import to_text

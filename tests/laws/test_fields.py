@@ -16,9 +16,8 @@ import eomgen
 from eomgen import answers
 from eomgen.errors import DerivationError
 from eomgen.journey import Journey
-from eomgen.mechanics.body_motion import body_motions
-from eomgen.mechanics.centrodes import all_centrodes
-from eomgen.mechanics.field import (
+from eomgen.mechanics.fields.centrodes import all_centrodes
+from eomgen.mechanics.fields.field import (
     Field,
     acceleration_pole,
     curvature_radius,
@@ -27,8 +26,9 @@ from eomgen.mechanics.field import (
     least_speed,
     rotation_center,
 )
-from eomgen.mechanics.motion_kind import Kinds
-from eomgen.mechanics.relative_motion import composition_of
+from eomgen.mechanics.fields.motion_kind import Kinds
+from eomgen.mechanics.fields.relative_motion import composition_of
+from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.system import system_of
 from eomgen.situation import Situation, situation_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits

@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import dblquad
 
 import eomgen
-from eomgen.mechanics.inertia_about import angular_momentum, in_ground, tensor_about
-from eomgen.mechanics.principal import principal_of, values_of
+from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
+from eomgen.mechanics.masses.principal import principal_of, values_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 

@@ -8,8 +8,8 @@ from random import Random
 import pytest
 
 import eomgen
-from eomgen.mechanics.influence import InfluenceLine, influence_line
-from eomgen.mechanics.structure import structure_of
+from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
+from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.system import system_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.text import to_text

@@ -15,8 +15,8 @@ from float_linkages import ALL, HEAD, Linkage, four_bar, slider_crank
 
 import eomgen
 from eomgen.cli import main
-from eomgen.mechanics.kinematic_state import KinematicState
-from eomgen.mechanics.mechanism import Mechanism
+from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.velocities import state_of
 
 SEEDS = range(3)

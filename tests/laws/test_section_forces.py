@@ -14,7 +14,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.reactions import reactions_of
-from eomgen.mechanics.section_forces import KINDS, SectionForces, section_forces
+from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import system_of
 from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.evaluation import FLOAT, evaluate

@@ -10,11 +10,11 @@ from random_structures import RandomStructure, determinate
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.blocks import blocks_of
-from eomgen.mechanics.statics import StaticReactions, static_reactions_of
-from eomgen.mechanics.structure import structure_of
+from eomgen.mechanics.statics.blocks import blocks_of
+from eomgen.mechanics.statics.structure import structure_of
+from eomgen.mechanics.statics.two_ways import StaticReactions, static_reactions_of
+from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work, loads_at_rest
 from eomgen.mechanics.system import system_of
-from eomgen.mechanics.virtual_work import asked_reactions, by_virtual_work, loads_at_rest
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.text import to_text
 

@@ -1,0 +1,1 @@
+"""Where systems with freedoms rest, whether they are stable there, and what holds them."""

@@ -1,0 +1,164 @@
+"""A place of rest in numbers -> the same in closed form, where the equations hold there exactly.
+
+Tried are round places (quarter turns, zeros, the start), then what the ties and the balance say of the other
+coordinates. What is found is taken only where all equations hold at it as functions of the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.equilibria.static_equations import Row, StaticEquations
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.symbolic.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.linear import solved
+from eomgen.symbolic.normal_form import readable_all, simplest
+from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.text import text_size
+
+WORK = 20_000  # products of terms for one value
+MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
+LONGEST = 600  # characters of these equations
+PATIENCE = 2  # places without a closed form, before equations are no more tried at others
+NEAR = 1e-9  # of an angle to a quarter turn, or of a coordinate to its start, at which that is tried exactly
+
+State = Mapping[Node, Scalar]
+
+
+@dataclass(frozen=True)
+class Held:
+    """A place at which all equations hold exactly.
+
+    Args:
+        state: coordinates, and the multipliers that have a single value.
+        particular: values of all multipliers that hold it, those that may be chosen 0.
+    """
+
+    state: State
+    particular: State
+
+
+@dataclass(frozen=True)
+class ClosedForms:
+    """The places of rest of a system in closed form.
+
+    Args:
+        statics: the equations.
+        values: of the parameters, with 50 digits.
+        turning: the coordinates for which a whole turn changes nothing.
+    """
+
+    statics: StaticEquations
+    values: Mapping[Node, Any]
+    turning: frozenset[Node]
+
+    def at(self, located: Located) -> Held | None:
+        """Coordinates and multipliers as scalars of the parameters; None where the place has no closed form."""
+        simple = self._simple(located)
+        if len(simple) == len(self.statics.q) and (held := self._held(simple)) is not None:
+            return held
+        for equations, unknowns, known in self._closed_ways(simple):
+            way = (equations, unknowns, tuple(known.values()))
+            if self._vain.get(way, 0) >= PATIENCE:
+                continue
+            try:
+                found = {**known, **places_of(substituted(equations, known), unknowns, located)}
+            except EomgenError:  # too large, or a value that is not real
+                found = {}
+            if all(q in found for q in self.statics.q):
+                place = {q: _short_turn(found[q], located.value(found[q]), q in self.turning) for q in self.statics.q}
+                if (held := self._held(place)) is not None:
+                    return held
+            self._vain[way] = self._vain.get(way, 0) + 1
+        return None
+
+    @cached_property
+    def _vain(self) -> dict[tuple[Any, ...], int]:
+        """How many places equations had no closed form for."""
+        return {}
+
+    def _closed_ways(self, simple: Mapping[Node, Scalar]) -> Iterator[tuple[Row, tuple[Node, ...], State]]:
+        """(equations, unknowns, what is known): the ties from coordinates at simple places, or all equations."""
+        statics = self.statics
+        left = tuple(q for q in statics.q if q not in simple)
+        if simple and statics.phi and len(left) <= len(statics.phi):
+            yield statics.phi, left, simple
+        size = sum(text_size(x) for x in statics.equations)
+        if simple and len(left) <= MOST_EXACT and size <= LONGEST:
+            yield statics.equations, (*left, *statics.lam), simple
+        linear = sum(any(_is_number(d) for d in gradient(x, statics.q)) for x in statics.phi)
+        if _entangled(statics) - linear <= MOST_EXACT and size <= LONGEST:
+            yield statics.equations, statics.unknowns, {}
+
+    def _simple(self, located: Located) -> dict[Node, Scalar]:
+        """Quarter turns, zeros and start values that coordinates are near to; whether these hold is to be seen."""
+        scope, found = self.statics.system.scope, dict[Node, Scalar]()
+        for q in self.statics.q:
+            number = located.numbers[q]
+            quarters = round(number / (np.pi / 2))
+            candidates: list[Scalar] = [0 if quarters == 0 else Fraction(quarters, 2) * q.graph.pi]
+            candidates.append(start_value(scope, scope.model.coordinates[q.name]))
+            near = [x for x in candidates if abs(located.value(x) - number) <= NEAR * (1 + abs(number))]
+            if near:
+                found[q] = near[0]
+        return found
+
+    def _held(self, q: Mapping[Node, Scalar]) -> Held | None:
+        """The state with its multipliers where all equations hold there exactly; None where they do not."""
+        statics = self.statics
+        try:
+            phi = substituted(statics.phi, q)
+            rows = [substituted(tuple(row[k] for row in statics.J), q) for k in range(len(statics.q))]
+            right = tuple(-x for x in substituted(statics.Q, q))
+            if not all(map(_is_nothing, phi)):
+                return None
+            entries = readable_all([x for row in rows for x in row], WORK) if rows and statics.lam else ()
+            solution = solved(
+                [{j: entries[len(statics.lam) * k + j] for j in range(len(statics.lam))} for k in range(len(rows))],
+                readable_all(right, WORK), len(statics.lam),
+                lambda scalars: evaluate(scalars, self.values, fifty_digits()))  # fmt: skip
+        except (DerivationError, NoValue, ZeroDivisionError):
+            return None
+        if not all(map(_is_nothing, solution.left)):
+            return None
+        positive = positive_parameters(self.statics.system.scope)
+        lam = {statics.lam[j]: simplest(x, WORK, positive) for j, x in solution.constants.items()}
+        single = {statics.lam[j] for j in solution.constants if solution.determined(j)}
+        place = {node: simplest(x, WORK, positive) for node, x in q.items()}
+        return Held({**place, **{node: x for node, x in lam.items() if node in single}},
+                     {**dict.fromkeys(statics.lam, 0), **lam})  # fmt: skip
+
+
+def _entangled(statics: StaticEquations) -> int:
+    """The most coordinates that equations hold together."""
+    groups: list[set[Node]] = []
+    for x in statics.equations:
+        held = {node for node in statics.unknowns if depends_on(x, (node,))}
+        joined = [group for group in groups if group & held]
+        groups = [group for group in groups if not group & held] + [held.union(*joined)]
+    return max((sum(q in group for q in statics.q) for group in groups), default=0)
+
+
+def _is_number(x: Scalar) -> bool:
+    return type(x) is not Node and x != 0
+
+
+def _is_nothing(x: Scalar) -> bool:
+    return is_zero(x) or vanishes(x)
+
+
+def _short_turn(x: Scalar, number: float, turning: bool) -> Scalar:
+    """An angle of (-pi, pi] where whole turns do not matter."""
+    turns = -round(number / (2 * np.pi)) if turning else 0
+    return x + turns * 2 * x.graph.pi if turns and type(x) is Node else x

@@ -1,0 +1,232 @@
+"""Static equations -> the places of rest in numbers, and whether those are all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
+from eomgen.symbolic import cramer
+from eomgen.symbolic.derivative import depends_on, jacobian
+from eomgen.symbolic.descent import Descent
+from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.isolation import can_isolate, isolated
+from eomgen.symbolic.normal_form import readable
+from eomgen.symbolic.solving import has_period
+
+MOST_ISOLATED = 3  # coordinates of equations whose roots are isolated
+REACH = 1000.0  # how far from the guess a coordinate that is no angle is sought, against its size and 1
+TURNS = 2.0  # how many half turns to each side an angle is sought that is not the same after a turn
+ASIDE = 0.0123  # by which a range is shifted: roots at round numbers do not lie on its border
+GUESSES = 400  # of few coordinates; of more they are fewer
+FEW = 4
+MOST_PLACES = 24  # that many guesses lead to
+UNDECIDED = 60  # boxes that may hold a root, from which one is sought
+ANYWHERE = "anywhere"
+SAME = 1e-6  # distance of two places that are one
+CLUSTER = 1e-3  # distance of an undecided box from a root, at which it belongs to that root
+SINGULAR = 1e-5  # of the ties: singular values below this part of the largest count as 0
+UNHELD = 1e-6  # of the forces: what singular ties leave, above which they hold it by forces without limit
+WORK = 20_000  # products of terms for the equation of one freedom
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places of rest in numbers.
+
+    Args:
+        found: coordinates and multipliers of each, the nearest to the guess first.
+        complete: whether there are no others in the range.
+        where: the range, in words.
+        turning: the coordinates for which a whole turn changes nothing.
+    """
+
+    found: tuple[np.ndarray, ...]
+    complete: bool
+    where: str
+    turning: frozenset[Node]
+
+
+def places_of_rest(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Places:
+    """Every place of rest that is found.
+
+    Args:
+        values: of the parameters, with 50 digits.
+        guess: of the coordinates.
+    """
+    return _Search(statics, values, guess).places()
+
+
+@dataclass(frozen=True)
+class _Search:
+    statics: StaticEquations
+    values: Mapping[Node, Any]
+    guess: np.ndarray
+    floats: dict[Node, float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "floats", {node: float(x) for node, x in self.values.items()})
+
+    def places(self) -> Places:
+        statics = self.statics
+        if not statics.q:
+            return self._sorted([np.zeros(0)], complete=True, where="")
+        if self._is_linear:
+            return self._linear()
+        reduced = self._reduced
+        if reduced is not None and len(statics.q) <= MOST_ISOLATED and can_isolate(reduced):
+            return self._isolated(reduced)
+        found = self._descent.roots_near(self._with_multipliers(self._scattered()), MOST_PLACES)
+        found = [z for z in found if self._is_held(z)]
+        return self._sorted(found, complete=False, where="from many guesses")
+
+    @cached_property
+    def _descent(self) -> Descent:
+        equations = tuple(x for x in self.statics.equations if not is_zero(x))
+        return Descent(equations, self.statics.unknowns, self.values)
+
+    # -- three ways --------------------------------------------------------------------------------
+
+    @property
+    def _is_linear(self) -> bool:
+        slopes = [x for row in jacobian(self.statics.equations, self.statics.unknowns) for x in row]
+        return not any(depends_on(x, self.statics.unknowns) for x in slopes)
+
+    def _linear(self) -> Places:
+        """Linear equations have one solution, where they are regular."""
+        found = self._descent.roots_near(self._with_multipliers(self.guess[None, :]))
+        slopes = self._descent.at_one(found[0]) if found else np.zeros((0, 0))
+        return self._sorted(found, complete=not found or rank(slopes.T) == len(self.statics.unknowns), where=ANYWHERE)
+
+    @cached_property
+    def _reduced(self) -> tuple[Scalar, ...] | None:
+        """As many equations as coordinates, free of multipliers: the forces; with one freedom left by ties, that the
+        force has no part along it, det [Q; J] = 0; None where there are none."""
+        statics = self.statics
+        n = len(statics.q)
+        if not statics.J:
+            return statics.Q if not statics.phi else None
+        if len(statics.J) == len(statics.phi) == n - 1:
+            determinant = cramer.determinant((statics.Q, *statics.J))
+            return (readable(determinant, WORK), *statics.phi)
+        return None
+
+    def _isolated(self, equations: tuple[Scalar, ...]) -> Places:
+        low, high = self._range
+        boxes = isolated(equations, self.statics.q, self.floats, low, high)
+        guesses = np.concatenate([boxes.roots, boxes.undecided[:: 1 + len(boxes.undecided) // UNDECIDED]])
+        found = self._descent.roots_near(self._with_multipliers(guesses))
+        found = [z for z in found if self._is_held(z)]
+        if not boxes.finished:
+            found += self._descent.roots_near(self._with_multipliers(self._scattered()), MOST_PLACES)
+        n = len(self.statics.q)
+        size = high - low
+        lost = [x for x in boxes.undecided
+                if not any(np.all(abs(x - z[:n]) <= CLUSTER * size) for z in found)]  # fmt: skip
+        inside = [z for z in found if np.all((z[:n] >= low) & (z[:n] <= high))]
+        return self._sorted(inside, complete=boxes.finished and not lost, where=self._where)
+
+    # -- ranges and guesses ------------------------------------------------------------------------
+
+    @cached_property
+    def _turning(self) -> frozenset[Node]:
+        """Angles after a whole turn of which all equations are the same."""
+        equations = [x for x in self.statics.equations if not is_zero(x)]
+        return frozenset(
+            q for q in self._angles
+            if all(not depends_on(x, (q,)) or has_period(x, q, 2 * q.graph.pi) for x in equations)
+        )  # fmt: skip
+
+    @cached_property
+    def _angles(self) -> frozenset[Node]:
+        """Coordinates in the argument of a sine or cosine."""
+        waves = [node for node in order(self.statics.equations) if node.op in ("sin", "cos")]
+        return frozenset(q for q in self.statics.q if any(depends_on(node, (q,)) for node in waves))
+
+    @property
+    def _range(self) -> tuple[np.ndarray, np.ndarray]:
+        half = []
+        for q, at in zip(self.statics.q, self.guess, strict=True):
+            turning = q in self._turning
+            half.append(math.pi * (1 if turning else TURNS) if q in self._angles else REACH * (1 + abs(at)))
+        middle = np.where([q in self._turning for q in self.statics.q], 0.0, self.guess)
+        reach = np.array(half)
+        return middle - reach * (1 + ASIDE), middle + reach * (1 + ASIDE * 1.7)
+
+    @property
+    def _where(self) -> str:
+        names = [q.name for q in self.statics.q if q not in self._turning]
+        angles = [q.name for q in self.statics.q if q in self._angles and q not in self._turning]
+        lengths = [name for name in names if name not in angles]
+        parts = [f"{', '.join(angles)} within one turn of the start"] if angles else []
+        parts += [f"{', '.join(lengths)} within {REACH:g} of the start"] if lengths else []
+        return " and ".join(parts) if parts else "in one turn"
+
+    def _scattered(self) -> np.ndarray:
+        """The guess, and many places about it."""
+        rng = np.random.default_rng(5)
+        n = len(self.statics.q)
+        many = GUESSES if n <= FEW else GUESSES * FEW // n**2 + 8
+        reach = 10 ** rng.uniform(-1.5, 1.0, (many, 1))
+        about = self.guess + rng.uniform(-1, 1, (many, n)) * (1 + abs(self.guess)) * reach
+        for k, q in enumerate(self.statics.q):
+            if q in self._angles:
+                about[::2, k] = rng.uniform(-math.pi, math.pi, len(about[::2]))
+                about[1::2, k] = self.guess[k] + rng.uniform(-0.5, 0.5, len(about[1::2]))
+        quarters = np.where([q in self._angles for q in self.statics.q], math.pi / 2, 0.0)
+        round_ones = quarters * rng.integers(-1, 3, (32, n))
+        return np.concatenate([self.guess[None, :], round_ones, about])
+
+    def _with_multipliers(self, q: np.ndarray) -> np.ndarray:
+        """Places with the multipliers that balance them best."""
+        if not self.statics.lam:
+            return q
+        rows = [np.append(x, self._multipliers(x)) for x in q]
+        return np.array(rows).reshape(len(q), len(self.statics.unknowns))
+
+    def _multipliers(self, q: np.ndarray) -> np.ndarray:
+        J = self.statics.slopes(self.statics.J, q, self.floats)
+        (Q,) = self.statics.slopes((self.statics.Q,), q, self.floats)
+        if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
+            return np.zeros(len(J))
+        return np.linalg.lstsq(J.T, -Q, rcond=1e-9)[0]
+
+    def _is_held(self, z: np.ndarray) -> bool:
+        """False near places where the ties are singular, and would need forces without limit to hold it."""
+        n = len(self.statics.q)
+        J = self.statics.slopes(self.statics.J, z[:n], self.floats)
+        if not len(J) or not np.all(np.isfinite(J)):
+            return True
+        Q, *others = (self.statics.slopes((self.statics.Q,), z[:n] + d, self.floats)[0] for d in (0, 0.3, -0.2))
+        lam = np.linalg.lstsq(J.T, -Q, rcond=SINGULAR)[0]
+        return bool(np.all(abs(Q + J.T @ lam) <= UNHELD * np.nanmax(np.abs([Q, *others]))))
+
+    # -- in order ----------------------------------------------------------------------------------
+
+    def _sorted(self, found: Sequence[np.ndarray], *, complete: bool, where: str) -> Places:
+        """Each place once, angles in (-pi, pi], the nearest to the guess first."""
+        n = len(self.statics.q)
+        unique: list[np.ndarray] = []
+        for z in found:
+            z = z.copy()
+            for k, q in enumerate(self.statics.q):
+                if q in self._turning:
+                    z[k] = -((-z[k] + math.pi) % math.tau - math.pi)
+                    z[k] = math.pi if abs(z[k] + math.pi) < SAME else z[k]
+            if not any(np.all(abs(z[:n] - other[:n]) <= SAME * (1 + abs(z[:n]))) for other in unique):
+                unique.append(z)
+        unique.sort(key=lambda z: self._distance(z[:n]))
+        return Places(tuple(unique), complete, where, self._turning if self.statics.q else frozenset())
+
+    def _distance(self, q: np.ndarray) -> float:
+        """From the guess, angles the short way round."""
+        away = np.abs(q - self.guess)
+        turning = [x in self._turning for x in self.statics.q]
+        away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
+        return float(np.sum((away / (1 + np.abs(self.guess))) ** 2))

@@ -1,0 +1,69 @@
+"""A place of rest -> every reaction there, by the balance of the bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
+
+WORK = 20_000  # products of terms for one value
+
+
+@dataclass(frozen=True)
+class RestingReaction:
+    """One reaction at a place of rest.
+
+    Args:
+        named: what it is.
+        value: a scalar of the parameters, None where it is statically indeterminate.
+    """
+
+    named: NamedReaction
+    value: Scalar | None
+
+
+def state_of(place: Equilibrium) -> dict[Node, Scalar]:
+    """Everything that moves, at rest there: exact, or the exact numbers that its floats are."""
+    system = place.statics.system
+    symbols = system.symbols
+    still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
+    inputs = {x: place.statics.given[x] for x in symbols.inputs.values()}
+    at = place.exact if place.is_exact else {q: Fraction(place.numbers[q]) for q in symbols.q}
+    return {**still, **inputs, **{q: at[q] for q in symbols.q}}
+
+
+def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:
+    """Every reaction of joints and ties.
+
+    Raises:
+        DerivationError: a force acts at no place, so that reactions do not follow.
+    """
+    system, state = place.statics.system, state_of(place)
+    reactions = reactions_of(system, state)
+    positive = positive_parameters(system.scope)
+    found = []
+    for named in named_reactions(reactions.balance):
+        *factors, given = substituted((*named.combination.values(), named.given), state)
+        try:
+            sum_ = reactions.combined(dict(zip(named.combination, factors, strict=True)), named.name)
+            value = sum_ + given
+            found.append(RestingReaction(named, simplest(value, WORK, positive) if place.is_exact else value))
+        except Indeterminate:
+            found.append(RestingReaction(named, None))
+    return reactions, tuple(found)
+
+
+def reactions_or_why(place: Equilibrium) -> tuple[Reactions | None, tuple[RestingReaction, ...], str]:
+    """(reactions, each of them, why there are none)."""
+    try:
+        return *reactions_at(place), ""
+    except DerivationError as error:
+        return None, (), f"{error.what}; {error.mend}" if error.mend else error.what

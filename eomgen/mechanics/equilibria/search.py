@@ -1,0 +1,217 @@
+"""System -> where it is at rest: every place at which all forces balance, exact where it can be, and how it keeps it.
+
+In numbers first: equations without jumps in at most three coordinates have all their roots isolated, linear ones have
+a single solution; of others those are found that many guesses lead to, and it is said that there may be more. Then in
+closed form, taken where it agrees with the numbers and the equations hold exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.equilibria.closed_rest import ClosedForms
+from eomgen.mechanics.equilibria.one_sided import pulling
+from eomgen.mechanics.equilibria.rest_places import ANYWHERE, places_of_rest
+from eomgen.mechanics.equilibria.stability import Stability, stability_of
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, refuse_unrelated, static_equations
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.places import Located
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.system import System
+from eomgen.model.values import exact_parameters, first_guesses, start_values
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar
+
+State = Mapping[Node, Scalar]
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """One place of rest.
+
+    Args:
+        statics: the equations that hold there.
+        exact: coordinates, and multipliers of closing ties, as scalars of the parameters; those that are known so.
+        numbers: all of them as numbers; {} without values of all parameters.
+        stability: whether it stays there when it is disturbed.
+    """
+
+    statics: StaticEquations
+    exact: State
+    numbers: Mapping[Node, float]
+    stability: Stability
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether every coordinate is known in closed form."""
+        return all(q in self.exact for q in self.statics.system.symbols.q)
+
+
+    @cached_property
+    def pulling(self) -> tuple[str, ...]:
+        """The one-sided ties that would have to pull there; () where that is not known."""
+        system = self.statics.system
+        state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
+        state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
+        values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+        return pulling(system, state, values)
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """The places of rest of a system.
+
+    Args:
+        statics: the equations.
+        found: each place.
+        complete: whether there are no others, where `where` says.
+        where: in which range they were sought, in words.
+        indifferent: coordinates that no force holds anywhere: they stay where they start.
+    """
+
+    statics: StaticEquations
+    found: tuple[Equilibrium, ...]
+    complete: bool
+    where: str
+    indifferent: tuple[Node, ...]
+
+    def nearest(self, guess: Mapping[str, float] | None = None) -> Equilibrium:
+        """The place of rest that is reached from a guess (None: from the start).
+
+        Raises:
+            DerivationError: there is none.
+        """
+        if not self.found:
+            raise DerivationError("no place was found at which all forces balance" +
+                                  (": there is none" if self.complete else ""))  # fmt: skip
+        return self.found[0]
+
+
+def equilibria_of(system: System, guess: Mapping[str, float] | None = None) -> tuple[Equilibrium, ...]:
+    """Every place of rest that is found, the nearest to the start (or the guess) first."""
+    return all_equilibria(system, guess).found
+
+
+def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
+    """Every place of rest that is found, and whether there are others; the nearest to the guess first.
+
+    Args:
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
+    """
+    statics = static_equations(system)
+    if statics.loaded:
+        what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
+        raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")
+    return _Search(statics, dict(guess or {})).equilibria()
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Places of rest that are sought.
+
+    Args:
+        whole: the equations.
+        guess: where, by name.
+    """
+
+    whole: StaticEquations
+    guess: Mapping[str, float]
+
+    @property
+    def system(self) -> System:
+        return self.whole.system
+
+    @cached_property
+    def statics(self) -> StaticEquations:
+        """Without the coordinates that no equation holds."""
+        return self.whole.without(self.whole.indifferent)
+
+    @cached_property
+    def valued(self) -> bool:
+        """Whether all parameters that matter have values."""
+        known = exact_parameters(self.system.scope.model)
+        needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
+        return not any(depends_on(x, needed) for x in (*self.whole.equations, *self._fixed.values()))
+
+    @cached_property
+    def values(self) -> dict[Node, Any]:
+        """Of the parameters, 50 digits; of those without one, a value to try."""
+        return values_of_parameters(self.system.scope, Random(3))
+
+    @cached_property
+    def floats(self) -> dict[Node, float]:
+        return {node: float(x) for node, x in self.values.items()}
+
+    @cached_property
+    def _fixed(self) -> dict[Node, Scalar]:
+        """Driven coordinates, and those that nothing holds, where they start."""
+        scope = self.system.scope
+        return {q: start_value(scope, scope.model.coordinates[q.name])
+                for q in scope.symbols.q if q not in self.statics.q}  # fmt: skip
+
+    @cached_property
+    def first(self) -> np.ndarray:
+        """The guess: `near` where it is given, else the start."""
+        model = self.system.scope.model
+        unknown = [name for name in self.guess if name not in model.coordinates]
+        if unknown:
+            raise UsageError(f"no coordinate '{unknown[0]}'", mend=f"one of {', '.join(model.coordinates)}")
+        trial = {name: self.floats[x] for name, x in self.system.symbols.parameters.items()}
+        at = start_values(model, trial)[0] | first_guesses(model, trial) | _near(self.system, self.values)
+        return np.array([float({**at, **self.guess}[q.name]) for q in self.statics.q])
+
+    def equilibria(self) -> Equilibria:
+        places = places_of_rest(self.statics, self.values, self.first)
+        for q in places.found[:1]:
+            refuse_unrelated(self.statics, q[: len(self.statics.q)], self.floats)
+        forms = ClosedForms(self.statics, self.values, places.turning)
+        found = [each for z in places.found if (each := self._equilibrium(z, forms)) is not None]
+        complete = places.complete and (self.valued or len(found) == len(places.found))
+        certain = self.valued or places.where == ANYWHERE
+        where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
+        return Equilibria(self.statics, tuple(found), complete, where, self.whole.indifferent)
+
+    def _equilibrium(self, z: np.ndarray, forms: ClosedForms) -> Equilibrium | None:
+        """The place, exact where it can be; None where only trial values of the parameters lead to it."""
+        numbers = {**self.floats, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
+        located = Located(numbers, positive_parameters(self.system.scope))
+        held = forms.at(located)
+        if not self.valued and held is None:
+            return None
+        exact = {**self._fixed, **({} if held is None else held.state)}
+        stability = stability_of(self.statics, {**exact, **({} if held is None else held.particular)}, numbers,
+                                 self.values if self.valued else None)  # fmt: skip
+        own = {q: located.value(x) for q, x in self._fixed.items()} | self._determined(z)
+        return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
+
+    def _determined(self, z: np.ndarray) -> dict[Node, float]:
+        """Coordinates, and the multipliers that have a single value."""
+        statics, n = self.statics, len(self.statics.q)
+        J = statics.slopes(statics.J, z[:n], self.floats)
+        single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
+        kept = dict(zip(statics.q, z[:n], strict=True))
+        kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
+        return {node: float(x) + 0.0 for node, x in kept.items()}
+
+def _near(system: System, values: Mapping[Node, Any]) -> dict[str, float]:
+    """The first guesses of coordinates that are not dependent."""
+    scope, found = system.scope, {}
+    for name, part in scope.model.coordinates.items():
+        if part.near is not None:
+            found[name] = float(evaluate((scope.value(part.near),), values, fifty_digits())[0])
+    return found
+
+

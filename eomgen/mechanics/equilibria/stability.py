@@ -1,0 +1,254 @@
+"""A place of rest -> whether it is stable: the second variation of the potential energy along the ties.
+
+    K = Z^T H Z,   H = -d(Q + J^T lam)/dq,   J Z = 0
+
+H is d2V/dq2 - sum lam d2phi/dq2 where all forces have a potential. K > 0: V has a minimum there, and the place is
+stable (Lagrange and Dirichlet); a negative direction: it is unstable. With one freedom, whose K vanishes, the next
+derivatives decide. With several, and forces without a potential, K has another sense and decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.dense import balanced
+from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.symbolic import cramer, linear
+from eomgen.symbolic.derivative import jacobian, substituted
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.solving import vanishes
+
+WORK = 20_000  # products of terms for one entry of K
+MOST_EXACT = 6  # freedoms of a K that is written exactly
+ZERO = 1e-9  # of an eigenvalue of the scaled K, or of a derivative, below which it is 0
+SINGULAR = 1e-7  # of the ties at the place: singular values below this part of the largest are 0
+
+Matrix = tuple[tuple[Any, ...], ...]
+"""Of scalars, or of floats where they are not known exactly."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Whether a place of rest is stable.
+
+    Args:
+        kind: "stable", "unstable", "indifferent", "depends on the parameters", "undecided" or "no potential energy".
+        why: in words.
+        along: the coordinates whose variations are free; the others follow by the ties.
+        K: exact where the place is, else numbers; () where there is none.
+        minors: det of the leading parts of K, exact, where they decide; else ().
+    """
+
+    kind: str
+    why: str
+    along: tuple[Node, ...] = ()
+    K: Matrix = ()
+    minors: tuple[Scalar, ...] = ()
+
+
+def stability_of(
+    statics: StaticEquations, exact: Mapping[Node, Scalar], numbers: Mapping[Node, float],
+    values: Mapping[Node, Any] | None,
+) -> Stability:  # fmt: skip
+    """The stability of a place of rest.
+
+    Args:
+        exact: coordinates and multipliers in closed form, as far as they are known.
+        numbers: all of them, and the parameters.
+        values: of the parameters with 50 digits; None: some have none, and K is judged by the signs of its terms.
+    """
+    if not statics.q:
+        return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
+    return _Place(statics, exact, numbers, values).stability()
+
+
+@dataclass(frozen=True)
+class _Place:
+    statics: StaticEquations
+    exact: Mapping[Node, Scalar]
+    numbers: Mapping[Node, float]
+    values: Mapping[Node, Any] | None
+
+    @cached_property
+    def known(self) -> bool:
+        """Whether all of the place is exact."""
+        return all(x in self.exact for x in self.statics.unknowns)
+
+    @cached_property
+    def state(self) -> dict[Node, Any]:
+        """Values of everything at the place: with 50 digits where it is exact and the parameters have values."""
+        if not self.known or self.values is None:
+            return {node: fifty_digits().number(1) * x for node, x in self.numbers.items()}
+        keys = [*self.statics.unknowns]
+        found = evaluate([self.exact[x] for x in keys], self.values, fifty_digits())
+        return {**self.values, **dict(zip(keys, found, strict=True))}
+
+    def stability(self) -> Stability:
+        statics = self.statics
+        J = self._numbers(statics.J)
+        along = self._independent(J)
+        if along is None:
+            return Stability("undecided", "the ties are singular there")
+        if not along:
+            return Stability(INDIFFERENT, "the ties leave no freedom")
+        nodes = tuple(statics.q[k] for k in along)
+        K = self._exact_K(along) if self.known and len(along) <= MOST_EXACT else None
+        shown: Matrix = K if K is not None else _as_exact(self._numeric_K(J, along))
+        minors = _minors(K) if K is not None and self.values is None else ()
+        if len(along) > 1 and not self._has_potential(along):
+            return Stability("no potential energy", "forces without a potential act, and K is not symmetric", nodes,
+                             shown)  # fmt: skip
+        if self.values is None:
+            kind, why = self._by_terms(K, minors)
+        else:
+            kind, why = self._by_numbers(self._numeric_K(J, along), len(along) == 1)
+        return Stability(kind, why, nodes, shown, minors)
+
+    # -- the ties ------------------------------------------------------------------------------------
+
+    def _numbers(self, rows: Sequence[Sequence[Scalar]]) -> np.ndarray:
+        flat = evaluate([x for row in rows for x in row], self.state, fifty_digits())
+        return np.array([float(x) for x in flat]).reshape(len(rows), len(self.statics.q))
+
+    def _independent(self, J: np.ndarray) -> list[int] | None:
+        """Coordinates by which all others move; those of the model's own where they can be. None: J is singular."""
+        n = len(self.statics.q)
+        if not len(J):
+            return list(range(n))
+        scaled = balanced(J)[0]
+        r = int(np.linalg.matrix_rank(scaled, tol=SINGULAR))
+        if r < self._generic_rank:
+            return None
+        own = {u.name[:-1] for u in self.statics.system.symbols.u}
+        order = sorted(range(n), key=lambda k: self.statics.q[k].name in own)
+        chosen: list[int] = []
+        for k in order:  # columns of the dependent coordinates, one by one
+            if len(chosen) < r and np.linalg.matrix_rank(scaled[:, [*chosen, k]], tol=SINGULAR) > len(chosen):
+                chosen.append(k)
+        return [k for k in range(n) if k not in chosen]
+
+    @cached_property
+    def _generic_rank(self) -> int:
+        """Of J where the ties are not in a special position."""
+        ties = (self.statics.system.free or self.statics.system).ties
+        return len(ties.closing) - len(redundant_rows(ties))
+
+    @cached_property
+    def _H(self) -> Matrix:
+        """-d(Q + J^T lam)/dq."""
+        return tuple(tuple(-x for x in row) for row in jacobian(self.statics.forces, self.statics.q))
+
+    # -- K -------------------------------------------------------------------------------------------
+
+    def _numeric_K(self, J: np.ndarray, along: Sequence[int]) -> np.ndarray:
+        Z = np.zeros((len(self.statics.q), len(along)))
+        Z[list(along), range(len(along))] = 1
+        others = [k for k in range(len(self.statics.q)) if k not in along]
+        if others:
+            Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=1e-12)[0]
+        return Z.T @ self._numbers(self._H) @ Z
+
+    def _exact_K(self, along: Sequence[int]) -> Matrix | None:
+        positive = positive_parameters(self.statics.system.scope)
+        try:
+            Z = self._exact_Z(along)
+            H = [substituted(row, self.exact) for row in self._H]
+            rows = [[sum((Z[i][a] * H[i][j] * Z[j][b] for i in range(len(Z)) for j in range(len(Z))
+                          if not is_zero(Z[i][a]) and not is_zero(Z[j][b]) and not is_zero(H[i][j])), start=0)
+                     for b in range(len(along))] for a in range(len(along))]  # fmt: skip
+            return tuple(tuple(simplest(x, WORK, positive) for x in row) for row in rows)
+        except (DerivationError, NoValue, ZeroDivisionError):
+            return None
+
+    def _exact_Z(self, along: Sequence[int]) -> list[list[Scalar]]:
+        """The coordinates' displacements for a unit of each independent one."""
+        n = len(self.statics.q)
+        others = [k for k in range(n) if k not in along]
+        J = [substituted(row, self.exact) for row in self.statics.J]
+        Z: list[list[Scalar]] = [[int(k == a) for a in along] for k in range(n)]
+        values = self.values or values_of_parameters(self.statics.system.scope, Random(3))
+        for column, a in enumerate(along):
+            solution = linear.solved(
+                [{j: row[k] for j, k in enumerate(others)} for row in J], [-row[a] for row in J], len(others),
+                lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+            for j, k in enumerate(others):
+                Z[k][column] = solution.constants[j]
+        return Z
+
+    def _has_potential(self, along: Sequence[int]) -> bool:
+        """Whether the forces come from a potential energy: dQ_i/dq_j = dQ_j/dq_i."""
+        Q = self.statics.unbalanced
+        slopes = jacobian(Q, self.statics.q)
+        pairs = [(slopes[i][j], slopes[j][i]) for i in range(len(Q)) for j in range(i)]
+        if all(is_zero(a - b) or vanishes(a - b) for a, b in pairs):
+            return True
+        K = self._numeric_K(self._numbers(self.statics.J), along)
+        return bool(np.all(abs(K - K.T) <= ZERO * np.max(abs(K), initial=0)))
+
+    # -- signs ---------------------------------------------------------------------------------------
+
+    def _by_terms(self, K: Matrix | None, minors: Sequence[Scalar]) -> tuple[str, str]:
+        """By the signs of the terms, where the parameters have no values."""
+        depends = "depends on the parameters", "stable where V has a minimum there"
+        if K is None:
+            return depends
+        positive = positive_parameters(self.statics.system.scope)
+        signs = [sign_of_terms(x, positive) for x in minors]
+        if all(sign == 1 for sign in signs):
+            return STABLE, "V has a minimum there"
+        if any(sign_of_terms(K[i][i], positive) == -1 for i in range(len(K))):
+            return UNSTABLE, "V falls from there"
+        if signs and signs[-1] == -1 and len(K) % 2 == 0:
+            return UNSTABLE, "V falls from there"
+        return depends
+
+    def _by_numbers(self, K: np.ndarray, single: bool) -> tuple[str, str]:
+        size = np.abs(np.diagonal(K)) + np.max(np.abs(K), axis=1, initial=0)
+        terms = self._size_of_terms
+        scale = 1 / np.sqrt(np.where(size > ZERO * terms, size, max(terms, 1e-300)))
+        eigenvalues = np.linalg.eigvalsh((K + K.T) / 2 * np.outer(scale, scale))
+        if np.min(eigenvalues) > ZERO:
+            return STABLE, "V has a minimum there"
+        if np.min(eigenvalues) < -ZERO:
+            return UNSTABLE, "V has a maximum there" if np.max(eigenvalues) < -ZERO else "V has a saddle there"
+        if single:
+            return by_higher_derivatives(self.statics, self.state)
+        return "undecided", "the second variation of V vanishes in some direction"
+
+    @cached_property
+    def _size_of_terms(self) -> float:
+        """The largest second derivative nearby: what K is measured against."""
+        found = [0.0]
+        for shift in (-0.3, 0.2, 0.4):
+            state = dict(self.state) | {q: self.state[q] + shift for q in self.statics.q}
+            try:
+                entries = [x for row in self._H for x in row]
+                found += [abs(float(x)) for x in evaluate(entries, state, fifty_digits())]
+            except NoValue:
+                continue
+        return max(found)
+
+
+def _as_exact(K: np.ndarray) -> Matrix:
+    return tuple(tuple(float(x) + 0.0 for x in row) for row in K)
+
+
+def _minors(K: Matrix) -> tuple[Scalar, ...]:
+    """det of the leading parts."""
+    return tuple(simplest(cramer.determinant([row[:n] for row in K[:n]]), WORK) for n in range(1, len(K) + 1))
+
+

@@ -1,0 +1,1 @@
+"""The velocity and acceleration fields of rigid bodies: relative motion, kinds of motion, centrodes."""

@@ -1,0 +1,94 @@
+"""Kinds -> Centrodes: the curves on which the centre of rotation of a body runs, in the ground and in the body.
+
+    c = p + omega x v / omega^2 in ground axes,   R^T (c - p) in the body's: the moving one rolls on the fixed one
+
+Where one parameter moves the body (one freedom, or time alone) they are functions of the coordinates, or of t.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.fields.curves import WORK, Curve, curve_of
+from eomgen.mechanics.fields.field import field_of, rotation_center
+from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.spatial import Vector, vector_of
+
+
+@dataclass(frozen=True)
+class Centrodes:
+    """The centre of rotation of one body as its motion goes on.
+
+    Args:
+        body: its name.
+        fixed, moving: the place in ground axes and in body axes, functions of the coordinates and t.
+        fixed_curve, moving_curve: the lines on which it runs.
+    """
+
+    body: str
+    fixed: Vector
+    moving: Vector
+    fixed_curve: Curve
+    moving_curve: Curve
+
+
+def centrodes_of(kinds: Kinds, body: str) -> Centrodes | None:
+    """The centrodes of a body in plane motion; None where it has no single ones.
+
+    So it is where the centre stays or is at infinity, where more than one parameter moves the system, or where the
+    rates are left to multipliers, and are no functions of one of them.
+    """
+    system = kinds.system
+    if system.scope.model.space != "plane" or kinds.of(body).name != PLANE or parameters(kinds) != 1:
+        return None
+    try:
+        center = rotation_center(field_of(system.motion, body))
+        unit = dict.fromkeys(system.symbols.u, 1)  # one speed, which cancels
+        (x, y, z) = substituted(center, unit)
+    except DerivationError:
+        return None
+    places = (x, y, z), in_body(system, body, (x, y, z))
+    fixed, moving = (vector_of(simplest(each, WORK, kinds.constants.positive) for each in place) for place in places)
+    if depends_on(x, system.symbols.u) or len(system.symbols.u) > 1:
+        return None
+    curves = [curve_of(place, kinds.possible, kinds.constants) for place in (fixed, moving)]
+    return Centrodes(body, fixed, moving, *curves)
+
+
+def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
+    """The centrodes of all bodies that have them."""
+    found = []
+    for link in kinds.system.motion.links:
+        try:
+            found.append(centrodes_of(kinds, link.name))
+        except EomgenError:  # no motion near the start at which it could be tried
+            continue
+    return tuple(each for each in found if each is not None)
+
+
+def parameters(kinds: Kinds) -> int:
+    """How many parameters move a system: its freedoms by rank, and the time where something moves as given."""
+    return freedoms(kinds) + moves_by_itself(kinds.system)
+
+
+def freedoms(kinds: Kinds) -> int:
+    """nu - rank J at a generic configuration."""
+    ties, speeds = kinds.system.ties, len(kinds.system.symbols.u)
+    if not ties.closing or not speeds:
+        return speeds
+    values = evaluate([x for row in ties.J for x in row], kinds.possible.states[0], fifty_digits())
+    J = np.array([float(x) for x in values]).reshape(-1, speeds)
+    return speeds - int(np.linalg.matrix_rank(J, tol=1e-9 * np.max(np.abs(J), initial=1e-300)))
+
+
+def moves_by_itself(system: System) -> bool:
+    """Whether coordinates move as given."""
+    return not all(is_zero(x) for x in (*system.scope.nu, *system.ties.sigma))

@@ -1,0 +1,163 @@
+"""System, a state -> BodyMotion: what there is to say of the motion of each body at that state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.fields.field import (
+    Field,
+    acceleration_pole,
+    field_of,
+    inflection_center,
+    least_speed,
+    rotation_center,
+)
+from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.functions import sqrt
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.spatial import Vector, dot, minus, vector_of
+from eomgen.symbolic.text import text_size
+
+WORK = 10_000  # products of terms for making one formula readable
+LARGE = 8000  # characters of a formula that is not made readable
+
+
+@dataclass(frozen=True)
+class Readable:
+    """Values at a state, in readable form.
+
+    Args:
+        state: exact scalars in place of coordinates, speeds, accelerations and t; {} for functions of them.
+        positive: symbols that stand for positive numbers.
+    """
+
+    state: Mapping[Node, Scalar]
+    positive: frozenset[Node]
+
+    def scalar(self, x: Scalar) -> Scalar:
+        """A scalar at the state; what is very long stays as it is."""
+        (found,) = substituted((x,), self.state)
+        return found if text_size(found) > LARGE else simplest(found, WORK, self.positive)
+
+    def vector(self, x: Vector) -> Vector:
+        return vector_of(map(self.scalar, x))
+
+    def field(self, field: Field) -> Field:
+        """The field at the state."""
+        return Field(*map(self.vector, (field.p, field.v, field.a, field.w, field.e)))
+
+
+def readable_at(system: System, state: Mapping[Node, Scalar]) -> Readable:
+    """The readable values of a system at a state."""
+    return Readable(state, positive_parameters(system.scope))
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """The motion of one body at one state, exactly.
+
+    Args:
+        body: its name.
+        field: velocities and accelerations.
+        readable: puts scalars into the state.
+        ends: (name, place) of both ends of a bar; () where it is none.
+        plane: whether the motion is one in the plane.
+        kind: the kind of motion in the long run; None where it is not known, or was not asked.
+    """
+
+    body: str
+    field: Field
+    readable: Readable
+    ends: tuple[tuple[str, Vector], ...] = ()
+    plane: bool = True
+    kind: Kind | None = None
+
+    @cached_property
+    def now(self) -> str:
+        """The kind of the field at the state: rest, translation, rotation, helical motion."""
+        return instant_kind(self.field)
+
+    @cached_property
+    def invariants(self) -> tuple[Scalar, Scalar]:
+        """omega.omega and omega.v, the same at all points of the body."""
+        w, v = self.field.w, self.field.v
+        return self.readable.scalar(dot(w, w)), self.readable.scalar(dot(w, v))
+
+    @cached_property
+    def center(self) -> Vector | None:
+        """In the plane, the point without velocity; None where there is none."""
+        return self._found(rotation_center)
+
+    @cached_property
+    def pole(self) -> Vector | None:
+        """In the plane, the point without acceleration; None where there is none."""
+        return self._found(acceleration_pole)
+
+    @cached_property
+    def inflection(self) -> tuple[Vector, Scalar] | None:
+        """In the plane, (centre, radius) of the circle of the points whose path is straight there."""
+        middle = self._found(inflection_center)
+        if middle is None or self.center is None:
+            return None
+        arm = self.readable.vector(minus(middle, self.center))
+        return middle, self.readable.scalar(sqrt(dot(arm, arm)))
+
+    @cached_property
+    def slowest(self) -> tuple[str, str, Scalar] | None:
+        """(end, end, least speed between) of a bar."""
+        if not self.ends:
+            return None
+        (first, start), (last, end) = self.ends
+        try:
+            least = least_speed(self.field, start, end, self.readable.scalar)
+        except DerivationError:  # both ends are one place
+            return None
+        return first, last, self.readable.scalar(least)
+
+    def _found(self, find: Callable[[Field], Vector]) -> Vector | None:
+        try:
+            return self.readable.vector(find(self.field)) if self.plane else None
+        except DerivationError:  # there is no such point
+            return None
+
+
+def body_motions(
+    system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None, bodies: Sequence[str] = ()
+) -> tuple[BodyMotion, ...]:
+    """The motion of the bodies, of all of them where none is named.
+
+    Args:
+        state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
+        kinds: gives the kinds of motion in the long run.
+    """
+    readable, plane = readable_at(system, state), system.scope.model.space == "plane"
+    return tuple(
+        BodyMotion(body, readable.field(field_of(system.motion, body)), readable, _ends(system, readable, body), plane,
+                   _kind(kinds, body))
+        for body in bodies or [link.name for link in system.motion.links]
+    )  # fmt: skip
+
+
+def _kind(kinds: Kinds | None, body: str) -> Kind | None:
+    if kinds is None:
+        return None
+    try:
+        return kinds.of(body)
+    except EomgenError:  # no motion near the start at which it could be tried
+        return None
+
+
+def _ends(system: System, readable: Readable, body: str) -> tuple[tuple[str, Vector], ...]:
+    """Both ends of what has a `line`, or of a rod."""
+    points, part = system.motion.points[body], system.scope.model.bodies[body]
+    names = part.line or ("start", "end")
+    if not set(names) <= points.keys():
+        return ()
+    return tuple((f"{body}.{name}", readable.vector(system.motion.position((body, points[name])))) for name in names)

@@ -1,0 +1,169 @@
+"""Mechanism -> Found: how a drawing finds its centres of rotation, one after the other, as two lines that meet.
+
+A tie between two bodies that pushes along a line lets them turn about points of that line only: the power of a force
+(f_x, f_y) with moment tau about the origin is l . c with l = (-f_y : f_x : tau), so the centre c is on l. A pure couple
+is the line at infinity. And of three bodies the three centres are on one line (Aronhold, Kennedy). All is projective:
+lines may meet at infinity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+from eomgen.mechanics.components import Component, components_of
+from eomgen.mechanics.effects import Axes
+from eomgen.mechanics.freedom import is_particle
+from eomgen.mechanics.instant.mechanism import Mechanism
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.spatial import Vector, cross, plus, vector_of
+
+Pair = tuple[str, str]
+POINT = "point"
+"""The kind of line of a body that is a point, and does not turn."""
+
+
+@dataclass(frozen=True)
+class LineOf:
+    """A line on which a centre is.
+
+    Args:
+        line: homogeneous.
+        owner: the tie or joint that makes it, "" where it joins two centres.
+        kind: of the component: "x", "y", "n", "tension", "couple", ...
+        through: the two centres that it joins.
+    """
+
+    line: Vector
+    owner: str = ""
+    kind: str = ""
+    through: tuple[Pair, Pair] | None = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """A centre that two lines give, or two others that are at one place.
+
+    Args:
+        pair: of blocks.
+        point: where it is, (x, y, 1) or (dx, dy, 0).
+        lines: the two that meet there; () where it coincides with others.
+        agrees: it is the one of the velocities.
+        same: the two centres at this place, which the pair has with one and the same third body.
+    """
+
+    pair: Pair
+    point: Vector
+    lines: tuple[LineOf, ...]
+    agrees: bool
+    same: tuple[Pair, ...] = ()
+
+    @property
+    def hinge(self) -> str:
+        """The one tie or joint that holds the point; "" where two lines of different origin meet."""
+        owners = {line.owner for line in self.lines}
+        plain = all(line.kind != "couple" for line in self.lines)
+        return owners.pop() if len(owners) == 1 and plain and self.lines[0].owner else ""
+
+
+def constructed(mechanism: Mechanism) -> tuple[Found, ...]:
+    """The centres that lines give, each from those before it; those that need the velocities are left out."""
+    return tuple(_Search(mechanism).run())
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The search; points that are found are looked up in numbers first."""
+
+    mechanism: Mechanism
+
+    def run(self) -> Iterator[Found]:
+        known: dict[Pair, Vector] = {}
+        fresh = True
+        while fresh:
+            fresh = False
+            for pair in self.mechanism.centers:
+                if pair in known:
+                    continue
+                found = self._meeting(pair, known)
+                if found is not None:
+                    known[pair] = found.point
+                    fresh = True
+                    yield found
+
+    def _meeting(self, pair: Pair, known: dict[Pair, Vector]) -> Found | None:
+        """The first two different lines on which the centre of a pair is, or two centres that coincide."""
+        field = self.mechanism.centers[pair].point
+        for first_pair, second_pair in self._with_a_third(pair, known):
+            if self.mechanism.is_zero(cross(known[first_pair], known[second_pair])):
+                point = known[first_pair]
+                return Found(pair, point, (), self.mechanism.is_zero(cross(point, field)), (first_pair, second_pair))
+        lines = [*self.own_lines.get(pair, ()), *self._in_line(pair, known)]
+        for first, second in combinations(lines, 2):
+            point = cross(first.line, second.line)
+            if not self.mechanism.is_zero(point):
+                point = self.mechanism.normal(point)
+                return Found(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
+        return None
+
+    def _in_line(self, pair: Pair, known: dict[Pair, Vector]) -> Iterator[LineOf]:
+        """The lines through the centres that the two have with a third body."""
+        for first, second in self._with_a_third(pair, known):
+            line = cross(known[first], known[second])
+            if not self.mechanism.is_zero(line):
+                yield LineOf(line, through=(first, second))
+
+    def _with_a_third(self, pair: Pair, known: dict[Pair, Vector]) -> Iterator[tuple[Pair, Pair]]:
+        """The centres that both have with a third body, where they are known."""
+        for k in self.mechanism.blocks:
+            if k not in pair:
+                first, second = self._ordered(pair[0], k), self._ordered(pair[1], k)
+                if first in known and second in known:
+                    yield first, second
+
+    def _ordered(self, i: str, j: str) -> Pair:
+        order = list(self.mechanism.blocks)
+        return (i, j) if order.index(i) < order.index(j) else (j, i)
+
+    @cached_property
+    def own_lines(self) -> dict[Pair, list[LineOf]]:
+        """The lines along which ties and joints push two blocks."""
+        found: dict[Pair, list[LineOf]] = {}
+        axes = Axes(self.mechanism.system.motion)
+        for component in components_of(self.mechanism.system, axes):
+            if component.kind == "drive":
+                continue
+            pair, line = self._line(axes, component)
+            if pair is not None:
+                found.setdefault(pair, []).append(LineOf(line, component.owner, component.label))
+        for name in self.mechanism.moved:
+            if self._is_point(name):
+                found.setdefault(("0", name), []).append(LineOf((0, 0, 1), name, POINT))
+        return found
+
+    def _is_point(self, block: str) -> bool:
+        """Whether it is a point mass, whatever its velocity: as a body it translates."""
+        link = self.mechanism.system.motion.link(block)
+        return is_particle(self.mechanism.system.motion, link) and all(is_zero(x) for x in link.twist.w)
+
+    def _line(self, axes: Axes, component: Component) -> tuple[Pair | None, Vector]:
+        """The two blocks on which it pushes with opposite wrenches, and the line; None where there are no such two."""
+        wrenches: dict[str, Vector] = {}
+        for effect in component.effects:
+            motion = axes.motion
+            place = plus(motion.position((motion.links[effect.link].name, axes.masses[effect.link].com)), effect.arm)
+            moment = plus(effect.couple, cross(place, effect.force))[2]
+            block = self.mechanism.block_of(motion.links[effect.link].name)
+            wrench = (-effect.force[1], effect.force[0], moment)
+            wrenches[block] = plus(wrenches[block], wrench) if block in wrenches else wrench
+        here = {block: vector_of(substituted(w, self.mechanism.moving)) for block, w in wrenches.items()}
+        pushed = [block for block, w in here.items() if not self.mechanism.is_zero(w) and block != "0"]
+        if not pushed or any(block not in self.mechanism.blocks for block in pushed):
+            return None, (0, 0, 0)
+        if len(pushed) == 1:
+            return ("0", pushed[0]), here[pushed[0]]
+        opposite = len(pushed) == 2 and self.mechanism.is_zero(plus(here[pushed[0]], here[pushed[1]]))
+        return (self._ordered(pushed[0], pushed[1]) if opposite else None), here[pushed[0]]

@@ -1,0 +1,221 @@
+"""System, [given] -> the linear equations of velocities or accelerations at one configuration, and their solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.outputs import Quantities
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import holds_identically
+from eomgen.model.fields import Equation
+from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.linear import solved
+from eomgen.symbolic.normal_form import collected_in, readable_all
+
+WORK = 50_000  # products of terms for one entry
+TRIES = 20
+RANK = 1e-9  # of a row's distance from those before it, against its length
+OPEN = 1e-9  # of a gap, against the size of the mechanism
+
+Values = Mapping[Node, Any]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One equation: sum of entries * unknowns = right.
+
+    Args:
+        said: how a message calls it.
+        entries: {velocity or acceleration or unknown: coefficient}, zeros left out.
+    """
+
+    said: str
+    entries: dict[Node, Scalar]
+    right: Scalar
+
+
+# -- the equations -----------------------------------------------------------------------------------
+
+
+def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[Line]:
+    """J u = - sigma, or J a = - gamma, of every closing row at a state."""
+    ties, symbols = system.ties, system.symbols
+    rates, right = (symbols.a, ties.gamma) if accelerations else (symbols.u, ties.sigma)
+    width = len(rates)
+    placed = substituted((*(x for row in ties.J for x in row), *right), state)
+    flat = readable_all(placed, WORK, positive_parameters(system.scope))
+    lines = []
+    for k, row in enumerate(ties.closing):
+        entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
+        kept = {node: x for node, x in entries if not is_zero(x)}
+        lines.append(Line(f"the tie '{row.tie}'", kept, -flat[len(ties.closing) * width + k]))
+    return lines
+
+
+def speed_lines(system: System, speeds: Mapping[str, Expression]) -> list[Line]:
+    """The start speeds of coordinates as equations."""
+    table = {u.name: u for u in system.symbols.u}
+    return [Line(f"the start speed {name}", {table[name]: 1}, system.scope.value(speed))
+            for name, speed in speeds.items()]  # fmt: skip
+
+
+def given_lines(
+    system: System, state: Mapping[Node, Scalar], equations: Sequence[Equation], rates: Sequence[Node], order: str
+) -> list[Line]:
+    """Given equations at a state, linear in the rates and the unknowns.
+
+    Args:
+        order: "velocity" or "acceleration".
+    Raises:
+        DerivationError: one is not linear in them, or says nothing of them.
+    """
+    quantities, symbols = Quantities(system, state), system.symbols
+    lines = []
+    for number, equation in enumerate(equations):
+        where = f"given.{order}.{number}"
+        sides = (equation.left, equation.right)
+        left, right = (side.evaluate(system.scope.names, quantities.value) for side in sides)
+        (gap,) = substituted((left - right,), state)
+        if order == "velocity" and depends_on(gap, symbols.a):
+            raise DerivationError(f"'{equation.text}' holds an acceleration", where, "put it under `acceleration`")
+        lines.append(linear_line(equation.text, gap, (*rates, *symbols.unknowns.values()), where))
+    return lines
+
+
+def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> Line:
+    """gap = 0 as an equation of the unknowns.
+
+    Raises:
+        DerivationError: it is not linear in them.
+    """
+    try:
+        parts = collected_in(gap, unknowns)
+    except DerivationError:
+        raise DerivationError(f"'{text}' is not linear in what it gives", where,
+                              "give components: vx(...), vy(...), omega(...)") from None  # fmt: skip
+    entries = {node: x for node, x in parts.items() if node is not None}
+    return Line(f"'{text}'", entries, -parts.get(None, 0))
+
+
+def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
+    """Refuse ties whose points do not meet at a configuration.
+
+    Raises:
+        DerivationError: the tie is named.
+    """
+    rows = [(row, row.gap) for row in system.ties.closing if row.gap is not None]
+    gaps = substituted([gap for _, gap in rows], places)
+    for (row, _), gap in zip(rows, gaps, strict=True):
+        if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > OPEN:
+            along = f" along {row.component}" if row.component in ("x", "y", "z") else ""
+            raise DerivationError(f"'{row.tie}' does not close at the start: it is open by {value:.4g}{along}",
+                                  f"constraints.{row.tie}", "put its points where they meet")  # fmt: skip
+
+
+def _at_own_values(system: System, x: Scalar) -> float:
+    return float(evaluate((x,), values_of_parameters(system.scope, Random(1)), fifty_digits())[0])
+
+
+# -- their solution ----------------------------------------------------------------------------------
+
+
+def solution_of(
+    system: System, ties: Sequence[Line], given: Sequence[Line], unknowns: Sequence[Node]
+) -> tuple[dict[Node, Scalar], tuple[int, int]]:
+    """(each unknown that the equations determine, with the free ones in it; ranks of the ties and of all).
+
+    Raises:
+        DerivationError: equations that contradict one another.
+    """
+    lines = [*ties, *given]
+    own, shaken = (_values(system, lines, shaken=shaken) for shaken in (False, True))
+    matrix = _matrix(lines, unknowns, own)
+    _refuse_contradiction(lines, matrix)
+    rank = _rank(matrix)
+    values = shaken if _rank(_matrix(lines, unknowns, shaken)) == rank else own
+    index = {node: j for j, node in enumerate(unknowns)}
+    rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
+    found = solved(rows, [line.right for line in lines], len(unknowns),
+                   lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+    result = {}
+    for j, constant in found.constants.items():
+        shares = [share * unknowns[f] for f, share in found.shares[j].items()]
+        result[unknowns[j]] = constant - sum(shares, start=0)
+    return result, (_rank(matrix[: len(ties)]), rank)
+
+
+def _values(system: System, lines: Sequence[Line], *, shaken: bool) -> Values:
+    """Values of every symbol in the equations: parameters, and what is free or unknown in them."""
+    scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
+    for seed in range(1, TRIES):
+        rng = Random(seed)
+        values = values_of_parameters(system.scope, rng, shaken=shaken)
+        values |= {x: fifty_digits().number(1) * rng.uniform(0.5, 2) for x in symbols_of(scalars) if x not in values}
+        try:
+            evaluate(scalars, values, fifty_digits())
+        except (NoValue, ZeroDivisionError):
+            continue
+        return values
+    raise DerivationError("the configuration has no value at these parameters")
+
+
+def _matrix(lines: Sequence[Line], unknowns: Sequence[Node], values: Values) -> np.ndarray:
+    """[A | b], rows of unit length in A."""
+    index = {node: j for j, node in enumerate(unknowns)}
+    matrix = np.zeros((len(lines), len(unknowns) + 1))
+    for i, line in enumerate(lines):
+        numbers = evaluate((*line.entries.values(), line.right), values, fifty_digits())
+        for node, x in zip(line.entries, numbers, strict=False):
+            matrix[i, index[node]] = float(x)
+        matrix[i, -1] = float(numbers[-1])
+        size = np.linalg.norm(matrix[i, :-1])
+        matrix[i] /= size if size else 1.0
+    return matrix
+
+
+def _rank(matrix: np.ndarray) -> int:
+    """Of A in [A | b]."""
+    return len(list(_basis(matrix)))
+
+
+def _basis(matrix: np.ndarray) -> Iterator[int]:
+    """The rows of A that do not follow from those before them."""
+    Q = np.zeros((0, matrix.shape[1] - 1))
+    for i, row in enumerate(matrix[:, :-1]):
+        left = row - Q.T @ (Q @ row)
+        left = left - Q.T @ (Q @ left)
+        if np.linalg.norm(left) > RANK * max(float(np.linalg.norm(row)), RANK):
+            Q = np.vstack([Q, left / np.linalg.norm(left)])
+            yield i
+
+
+def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray) -> None:
+    """Refuse equations of which one contradicts others.
+
+    Raises:
+        DerivationError: all of them are named.
+    """
+    kept = list(_basis(matrix))
+    basis = matrix[kept]
+    for i, line in enumerate(lines):
+        if i in kept:
+            continue
+        before = [k for k in range(len(kept)) if kept[k] < i]
+        shares = np.linalg.lstsq(basis[before][:, :-1].T, matrix[i, :-1], rcond=None)[0] if before else np.zeros(0)
+        rest = matrix[i, -1] - shares @ basis[before][:, -1]
+        if abs(rest) > RANK * max(1.0, float(np.max(np.abs(matrix[:, -1])))):
+            others = dict.fromkeys(lines[kept[k]].said for k, share in zip(before, shares, strict=True)
+                                   if abs(share) > RANK)  # fmt: skip
+            against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
+            raise DerivationError(f"{line.said}{against}", "given", "leave one of them out, or change its value")

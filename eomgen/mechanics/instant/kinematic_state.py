@@ -1,0 +1,158 @@
+"""System, velocities, accelerations at one instant -> KinematicState: fields of bodies, points, the mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.mechanics.fields.field import Field, field_of
+from eomgen.mechanics.freedom import is_particle
+from eomgen.mechanics.instant.construction import Found, Pair, constructed
+from eomgen.mechanics.instant.mechanism import Mechanism
+from eomgen.mechanics.kinematics import Link
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.system import System
+from eomgen.mechanics.worth import EXACT, ROUNDED, Worth
+from eomgen.model.trusses import is_node
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.functions import sqrt
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.spatial import Vector, dot, vector_of
+from eomgen.symbolic.text import text_size
+
+WORK = 50_000  # products of terms for one value
+SHORT = 400  # characters of all values of a state that a reader can take
+LARGE = 4000  # characters of a value that is not made readable any more
+State = Mapping[Node, Scalar]
+
+
+@dataclass(frozen=True)
+class KinematicState:
+    """How a system moves at one instant, by scalars of the parameters.
+
+    Args:
+        system: its bodies and ties.
+        moving: what stands in place of coordinates, speeds, time and inputs.
+        accelerated: the same, the accelerations too; {} where they are not known.
+        freedoms: how many there are by rank.
+        formula: the same by counting, a number and its text.
+        when: the instant in words.
+        given: what is given of the velocities, as it was written.
+        rate: the velocity that is left as a symbol, by which all others are expressed; "" where all are known.
+        symbol: of it.
+        exact: whether the state is known in closed form.
+    """
+
+    system: System
+    moving: State
+    accelerated: State
+    freedoms: int
+    formula: tuple[int, str]
+    when: str
+    given: tuple[str, ...] = ()
+    rate: str = ""
+    symbol: Node | None = None
+    exact: bool = True
+
+    @property
+    def state(self) -> State:
+        """All that is known."""
+        return self.accelerated or self.moving
+
+    @property
+    def is_short(self) -> bool:
+        """Whether it is known exactly, by formulas that a reader can take."""
+        return self.exact and sum(map(text_size, self.state.values())) <= SHORT
+
+    @property
+    def plane(self) -> bool:
+        return self.system.scope.model.space == "plane"
+
+    # -- fields --------------------------------------------------------------------------------------
+
+    @cached_property
+    def fields(self) -> dict[str, Field]:
+        """Of every body; nodes of trusses are points, not bodies."""
+        motion = self.system.motion
+        bodies = [link.name for link in motion.links if not is_node(link.name)]
+        return {name: field_of(motion, name).at(self.state) for name in bodies}
+
+    @property
+    def turning(self) -> dict[str, Field]:
+        """Of the bodies that are no points."""
+        links = self.system.motion.links
+        points = {link.name for link in links if is_particle(self.system.motion, link)}
+        return {name: field for name, field in self.fields.items() if name not in points}
+
+    @cached_property
+    def points(self) -> tuple[tuple[str, Vector, Vector, Vector | None], ...]:
+        """(names, place, velocity, acceleration) of every named point; those of a hinge stand together."""
+        found: list[tuple[list[str], Vector, Vector, Vector | None]] = []
+        for link in self.system.motion.links:
+            for name, place in self._named(link):
+                r, v, a = self._of(link.name, place)
+                home = next((entry for entry in found if self._same(entry[1:3], (r, v))), None)
+                if home is None:
+                    found.append(([name], r, v, a))
+                else:
+                    home[0].append(name)
+        return tuple((", ".join(names), r, v, a) for names, r, v, a in found)
+
+    def _named(self, link: Link) -> Iterable[tuple[str, Vector]]:
+        motion = self.system.motion
+        if is_node(link.name):
+            return [(link.name, (0, 0, 0))]
+        own = motion.points[link.name]
+        kept = [name for name in own if name != "origin"] or ["origin"]
+        return [(f"{link.name}.{name}", own[name]) for name in kept]
+
+    def _of(self, body: str, place: Vector) -> tuple[Vector, Vector, Vector | None]:
+        """Place, velocity and acceleration of a place of a body, which may move in it."""
+        scope = self.system.scope
+        r = self.system.motion.position((body, place))
+        v = scope.rate_of(r)
+        a = self.put(scope.with_accelerations(v)) if self.accelerated else None
+        return self.put(r), self.put(v), a
+
+    def put(self, scalars: Sequence[Scalar]) -> Vector:
+        """A vector at the instant, readable."""
+        return vector_of(map(self.simple, substituted(tuple(scalars), self.state)))
+
+    def _same(self, a: tuple[Vector, Vector], b: tuple[Vector, Vector]) -> bool:
+        return self.worth.vanish(x - y for u, v in zip(a, b, strict=True) for x, y in zip(u, v, strict=True))
+
+    def simple(self, x: Scalar) -> Scalar:
+        """A scalar as a person writes it; as it is where it is very long."""
+        return x if text_size(x) > LARGE else simplest(x, WORK, positive_parameters(self.system.scope))
+
+    def size(self, v: Vector) -> Scalar:
+        """|v|"""
+        return self.simple(sqrt(dot(v, v)))
+
+    @cached_property
+    def worth(self) -> Worth:
+        """What scalars are worth."""
+        return Worth(self.system.scope, EXACT if self.exact else ROUNDED)
+
+    def number(self, x: Scalar) -> float | None:
+        """What a scalar is worth at the model's parameters; None where some have no value."""
+        return self.worth.number(x)
+
+    # -- the mechanism -------------------------------------------------------------------------------
+
+    @cached_property
+    def mechanism(self) -> Mechanism | None:
+        """In the plane."""
+        return Mechanism(self.system, self.moving, self.worth) if self.plane else None
+
+    @cached_property
+    def found(self) -> dict[Pair, Found]:
+        """The centres that a drawing finds, in its order."""
+        return {} if self.mechanism is None else {each.pair: each for each in constructed(self.mechanism)}
+
+    @property
+    def disagreement(self) -> str:
+        """The centres that the drawing finds elsewhere than the velocities; "" as it must be."""
+        return ", ".join(f"({i}, {j})" for (i, j), each in self.found.items() if not each.agrees)

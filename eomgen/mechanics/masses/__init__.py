@@ -1,0 +1,1 @@
+"""Bodies of parts, moments and products of inertia, principal axes."""

@@ -1,0 +1,232 @@
+"""Structure, a reaction or inner force -> InfluenceLine: what a unit load gives that travels along the bodies.
+
+The constraint that belongs to the force X is released; in the motion that is left, with a displacement 1 along X,
+
+    X * 1 + e . v(P) = 0,   X(P) = -e . v(P)
+
+for a unit load e at P: the influence line is the velocity plan of the mechanism, straight on every straight part of a
+body. For the force in a section the section is released (`section_release`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeVar
+
+from eomgen.errors import DerivationError, ExpressionError, UsageError
+from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, sizes_of
+from eomgen.mechanics.statics.section_forces import KINDS
+from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis, named
+from eomgen.mechanics.statics.structure import Structure
+from eomgen.mechanics.statics.velocity_plan import Plan
+from eomgen.model.constraints.members import ends_asked
+from eomgen.model.findings import nearest
+from eomgen.model.trusses import is_node
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.expressions import Call, parse
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.spatial import ZERO, Vector, dot, plus, vector_of
+
+Thing = TypeVar("Thing")
+Place = tuple[str, Vector]
+DOWN: Vector = (0, -1, 0)
+
+
+@dataclass(frozen=True)
+class Span:
+    """A straight part of the way of the load, on which the influence line is straight.
+
+    Args:
+        name: of the body, or of the two nodes.
+        start, end: ground axes [m].
+        at_start, at_end: of the influence line.
+    """
+
+    name: str
+    start: Vector
+    end: Vector
+    at_start: Scalar
+    at_end: Scalar
+
+
+@dataclass(frozen=True)
+class InfluenceLine:
+    """X for a unit load that travels along the spans.
+
+    Args:
+        name: of X, as an output asks for it.
+        load: the unit load.
+        plan: the motion of the released structure; of a cut body, that of the part behind the section.
+        cut: the section, None for a reaction.
+        spans: one after the other; where one ends and the next begins at the same place the line may jump.
+    """
+
+    name: str
+    load: Vector
+    plan: Plan
+    cut: Cut | None
+    spans: tuple[Span, ...]
+
+
+def influence_line(structure: Structure, asked: str, load: Vector = DOWN) -> InfluenceLine:
+    """The influence line of a reaction, a member force or a section force.
+
+    Args:
+        asked: as an output asks for it: "reaction_y(A)", "tension(T, n1-n2)", "bending_moment(beam, a)". After a colon
+            the bodies or nodes that the load passes: "reaction_y(A): I, II"; without them all that is horizontal, else
+            all that is not upright; of a truss the lowest nodes.
+        load: the unit load, ground axes.
+    Raises:
+        UsageError: there is no such force, or no way for the load.
+        DerivationError: it is statically indeterminate.
+    """
+    if structure.system.scope.model.space != "plane":
+        raise UsageError("influence lines are found in the plane", mend="put the load at each place, as a force")
+    asked, along = _way(asked)
+    call = _call(asked)
+    sizes = sizes_of(structure.system.motion, structure.at)
+    if call.name in KINDS:
+        cut = cut_of(structure, call, sizes)
+        plan = structure.released(left_powers(structure, cut))
+    else:
+        cut, plan = None, structure.released(_combination(structure, call))
+    line = _Travelling(structure, plan, cut, load, sizes)
+    spans = tuple(line.spans(along))
+    return InfluenceLine(str(call), load, plan, cut, spans)
+
+
+def _way(text: str) -> tuple[str, tuple[str, ...]]:
+    """What is asked, and the bodies or nodes that the load passes: "reaction_y(A): I, II"."""
+    asked, _, way = text.partition(":")
+    return asked.strip(), tuple(name.strip() for name in way.split(",") if name.strip())
+
+
+def _call(asked: str) -> Call:
+    try:
+        expression = parse(asked, references=True)
+    except ExpressionError as error:
+        raise UsageError(f"influence line: '{asked}': {error.what}", mend=error.mend) from error
+    calls = tuple(expression.calls)
+    if len(calls) != 1 or len(expression.code) != 1:
+        raise UsageError(f"influence line: '{asked}' is not one force", mend='ask "reaction_y(A)"')
+    return calls[0]
+
+
+def _combination(structure: Structure, call: Call) -> dict[int, Scalar]:
+    """The reaction as a sum of components."""
+    table = {n.name: n for n in named_reactions(structure.balance)}
+    name = str(call)
+    if call.name == "tension" and (ends := ends_asked(call)) is not None:
+        owner = named(call.args[0])
+        name = next((n for n in (f"tension({owner}, {a}-{b})" for a, b in (ends, ends[::-1])) if n in table), name)
+    if name not in table:
+        listed = nearest(name, table) or f"there are {', '.join(table)}"
+        raise UsageError(f"influence line: there is no reaction '{name}'", mend=listed)
+    combination = table[name].combination
+    factors = substituted(tuple(combination.values()), structure.at)
+    return dict(zip(combination, factors, strict=True))
+
+
+# -- the way of the load -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Travelling:
+    """A unit load on its way over the moving bodies."""
+
+    structure: Structure
+    plan: Plan
+    cut: Cut | None
+    load: Vector
+    sizes: Sizes
+
+    def spans(self, along: Sequence[str]) -> Iterable[Span]:
+        """Span by span."""
+        motion = self.structure.system.motion
+        unknown = [name for name in along if name not in motion.index]
+        if unknown:
+            what = f"influence line: there is no body or node '{unknown[0]}' for the load"
+            raise UsageError(what, mend=nearest(unknown[0], motion.index))
+        if along and all(is_node(name) for name in along):
+            return self._over_nodes(along)
+        spans = list(self._over_bodies(along)) if along else self._chosen()
+        if not spans:
+            raise UsageError("influence line: there is no way for the load",
+                             mend='name the bodies or nodes that it passes: "reaction_y(A): I, II"')  # fmt: skip
+        return spans
+
+    def _chosen(self) -> Sequence[Span]:
+        """What is horizontal, in order; else what is not upright; of a truss the lowest nodes."""
+        links = self.structure.system.motion.links
+        spans = list(self._over_bodies([link.name for link in links if not is_node(link.name)], skip=True))
+        level = [s for s in spans if self._is_zero(s.end[1] - s.start[1])]
+        across = level or [s for s in spans if not self._is_zero(s.end[0] - s.start[0])]
+        if across:
+            return self._in_order(across, lambda span: self.sizes.simple(span.start[0] + span.end[0]))
+        nodes = [link.name for link in links if is_node(link.name)]
+        return list(self._over_nodes(self._lowest(nodes))) if nodes else []
+
+    def _lowest(self, nodes: Sequence[str]) -> list[str]:
+        positions = {node: self._position((node, ZERO)) for node in nodes}
+        floor = positions[nodes[0]][1]
+        for x in positions.values():
+            floor = x[1] if self.sizes.sign(x[1] - floor) < 0 else floor
+        lowest = [node for node in nodes if self.sizes.sign(positions[node][1] - floor) == 0]
+        return self._in_order(lowest, lambda node: positions[node][0])
+
+    def _in_order(self, things: Sequence[Thing], key: Callable[[Thing], Scalar]) -> list[Thing]:
+        found: list[Thing] = []
+        for thing in things:
+            k = len(found)
+            while k and self.sizes.sign(key(found[k - 1]) - key(thing)) > 0:
+                k -= 1
+            found.insert(k, thing)
+        return found
+
+    def _over_nodes(self, nodes: Sequence[str]) -> Iterable[Span]:
+        for a, b in pairwise(nodes):
+            yield self._span(f"{a}-{b.partition('.')[2]}", (a, ZERO), (b, ZERO))
+
+    def _over_bodies(self, bodies: Sequence[str], *, skip: bool = False) -> Iterable[Span]:
+        for body in bodies:
+            try:
+                axis = loaded_axis(self.structure, body, self.sizes)
+            except DerivationError:
+                if skip:
+                    continue
+                raise
+            yield from self._over(axis)
+
+    def _over(self, axis: MemberAxis) -> Iterable[Span]:
+        """The legs of one body, that with the section in two."""
+        cut = None if self.cut is None or self.cut.axis.body != axis.body else self.cut
+        for k, leg in enumerate(axis.legs):
+            first = axis.ends[0] if k == 0 else leg.x
+            last = axis.ends[1] if k == len(axis.legs) - 1 else self.sizes.simple(leg.x + leg.length)
+            stops = [first, last]
+            if cut is not None and self.sizes.sign(cut.x - first) > 0 and self.sizes.sign(last - cut.x) > 0:
+                stops = [first, cut.x, last]
+            for a, b in pairwise(stops):
+                before = cut is not None and self.sizes.sign(cut.x - b) >= 0
+                yield self._span(axis.body, (axis.body, leg.place(a)), (axis.body, leg.place(b)), before=before)
+
+    def _span(self, name: str, a: Place, b: Place, *, before: bool = False) -> Span:
+        return Span(name, self._position(a), self._position(b), self._value(a, before), self._value(b, before))
+
+    def _value(self, place: Place, before: bool) -> Scalar:
+        """-e . v(P)"""
+        v = self.plan.velocity(place)
+        if before and self.cut is not None:
+            v = plus(v, self.cut.velocity(self._position(place)))
+        return self.sizes.shortest(-dot(self.load, v))
+
+    def _position(self, place: Place) -> Vector:
+        found = substituted(self.structure.system.motion.position(place), self.structure.at)
+        return vector_of(self.sizes.simple(x) for x in found)
+
+    def _is_zero(self, x: Scalar) -> bool:
+        return vanishes(self.sizes.simple(x))

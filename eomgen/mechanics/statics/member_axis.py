@@ -1,0 +1,243 @@
+"""Motion, body -> MemberAxis: the line of straight legs along which a body is a beam, and how far along it a place is.
+
+It is the body's `line` where it has one; else the line through its points where they all lie on one, from end to end;
+else from point to point in the order of their declaration, what lies on the way left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import readable, readable_all, simplest
+from eomgen.symbolic.signs import sign_of_terms
+from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
+
+WORK = 20_000  # products of terms for one length
+NEGLIGIBLE = 1e-30  # of a number of 50 digits
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Which of two scalars is larger: for all positive parameters, else at the model's values.
+
+    Args:
+        positive: parameters that stand for positive numbers.
+        values: those that have a value, with 50 digits.
+        at: what stands in place of coordinates.
+        graph: of the system.
+    """
+
+    graph: Graph
+    positive: frozenset[Node]
+    values: Mapping[Node, Any]
+    at: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    def simple(self, x: Scalar) -> Scalar:
+        """A scalar multiplied out, what is known of the coordinates put in."""
+        if type(x) is not Node:
+            return x
+        return readable(substituted((x,), self.at)[0] if self.at else x, WORK, self.positive)
+
+    def shortest(self, x: Scalar) -> Scalar:
+        """A scalar as a person writes it."""
+        return simplest(x, WORK, self.positive)
+
+    def sign(self, x: Scalar) -> int:
+        """1, 0 or -1.
+
+        Raises:
+            DerivationError: it depends on parameters without a value.
+        """
+        if type(x) is not Node:
+            return (x > 0) - (x < 0)
+        x = self.simple(x)
+        found = sign_of_terms(x, self.positive)
+        if found is not None:
+            return found
+        names = sorted(node.name for node in symbols_of((x,)) if node not in self.values)
+        if names:
+            mend = "give them values, or call them positive where that decides it"
+            raise DerivationError(f"what comes first along the line depends on {', '.join(names)}", "parameters", mend)
+        value = evaluate((x,), self.values, fifty_digits())[0]
+        return 0 if abs(value) < NEGLIGIBLE else 1 if value > 0 else -1
+
+
+def sizes_of(motion: Motion, at: Mapping[Node, Scalar] | None = None) -> Sizes:
+    """Sizes at the model's values."""
+    scope = motion.scope
+    return Sizes(scope.graph, positive_parameters(scope), values_of_parameters(scope, None), at or {})
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A straight part of the axis.
+
+    Args:
+        start: where it begins, body axes [m].
+        along: its direction, of unit length.
+        length: of it [m].
+        x: of its start, along the axis [m].
+    """
+
+    start: Vector
+    along: Vector
+    length: Scalar
+    x: Scalar
+
+    @property
+    def left(self) -> Vector:
+        """The normal to the left of it."""
+        return (-self.along[1], self.along[0], 0)
+
+    def place(self, x: Scalar) -> Vector:
+        """Where the distance x along the axis is, body axes."""
+        return plus(self.start, times(x - self.x, self.along))
+
+
+@dataclass(frozen=True)
+class MemberAxis:
+    """The axis of a body.
+
+    Args:
+        body: its name.
+        legs: one after the other; x of the first start is 0.
+        ends: (x of the first place of the body on the axis, of the last): before 0 what stands out behind the start.
+    """
+
+    body: str
+    legs: tuple[Leg, ...]
+    ends: tuple[Scalar, Scalar]
+    sizes: Sizes
+
+    @property
+    def is_straight(self) -> bool:
+        return len(self.legs) == 1
+
+    def distance(self, place: Vector) -> Scalar | None:
+        """x of a place, None where it is not on the axis."""
+        for k, leg in enumerate(self.legs):
+            r = minus(place, leg.start)
+            if not vanishes(self.sizes.simple(cross(leg.along, r)[2])):
+                continue
+            s = self.sizes.simple(dot(leg.along, r))
+            before = self.sizes.sign(s) >= 0 or (k == 0 and self.is_straight)
+            if before and (self.is_straight or self.sizes.sign(leg.length - s) >= 0):
+                return self.sizes.simple(leg.x + s)
+        return None
+
+
+def axis_of(motion: Motion, body: str, acting: Sequence[Vector], sizes: Sizes) -> MemberAxis:
+    """The axis of a body.
+
+    Args:
+        acting: the places at which forces act on it, body axes.
+    Raises:
+        DerivationError: it has no two places.
+    """
+    part, points = motion.scope.model.bodies[body], motion.points[body]
+    named = [points[name.rpartition(".")[2]] for name in part.line or _own_points(part)]
+    places = _distinct(named if part.line else [*named, *_at_origin(acting), *acting], sizes)
+    if len(places) < 2:
+        raise DerivationError(f"body '{body}' has no line along which it could be a beam", f"bodies.{body}",
+                              'give it points, or line = ["A", "B"]')  # fmt: skip
+    vertices = _distinct(named, sizes)
+    if part.line or not _on_one_line(places, sizes):
+        vertices = _corners(vertices if part.line else _distinct([*_at_origin(acting), *named], sizes), sizes)
+    else:
+        vertices = _extremes(places, vertices, sizes)
+    return _with_ends(body, _legs(vertices, sizes), acting, sizes)
+
+
+def _own_points(part: Any) -> list[str]:
+    """The points by which a body is laid out: those declared, or the ends of its rod."""
+    shape = [] if part.shape is None else [name for name in part.shape.point_names if name in ("start", "end")]
+    return [*shape, *part.points]
+
+
+def _at_origin(acting: Sequence[Vector]) -> list[Vector]:
+    """The origin, where something acts there."""
+    return [ZERO] if any(all(is_zero(x) for x in place) for place in acting) else []
+
+
+def _distinct(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
+    found: list[Vector] = []
+    for place in places:
+        if not any(all(vanishes(sizes.simple(x)) for x in minus(place, other)) for other in found):
+            found.append(place)
+    return found
+
+
+def _on_one_line(places: Sequence[Vector], sizes: Sizes) -> bool:
+    along = minus(places[1], places[0])
+    return all(vanishes(sizes.simple(cross(along, minus(p, places[0]))[2])) for p in places[2:])
+
+
+def _extremes(places: Sequence[Vector], named: Sequence[Vector], sizes: Sizes) -> list[Vector]:
+    """The first and the last place along the line, in the sense from the first to the last point that was declared."""
+    first, last = (named[0], named[-1]) if len(named) > 1 else (places[0], places[1])
+    along = minus(last, first)
+    lowest = highest = first
+    for place in places:
+        if sizes.sign(dot(along, minus(place, lowest))) < 0:
+            lowest = place
+        if sizes.sign(dot(along, minus(place, highest))) > 0:
+            highest = place
+    return [lowest, highest]
+
+
+def _corners(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
+    """The places in their order, those left out that lie on the way, or on a leg before."""
+    corners = list(places[:2])
+    for place in places[2:]:
+        if any(_lies_between(place, a, b, sizes) for a, b in pairwise(corners)):
+            continue
+        if _lies_between(corners[-1], corners[-2], place, sizes):
+            corners[-1] = place
+        else:
+            corners.append(place)
+    return corners
+
+
+def _lies_between(place: Vector, a: Vector, b: Vector, sizes: Sizes) -> bool:
+    along, r = minus(b, a), minus(place, a)
+    if not vanishes(sizes.simple(cross(along, r)[2])):
+        return False
+    s = dot(along, r)
+    return sizes.sign(s) >= 0 and sizes.sign(dot(along, along) - s) >= 0
+
+
+def _legs(corners: Sequence[Vector], sizes: Sizes) -> tuple[Leg, ...]:
+    legs: list[Leg] = []
+    x: Scalar = 0
+    for a, b in pairwise(corners):
+        r = readable_all(minus(b, a), WORK, sizes.positive)
+        length = sizes.simple(sqrt(sizes.simple(dot(vector_of(r), vector_of(r)))))
+        along = vector_of(sizes.simple(over(component, length)) for component in r)
+        legs.append(Leg(a, along, length, x))
+        x = sizes.simple(x + length)
+    return tuple(legs)
+
+
+def _with_ends(body: str, legs: tuple[Leg, ...], acting: Sequence[Vector], sizes: Sizes) -> MemberAxis:
+    """The axis, lengthened on both sides to all that acts on it where it is straight."""
+    last = legs[-1]
+    axis = MemberAxis(body, legs, (0, sizes.simple(last.x + last.length)), sizes)
+    first, end = axis.ends
+    for place in acting if axis.is_straight else ():
+        x = axis.distance(place)
+        if x is not None:
+            first = x if sizes.sign(x - first) < 0 else first
+            end = x if sizes.sign(x - end) > 0 else end
+    return MemberAxis(body, legs, (first, end), sizes)

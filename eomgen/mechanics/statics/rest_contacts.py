@@ -1,0 +1,70 @@
+"""Model -> how its contacts are at rest; reactions -> whether they can be so.
+
+At rest a rough contact keeps from sliding: its friction is a reaction like others, as long as |F| <= mu N. What can
+only push, or only pull, needs N >= 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.mechanics.contacts import Mode, Modes
+from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
+from eomgen.model.parts import Model
+from eomgen.symbolic.functions import function
+from eomgen.symbolic.graph import Scalar
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What must hold for a contact to be as it was taken.
+
+    Args:
+        tie: the contact, or the body on a path.
+        kind: "pushes", "pulls" or "sticks".
+        margin: it is not negative where the condition holds [N].
+    """
+
+    tie: str
+    kind: str
+    margin: Scalar
+
+    @property
+    def broken(self) -> str:
+        """What happens where it is negative."""
+        return {"pushes": f"contact '{self.tie}' would have to pull", "pulls": f"'{self.tie}' would have to push",
+                "sticks": f"contact '{self.tie}' slides: it would need more friction than mu N"}[self.kind]  # fmt: skip
+
+
+def modes_at_rest(model: Model) -> Modes:
+    """Every contact with dry friction sticks."""
+    rough = [name for name, tie in model.constraints.items() if _coulomb(getattr(tie, "friction", None))]
+    rough += [name for name, body in model.bodies.items()
+              if any(_coulomb(piece.friction) for piece in getattr(body.joint, "pieces", None) or ())]  # fmt: skip
+    return {name: Mode(sense=0) for name in rough}
+
+
+def _coulomb(law: Any) -> Any:
+    return None if law is None else law.coulomb
+
+
+def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
+    """What must hold of contacts that can end or slide, those whose reactions are determinate."""
+    found = []
+    for name, tie in statics.system.scope.model.constraints.items():
+        normal, along, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "reaction_t", "tension"))
+        if getattr(tie, "unilateral", None) and normal is not None:
+            found.append(Condition(name, "pushes", normal))
+        if getattr(tie, "unilateral", None) and pull is not None:
+            found.append(Condition(name, "pulls", pull))
+        mu = _coulomb(getattr(tie, "friction", None))
+        if mu is not None and normal is not None and along is not None:
+            most = statics.system.scope.value(mu) * function("abs", normal)
+            found.append(Condition(name, "sticks", most - function("abs", along)))
+    return tuple(found)
+
+
+def _value(statics: StaticReactions, name: str) -> Scalar | None:
+    reaction: StaticReaction | None = statics.by_name.get(name)
+    return None if reaction is None else reaction.value

@@ -1,0 +1,259 @@
+"""Reactions, body -> SectionForces: normal force, shear force and bending moment along a body that is a beam.
+
+Of all that acts before the section at x (resultant R, moment T about the section, counter-clockwise), t along the axis,
+n to its left:
+
+    N = -R . t,   V = R . n,   M = -T;        dN/dx = -q_t,   dV/dx = q_n,   dM/dx = V
+
+N is positive as tension, V where it turns the piece on which it acts clockwise, M where it stretches the right-hand
+fibre: of a beam drawn from left to right the lower one. What a rod weighs, and its inertia, is spread along it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
+from eomgen.mechanics.statics.member_loads import Line, MemberLoads
+from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.spatial import ZERO, Vector, dot, minus, plus, times, vector_of
+from eomgen.symbolic.text import to_text
+
+KINDS = ("axial_force", "shear_force", "bending_moment")
+HALF, SIXTH = Fraction(1, 2), Fraction(1, 6)
+
+
+@dataclass(frozen=True)
+class Action:
+    """A force and a couple at one place of the axis, body axes."""
+
+    x: Scalar
+    force: Vector
+    couple: Scalar
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A load per length from x = start to x = end, body axes: q = at_start + (x - start) slope."""
+
+    start: Scalar
+    end: Scalar
+    at_start: Vector
+    slope: Vector
+
+    def at(self, x: Scalar) -> Vector:
+        return plus(self.at_start, times(x - self.start, self.slope))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The section forces between two stations, polynomials in s = x - start.
+
+    Args:
+        start, end: along the axis [m].
+        leg: on which it lies.
+        N, V, M: coefficients of 1, s, s^2, ...
+    """
+
+    start: Scalar
+    end: Scalar
+    leg: Leg
+    N: tuple[Scalar, ...]
+    V: tuple[Scalar, ...]
+    M: tuple[Scalar, ...]
+
+    def value(self, kind: str, x: Scalar) -> Scalar:
+        """One of KINDS at x."""
+        total: Scalar = 0
+        for c in reversed(self.coefficients(kind)):
+            total = total * (x - self.start) + c
+        return total
+
+    def coefficients(self, kind: str) -> tuple[Scalar, ...]:
+        return {"axial_force": self.N, "shear_force": self.V, "bending_moment": self.M}[kind]
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Where V = 0 within a piece: the bending moment has an extreme there."""
+
+    x: Scalar
+    M: Scalar
+
+
+@dataclass(frozen=True)
+class SectionForces:
+    """N, V and M along one body.
+
+    Args:
+        axis: of the body.
+        pieces: from station to station.
+    """
+
+    axis: MemberAxis
+    pieces: tuple[Piece, ...]
+
+    @property
+    def sizes(self) -> Sizes:
+        return self.axis.sizes
+
+    def value(self, kind: str, x: Scalar, side: str = "") -> Scalar:
+        """One of KINDS at a distance from the start.
+
+        Args:
+            side: "before" or "after", where it jumps.
+        Raises:
+            DerivationError: x is beyond the ends, or a place where it jumps and no side is given.
+        """
+        before = [p for p in self.pieces if self.sizes.sign(x - p.start) > 0 and self.sizes.sign(p.end - x) >= 0]
+        after = [p for p in self.pieces if self.sizes.sign(x - p.start) >= 0 and self.sizes.sign(p.end - x) > 0]
+        found = {name: self.sizes.shortest(pieces[0].value(kind, x))
+                 for name, pieces in (("before", before), ("after", after)) if pieces}  # fmt: skip
+        if not found:
+            ends = " to ".join(to_text(x) for x in self.axis.ends)
+            raise DerivationError(f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}")
+        if side and side not in found:
+            raise DerivationError(f"{kind}({self.axis.body}, {to_text(x)}, {side}): there is nothing {side} its end")
+        values = [found[side]] if side else list(found.values())
+        if len(values) == 2 and not vanishes(values[0] - values[1]):
+            asked, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
+            raise DerivationError(f"{asked}) jumps there from {jump}", mend=f"ask {asked}, before) or {asked}, after)")
+        return values[0]
+
+    @cached_property
+    def extremes(self) -> tuple[Extreme, ...]:
+        """The zeros of V within the pieces, those that have a closed form and whose place is known."""
+        return tuple(e for piece in self.pieces for e in self._zeros(piece))
+
+    def _zeros(self, piece: Piece) -> Iterable[Extreme]:
+        for root in _roots(piece.V, self.sizes):
+            try:
+                inside = self.sizes.sign(root) > 0 and self.sizes.sign(piece.end - piece.start - root) > 0
+            except DerivationError:
+                continue
+            if inside:
+                x = self.sizes.shortest(piece.start + root)
+                yield Extreme(x, self.sizes.shortest(piece.value("bending_moment", x)))
+
+
+def section_forces(reactions: Reactions, body: str) -> SectionForces:
+    """N, V and M along a body in the plane.
+
+    Raises:
+        DerivationError: something acts off its axis, or at no place; its mass is no rod's; a reaction is indeterminate.
+    """
+    system = reactions.balance.system
+    motion = system.motion
+    if motion.scope.model.space != "plane":
+        raise DerivationError("section forces are found in the plane", f"bodies.{body}")
+    sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
+    loads = MemberLoads(reactions, body, sizes)
+    actions, spreads = loads.actions, loads.spreads
+    axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
+    placed = [Action(_on_axis(axis, place), force, couple) for place, force, couple in actions]
+    spread = [part for line in spreads for part in _spread(axis, line)]
+    return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
+
+
+# -- along the axis ----------------------------------------------------------------------------------
+
+
+def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
+    x = axis.distance(place)
+    if x is None:
+        where = ", ".join(to_text(component) for component in place[:2])
+        raise DerivationError(f"something acts on '{axis.body}' at ({where}), off the line along which it is a beam",
+                              f"bodies.{axis.body}", "let its points, or its `line`, follow the bar")  # fmt: skip
+    return x
+
+
+def _spread(axis: MemberAxis, line: Line) -> Iterable[Spread]:
+    """A line load as a function of x, from its first place to its last along the axis."""
+    a, b = _on_axis(axis, line[0]), _on_axis(axis, line[1])
+    length = axis.sizes.simple(b - a)
+    if axis.sizes.sign(length) < 0:
+        a, b, length, line = b, a, -length, (line[1], line[0], line[3], line[2])
+    r = minus(line[1], line[0])
+    if not vanishes(axis.sizes.simple(dot(r, r) - length * length)):
+        raise DerivationError(f"a line load on '{axis.body}' cuts a corner of its axis", f"bodies.{axis.body}",
+                              "give a load for each straight part")  # fmt: skip
+    slope = vector_of(axis.sizes.simple(over(y - x, length)) for x, y in zip(line[2], line[3], strict=True))
+    yield Spread(a, b, line[2], slope)
+
+
+def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[Piece]:
+    """From station to station: everything before is carried along as one force and one moment."""
+    sizes = axis.sizes
+    stations = _stations(axis, actions, spreads)
+    R: Vector = ZERO
+    T: Scalar = 0
+    for start, end in pairwise(stations):
+        leg = _leg(axis, start, end)
+        for action in actions:
+            if sizes.sign(action.x - start) == 0:
+                R, T = plus(R, action.force), T + action.couple
+        over_it = [s for s in spreads if sizes.sign(start - s.start) >= 0 and sizes.sign(s.end - end) >= 0]
+        q, slope = ZERO, ZERO
+        for s in over_it:
+            q, slope = plus(q, s.at(start)), plus(slope, s.slope)
+        piece = _piece(sizes, (start, end), leg, (R, T, q, slope))
+        yield piece
+        length = end - start
+        R = vector_of(sizes.simple(r + length * a + HALF * length * length * b)
+                      for r, a, b in zip(R, q, slope, strict=True))  # fmt: skip
+        T = sizes.simple(-piece.value("bending_moment", end))
+
+
+def _piece(
+    sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]
+) -> Piece:
+    """N, V, M from the resultant R and moment T before, and the load q + slope s."""
+    R, T, q, slope = acting
+    t, n = leg.along, leg.left
+    N = (-dot(R, t), -dot(q, t), -HALF * dot(slope, t))
+    V = (dot(R, n), dot(q, n), HALF * dot(slope, n))
+    M = (-T, dot(R, n), HALF * dot(q, n), SIXTH * dot(slope, n))
+    return Piece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
+
+
+def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
+    """Where something begins or ends, in order."""
+    sizes = axis.sizes
+    places = [*axis.ends, *(leg.x for leg in axis.legs), *(a.x for a in actions)]
+    places += [x for s in spreads for x in (s.start, s.end)]
+    found: list[Scalar] = []
+    for x in places:
+        k = 0
+        while k < len(found) and sizes.sign(x - found[k]) > 0:
+            k += 1
+        if k == len(found) or sizes.sign(found[k] - x) > 0:
+            found.insert(k, x)
+    return found
+
+
+def _leg(axis: MemberAxis, start: Scalar, end: Scalar) -> Leg:
+    """The leg on which a piece lies."""
+    before = [leg for leg in axis.legs if axis.sizes.sign(start - leg.x) >= 0]
+    return before[-1] if before else axis.legs[0]
+
+
+def _roots(V: tuple[Scalar, ...], sizes: Sizes) -> list[Scalar]:
+    """Zeros of c0 + c1 s + c2 s^2."""
+    c0, c1, c2 = V
+    if vanishes(c2):
+        return [] if vanishes(c1) else [sizes.simple(over(-c0, c1))]
+    square = sizes.simple(c1 * c1 - 4 * c0 * c2)
+    try:
+        if sizes.sign(square) < 0:
+            return []
+    except DerivationError:
+        return []
+    return [sizes.simple(over(-c1 + k * sqrt(square), 2 * c2)) for k in (1, -1)]

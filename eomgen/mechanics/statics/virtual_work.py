@@ -1,0 +1,137 @@
+"""Structure -> its reactions by the principle of virtual work: one released at a time, no balance of bodies used.
+
+With one reaction R released the bodies have one motion. In it all other reactions do no work, so that
+
+    R delta_R + sum of F . delta_P + sum of M delta_theta + sum of integrals of q . delta ds = 0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from eomgen.mechanics.effects import Effect, efforts_of
+from eomgen.mechanics.loads import SystemScene
+from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.outputs import ASKING_REACTIONS
+from eomgen.mechanics.statics.blocks import blocks_of
+from eomgen.mechanics.statics.structure import Structure
+from eomgen.mechanics.statics.velocity_plan import Plan
+from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.spatial import times
+
+Load = PointForce | Couple | SpreadLoad
+
+
+@dataclass(frozen=True)
+class Acting:
+    """One load of the structure.
+
+    Args:
+        name: of the force, or of the body whose joint has a drive or spring.
+        load: at its place; None where `effects` hold it.
+        effects: of a joint's drive or spring, on both bodies.
+    """
+
+    name: str
+    load: Load | None
+    effects: tuple[Effect, ...] = ()
+
+    def work(self, plan: Plan) -> Scalar:
+        """Its virtual work in a motion."""
+        return plan.work_of_effects(self.effects) if self.load is None else plan.work(self.load)
+
+
+@dataclass(frozen=True)
+class Term:
+    """The virtual work of one load, not 0."""
+
+    acting: Acting
+    work: Scalar
+
+
+@dataclass(frozen=True)
+class WorkEquation:
+    """along * R + sum of works = 0.
+
+    Args:
+        name: of the reaction, member force or unknown.
+        plan: the motion of the released structure; its first block that turns does so by 1, else it moves by 1.
+        along: the displacement along the reaction.
+        terms: of the loads that do work.
+        given: what drive and spring of the joint add to its reaction.
+        value: of the reaction.
+    """
+
+    name: str
+    plan: Plan
+    along: Scalar
+    terms: tuple[Term, ...]
+    given: Scalar
+    value: Scalar
+
+
+def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
+    """Every load: forces, couples, line loads, weights at the mass centres, drives and springs of joints."""
+    system = structure.system
+    found = [Acting(force.name, load) for force in system.loads.applied
+             for load in force.spread or force.loads if isinstance(load, (PointForce, Couple, SpreadLoad))]  # fmt: skip
+    for force in system.loads.applied:
+        for load in force.loads:
+            if isinstance(load, UniformField):
+                masses = SystemScene(system.motion).masses(None)
+                found += [Acting(force.name, PointForce(place, times(m, load.acceleration))) for place, m in masses]
+    for link in system.motion.links:
+        effects = tuple(efforts_of(system, link.name))
+        if effects:
+            found.append(Acting(link.name, None, effects))
+    return tuple(found)
+
+
+def asked_reactions(structure: Structure) -> dict[str, NamedReaction]:
+    """The reactions that have a name in outputs."""
+    named = named_reactions(structure.balance)
+    return {n.name: n for n in named if n.name.partition("(")[0] in ASKING_REACTIONS}
+
+
+def by_virtual_work(structure: Structure, named: NamedReaction) -> WorkEquation | None:
+    """One reaction; None where it is statically indeterminate."""
+    at = structure.at
+    factors = substituted(tuple(named.combination.values()), at)
+    combination = dict(zip(named.combination, factors, strict=True))
+    (given,) = substituted((named.given,), at)
+    return _equation(structure, named.name, combination, given)
+
+
+def unknown_by_virtual_work(structure: Structure, unknown: Node) -> WorkEquation | None:
+    """The unknown of a load, from the motion that it alone forbids; None where it is indeterminate."""
+    return _equation(structure, unknown.name, {structure.index(unknown.name): 1}, 0)
+
+
+def _equation(
+    structure: Structure, name: str, combination: Mapping[int, Scalar], given: Scalar
+) -> WorkEquation | None:
+    if not structure.determines(combination):
+        return None
+    plan = structure.released(combination)
+    along, plan = _scaled(plan)
+    still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or are what is asked
+    works = [(load, load.work(plan)) for load in loads_at_rest(structure)]
+    without = substituted(tuple(work for _, work in works), still)
+    terms = tuple(Term(load, work) for (load, _), work in zip(works, without, strict=True)
+                  if not plan.vanishes((work,)))  # fmt: skip
+    total = sum((term.work for term in terms), start=0)
+    return WorkEquation(name, plan, along, terms, given, plan.simple(over(-total, along) + given))
+
+
+def _scaled(plan: Plan) -> tuple[Scalar, Plan]:
+    """(displacement along the reaction, the motion in which the first block that turns does so by 1)."""
+    for block in blocks_of(plan):
+        spins = [w for w in block.spin if not plan.vanishes((w,))]
+        if len(spins) == 1:
+            along = plan.simple(over(1, spins[0]))
+            return along, plan.scaled(along)
+    return 1, plan

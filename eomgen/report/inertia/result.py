@@ -1,0 +1,229 @@
+"""Model -> Inertia: masses, mass centres, tensors, principal axes of its bodies, about points and axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.masses.inertia_about import flat_bodies
+from eomgen.mechanics.masses.principal import values_of
+from eomgen.mechanics.system import System, system_of
+from eomgen.model.findings import nearest
+from eomgen.model.parts import Model
+from eomgen.report import rendered
+from eomgen.report.inertia.rows import own_sum, together
+from eomgen.report.inertia.steps import (
+    LONGEST,
+    Result,
+    Section,
+    axis_results,
+    conventions_grid,
+    line,
+    mass_results,
+    masses_grid,
+    moments_grid,
+    named_results,
+    polar_results,
+    principal_statements,
+    tensor_results,
+)
+from eomgen.report.json_form import steps
+from eomgen.report.setting_steps import setting_steps
+from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
+from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.spatial import IDENTITY, Vector, minus
+from eomgen.symbolic.text import text_size, to_text
+
+TENSOR = Law("I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
+             r"I_{xx} = \int (y^{2} + z^{2})\,dm,\ I_{xy} = -\int x y\,dm")  # fmt: skip
+TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
+
+
+@dataclass(frozen=True)
+class Value:
+    """One result: exact text of the grammar with every parameter as a symbol, its number or None, its unit."""
+
+    exact: str
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """What is asked of the inertia of a model's bodies.
+
+    Args:
+        results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
+        axes: the principal axes in numbers, the rows of R, by "plate" or "O".
+        derivation: how they are found.
+    """
+
+    results: dict[str, Value]
+    axes: dict[str, list[list[float]]]
+    derivation: Derivation
+
+    def __getitem__(self, name: str) -> Value:
+        return self.results[name]
+
+    def __str__(self) -> str:
+        return self.render("text")
+
+    def render(self, format: str = "text") -> str:
+        """In one of the formats text, latex, markdown, json."""
+        return rendered(self.derivation, format)
+
+    def latex(self) -> str:
+        return self.render("latex")
+
+    def _repr_markdown_(self) -> str:
+        return self.render("markdown")
+
+    def as_dict(self) -> dict[str, Any]:
+        """For `--json`."""
+        return {
+            "name": self.derivation.title,
+            "results": {name: {"exact": r.exact, "value": r.value, "unit": r.unit} for name, r in self.results.items()},
+            "principal_axes": self.axes,
+            "steps": steps(self.derivation),
+        }
+
+
+def inertia(model: Model, bodies: Sequence[str] = (), *, about: str | None = None, axis: str | None = None) -> Inertia:
+    """Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes.
+
+    Several bodies are taken together too, in ground axes where they stand.
+
+    Args:
+        bodies: by name; none: all.
+        about: a point, "O" or "arm.end", about which they are taken together too.
+        axis: "A,B": the axis through two points; or x, y, z through `about`.
+    Raises:
+        UsageError: no such body, point or axis.
+        DerivationError: a model without bodies.
+    """
+    return _Report(system_of(model), tuple(bodies), about, axis).made()
+
+
+@dataclass(frozen=True)
+class _Report:
+    """The steps of one report."""
+
+    system: System
+    named: tuple[str, ...]
+    about: str | None
+    axis: str | None
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies that are meant, with a mass.
+
+        Raises:
+            UsageError, DerivationError: there is no such body; none of them has a mass.
+        """
+        model = self.system.scope.model
+        for name in self.named:
+            if name not in model.bodies:
+                raise UsageError(f"there is no body '{name}'", mend=nearest(name, model.bodies))
+        names = self.named or tuple(link.name for link in self.system.motion.links if link.name in model.bodies)
+        heavy = tuple(name for name in names if not is_zero(together_mass(self.system, name)))
+        if not heavy:
+            raise DerivationError("no body has a mass", mend="give a body a shape, or 'mass' and 'inertia'")
+        return heavy
+
+    def made(self) -> Inertia:
+        bodies = self.bodies
+        sections = [self._own(body) for body in bodies]
+        made = [self._step(f"Body '{s.of}'", f"inertia_{s.of}", s) for s in sections]
+        if len(bodies) > 1:
+            whole = together(self.system.motion, bodies)
+            section = Section(whole, whole.com, "", bool(flat_bodies(self.system.motion, bodies)), True)
+            made.append(self._step("The bodies together, ground axes", "inertia_together", section))
+        if self.about is not None or self.axis is not None:
+            made.append(self._about(bodies))
+        results = [result for _, found, _ in made for result in found]
+        axes = {key or "together": rows for _, _, (key, rows) in made if rows is not None}
+        scope = self.system.scope
+        model = scope.model
+        first = (setting_steps(self.system)[0], _conventions())
+        derivation = Derivation(model.name, model.about or "", model.source or "", model.space, "inertia",
+                                (*first, *(step for step, _, _ in made)))  # fmt: skip
+        return Inertia({name: self._value(r) for name, r in named_results(results).items()}, axes, derivation)
+
+    def _value(self, result: Result) -> Value:
+        values = values_of((result.value,), self.system.scope)
+        return Value(to_text(result.value), None if values is None else values[0] + 0.0, result.unit)
+
+    def _own(self, body: str) -> Section:
+        own = own_sum(self.system.motion, body)
+        return Section(own, own.com, body, bool(flat_bodies(self.system.motion, (body,))), True)
+
+    def _step(self, title: str, key: str, section: Section, axis: tuple[Vector, Vector] | None = None) -> Any:
+        """A section as a step, its results, and its principal axes in numbers."""
+        masses, tensor = mass_results(section), tensor_results(section)
+        statements: list[Statement] = []
+        if section.centroidal:
+            statements += [*masses_grid(section), *(line(section, result) for result in masses)]
+        statements += [*moments_grid(section), conventions_grid(section)]
+        if any(text_size(result.value) > LONGEST for result in tensor):  # the table then holds numbers
+            statements += [line(section, result) for result in tensor]
+        more = [] if section.centroidal else polar_results(section)
+        more += axis_results(section, *axis) if axis is not None else []
+        statements += [line(section, result) for result in more]
+        principal, moments, rows = principal_statements(section)
+        results = [*(masses if section.centroidal else []), *tensor, *more, *moments]
+        return Step(key, title, (*statements, *principal)), results, (section.of, rows)
+
+    def _about(self, bodies: tuple[str, ...]) -> Any:
+        """The bodies together about a point, and about an axis through it."""
+        point, name, axis = self._point_and_axis()
+        flat = bool(flat_bodies(self.system.motion, bodies))
+        section = Section(together(self.system.motion, bodies), point, name, flat, False)
+        title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
+        return self._step(title, "inertia_about", section, axis)
+
+    def _point_and_axis(self) -> tuple[Vector, str, tuple[Vector, Vector] | None]:
+        """The point, its name, and the axis: a point on it, and its direction."""
+        if self.axis is None or self.axis in ("x", "y", "z"):
+            if self.about is None:
+                raise UsageError(f"the axis {self.axis} goes through what point?", mend="write --about POINT")
+            point = self._place(self.about)
+            return point, self.about, None if self.axis is None else (point, IDENTITY["xyz".index(self.axis)])
+        first, comma, second = (part.strip() for part in self.axis.partition(","))
+        if not comma:
+            raise UsageError(f"'{self.axis}' is no axis", mend='write x, y or z, or two points: "A,B"')
+        point, other = self._place(first), self._place(second)
+        along = minus(other, point)
+        if all(is_zero(x) for x in along):
+            raise UsageError(f"'{first}' and '{second}' are in one place, so they are on no single axis")
+        if self.about is not None and self.about != first:
+            return self._place(self.about), self.about, (point, along)
+        return point, first, (point, along)
+
+    def _place(self, name: str) -> Vector:
+        """Where a named point is, ground axes."""
+        known = points_of(self.system)
+        if name not in known:
+            raise UsageError(f"there is no point '{name}'", mend=nearest(name, known))
+        return self.system.motion.position(self.system.motion.place(name))
+
+
+def points_of(system: System) -> list[str]:
+    """Every point that may be named."""
+    model = system.scope.model
+    return [*model.points, *(f"{body}.{point}" for body in model.bodies for point in model.body_points(body))]
+
+
+def together_mass(system: System, body: str) -> Any:
+    """The mass of a body, its pieces added up."""
+    return own_sum(system.motion, body).m
+
+
+def _conventions() -> Step:
+    words: Iterable[Any] = (
+        "I is the inertia tensor, ", TENSOR, ". The product of inertia of the textbooks has the other sign, ", TEXTBOOK,
+        "; J_x is the moment about x, the same as I_xx. J_P is the moment about the point, the integral of r^2 dm; P_x "
+        "is that about the plane across x, the integral of x^2 dm. In kg, m and kg m^2.",
+    )  # fmt: skip
+    return Step("conventions", "Conventions", (Prose(tuple(words)),))

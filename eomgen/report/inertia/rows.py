@@ -1,0 +1,127 @@
+"""System -> what a report of inertia adds up: bodies and their pieces, in one set of axes, about one point."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.errors import ModelError
+from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.masses.inertia_about import shapeless
+from eomgen.mechanics.masses.made_of import made_of
+from eomgen.mechanics.masses.principal import short_form
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.model.composite import about, scaled
+from eomgen.model.shapes import MassProperties
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.spatial import (
+    ZERO,
+    Matrix,
+    Pose,
+    Vector,
+    added,
+    matrix_of,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A body, or a piece of one.
+
+    Args:
+        label: what it is called.
+        sign: -1 for a hole, which takes away.
+        mass: its mass (positive), mass centre and inertia about it.
+    """
+
+    label: str
+    sign: int
+    mass: MassProperties
+
+    def own(self) -> Matrix:
+        """Its inertia about its own mass centre, as it counts."""
+        return scaled(self.sign, self.mass.I)
+
+    def shift(self, point: Vector) -> Matrix:
+        """m (d.d 1 - d d^T), what the parallel axes add, as it counts."""
+        without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
+        return scaled(self.sign, about(without, point))
+
+
+@dataclass(frozen=True)
+class Sum:
+    """Rows taken as one body: mass, mass centre, inertia about a point.
+
+    Args:
+        motion: whose formulas they are.
+        rows: in one set of axes.
+    """
+
+    motion: Motion
+    rows: tuple[Row, ...]
+
+    def short(self, x: Scalar) -> Scalar:
+        return short_form(x, self.positive)
+
+    @cached_property
+    def positive(self) -> Collection[Node]:
+        return positive_parameters(self.motion.scope)
+
+    @cached_property
+    def m(self) -> Scalar:
+        return self.short(sum(row.sign * row.mass.m for row in self.rows))
+
+    @cached_property
+    def com(self) -> Vector:
+        """The mass centre (without mass, the origin)."""
+        if is_zero(self.m):
+            return ZERO
+        first: Vector = ZERO
+        for row in self.rows:
+            first = plus(first, times(row.sign * row.mass.m, row.mass.com))
+        return vector_of(self.short(over(x, self.m)) for x in first)
+
+    def tensor(self, point: Vector) -> Matrix:
+        """The inertia about a point, axes of the rows."""
+        total: Matrix = (ZERO, ZERO, ZERO)
+        for row in self.rows:
+            total = added(total, added(row.own(), row.shift(point)))
+        return matrix_of((self.short(x) for x in line) for line in total)
+
+
+def own_sum(motion: Motion, body: str) -> Sum:
+    """One body in its own axes: its pieces, or itself."""
+    return Sum(motion, _rows(motion, body, Pose()))
+
+
+def together(motion: Motion, bodies: Sequence[str]) -> Sum:
+    """Several bodies where they are, ground axes."""
+    rows = [row for body in bodies for row in _rows(motion, body, motion.link(body).pose, body)]
+    return Sum(motion, tuple(rows))
+
+
+def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[Row, ...]:
+    """The pieces of a body, or itself, seen from where `pose` leads."""
+    if unknown := shapeless(motion, (body,)):
+        raise ModelError(f"body '{unknown[0]}' has a mass and no inertia", f"bodies.{unknown[0]}",
+                         "give 'inertia' (0 for a point), or a shape")  # fmt: skip
+    if motion.scope.model.bodies[body].parts is None:
+        return (Row(body, 1, _seen(mass_properties(motion.scope, body), pose)),)
+    pieces = made_of(motion.scope, body).pieces
+    begin = f"{of}, " if of else ""
+    return tuple(
+        Row(f"{begin}part {k}: {p.piece.shape.kind}" + (" (hole)" if p.piece.hole else ""), p.sign, _seen(p.mass, pose))
+        for k, p in enumerate(pieces, start=1)
+    )
+
+
+def _seen(mass: MassProperties, pose: Pose) -> MassProperties:
+    return MassProperties(mass.m, pose.point(mass.com), product(product(pose.R, mass.I), transposed(pose.R)))

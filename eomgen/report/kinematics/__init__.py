@@ -1,0 +1,1 @@
+"""Instants of motion, printed and drawn."""

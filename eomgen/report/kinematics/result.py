@@ -1,0 +1,146 @@
+"""KinematicState -> Kinematics: the motion at one instant as a user gets it: step by step, for machines, drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from eomgen.mechanics.fields.motion_kind import Kinds
+from eomgen.mechanics.instant.body_motion import body_motions
+from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.mechanics.instant.mechanism import Center
+from eomgen.report import rendered
+from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
+from eomgen.report.kinematics.mechanism_plot import plot_mechanism
+from eomgen.report.kinematics.mechanism_steps import how_found, in_numbers, mechanism_steps
+from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
+from eomgen.report.setting_steps import data_step
+from eomgen.report.statements import Derivation, Step
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import Vector
+from eomgen.symbolic.text import text_size, to_text
+
+LONGEST = 20_000  # characters of an exact value
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Velocities, accelerations and centres of rotation at one instant.
+
+    Args:
+        state: the motion.
+        kinds: of the motions of which it is an instant; None where only the instant is known.
+        relative: (point, body) that are asked besides: the point as it is seen from the body.
+    """
+
+    state: KinematicState
+    kinds: Kinds | None = None
+    relative: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def disagreement(self) -> str:
+        """The centres that a drawing finds elsewhere than the velocities; "" as it must be."""
+        return self.state.disagreement
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """Step by step."""
+        model, system = self.state.system.scope.model, self.state.system
+        data = (data_step(system),) if system.symbols.parameters else ()
+        more = (*self._kinds(), *self._seen())
+        more = more if self.state.exact else tuple(in_numbers(self.state, step) for step in more)
+        steps = (*data, *mechanism_steps(self.state), *more)
+        return Derivation(model.name, model.about or "", model.source or "", model.space, "kinematics", steps)
+
+    def _kinds(self) -> tuple[Step, ...]:
+        """Kinds of motion; spins, poles and centrodes where the accelerations are known exactly."""
+        system, state = self.state.system, self.state.state
+        if self.state.accelerated and self.state.is_short:
+            return field_steps(system, state, self.kinds)
+        return (kinds_step(body_motions(system, self.state.moving, self.kinds), particles_of(system)),)
+
+    def _seen(self) -> tuple[Step, ...]:
+        return tuple(step for point, body in self.relative
+                     for step in relative_steps(self.state.system, point, body, self.state.state))  # fmt: skip
+
+    def render(self, format: str = "text") -> str:
+        """In one of the formats text, latex, markdown, json."""
+        return rendered(self.derivation, format)
+
+    def plot(self, path: str | Path) -> None:
+        """Draw it as .png, .svg or .pdf.
+
+        Raises:
+            MissingValues: parameters without a value.
+        """
+        plot_mechanism(self.state, path)
+
+    def _repr_markdown_(self) -> str:
+        return self.render("markdown")
+
+    def __str__(self) -> str:
+        return self.render("text")
+
+    # -- for machines --------------------------------------------------------------------------------
+
+    def as_dict(self) -> dict[str, Any]:
+        """For machines."""
+        state = self.state
+        mechanism = state.mechanism
+        return {
+            "name": state.system.scope.model.name,
+            "when": state.when,
+            "freedoms": {"by_rank": state.freedoms, "by_formula": state.formula[0], "formula": state.formula[1]},
+            "given": list(state.given),
+            "rate": None if state.symbol is None else {"symbol": state.symbol.name, "of": state.rate},
+            "exact": state.exact,
+            "blocks": {} if mechanism is None else {name: list(bodies) for name, bodies in mechanism.blocks.items()},
+            "centers": [] if mechanism is None else [self._center(c) for c in mechanism.centers.values()],
+            "angular_velocities": {name: self._turn(field.w) for name, field in state.turning.items()},
+            "velocities": {names: self._vector(v) for names, _, v, _ in state.points},
+            **self._accelerations(),
+            "bodies": field_payload(state.system, state.state, self.kinds) if self._has_bodies else {},
+            "relative": [relative_payload(state.system, p, b, state.state) for p, b in self.relative],
+            "steps": steps_as_dicts(self.derivation),
+        }  # fmt: skip
+
+    @property
+    def _has_bodies(self) -> bool:
+        return bool(self.state.accelerated) and self.state.is_short
+
+    def _accelerations(self) -> Mapping[str, Any]:
+        if not self.state.accelerated:
+            return {"angular_accelerations": None, "accelerations": None}
+        return {
+            "angular_accelerations": {name: self._turn(field.e) for name, field in self.state.turning.items()},
+            "accelerations": {names: self._vector(a) for names, _, _, a in self.state.points if a is not None},
+        }
+
+    def _center(self, center: Center) -> dict[str, Any]:
+        x, y, _ = center.point
+        place = [self._value(x), self._value(y)]
+        found = self.state.found.get(center.pair)
+        return {
+            "bodies": list(center.pair),
+            "kind": "infinite" if center.at_infinity else "finite",
+            "place": None if center.at_infinity else place,
+            "direction": place if center.at_infinity else None,
+            "found": None if found is None else how_found(self.state, found),
+        }
+
+    def _turn(self, w: Vector) -> Any:
+        return self._value(w[2]) if self.state.plane else self._vector(w)
+
+    def _vector(self, v: Vector) -> dict[str, Any]:
+        axes = "xy" if self.state.plane else "xyz"
+        parts = {axis: self._value(x) for axis, x in zip(axes, v, strict=False)}
+        return {**parts, "magnitude": self._value(self.state.size(v))}
+
+    def _value(self, x: Scalar) -> dict[str, Any]:
+        shown = self.state.put((x, 0, 0))[0]
+        exact = to_text(shown) if self.state.exact and text_size(shown) <= LONGEST else None
+        return {"exact": exact, "value": self.state.number(shown)}

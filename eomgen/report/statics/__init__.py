@@ -1,0 +1,1 @@
+"""Structures at rest, printed and drawn."""

@@ -1,0 +1,128 @@
+"""Model -> Resting: where a system with freedoms is at rest, as a user gets it: step by step, and for machines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.mechanics.equilibria.resting_reactions import reactions_or_why
+from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
+from eomgen.mechanics.equilibria.stability import Stability
+from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.system import System
+from eomgen.mechanics.work import generalized_forces
+from eomgen.model.parts import Model
+from eomgen.report import rendered
+from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.setting_steps import data_step
+from eomgen.report.statements import Derivation
+from eomgen.report.statics.equilibrium_steps import equilibrium_steps, numbers_of, values_of
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.text import to_text
+
+METHOD = "equilibrium"
+
+
+@dataclass(frozen=True)
+class Resting:
+    """The places of rest of a system with freedoms.
+
+    Args:
+        model: the system.
+        found: every place, the nearest to the start first.
+    """
+
+    model: Model
+    found: Equilibria
+
+    @property
+    def places(self) -> tuple[Equilibrium, ...]:
+        return self.found.found
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The way to them, step by step."""
+        model = self.model
+        steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found))
+        return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
+
+    def render(self, format: str = "text") -> str:
+        """In one of the formats text, latex, markdown, json."""
+        return rendered(self.derivation, format)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For machines."""
+        return {
+            "name": self.model.name,
+            "equilibria": [_place(place) for place in self.places],
+            **(_reactions(self.places[0]) if self.places else {}),
+            "complete": self.found.complete,
+            "where": self.found.where,
+            "indifferent": [q.name for q in self.found.indifferent],
+            "held": list(self.found.statics.held),
+            "steps": steps_as_dicts(self.derivation),
+        }
+
+    def _repr_markdown_(self) -> str:
+        return self.render("markdown")
+
+
+def has_freedoms(system: System) -> bool:
+    """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
+    unknowns = system.symbols.unknowns.values()
+    held = len(system.ties.closing) - len(redundant_rows(system.ties))
+    forces = generalized_forces(system.loads)
+    return len(system.symbols.u) > held and not any(depends_on(x, unknowns) for x in forces)
+
+
+def resting_places(model: Model, system: System) -> Resting:
+    """The places of rest of a model.
+
+    Args:
+        system: of the model, contacts as they are at the start.
+    Raises:
+        DerivationError: dry friction; a drive that moves on steadily; forces that hold an unknown.
+    """
+    return Resting(model, all_equilibria(system))
+
+
+def _place(place: Equilibrium) -> dict[str, Any]:
+    return {
+        "coordinates": {q.name: _of(place, q) for q in place.statics.system.symbols.q},
+        "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
+        "stability": _stability(place.stability),
+        "pulling": list(place.pulling),
+    }
+
+
+def _reactions(place: Equilibrium) -> dict[str, Any]:
+    """Those at the first place."""
+    _, reactions, why = reactions_or_why(place)
+    numbers = numbers_of([each.value for each in reactions], values_of(place))
+    return {
+        "reactions": {
+            each.named.name: {
+                "exact": to_text(each.value) if place.is_exact and each.value is not None else None,
+                "value": number, "unit": each.named.unit,
+                "message": None if each.value is not None else "statically indeterminate",
+            } for each, number in zip(reactions, numbers, strict=True)
+        },
+        "message": why or None,
+    }  # fmt: skip
+
+
+def _of(place: Equilibrium, node: Node) -> dict[str, Any]:
+    return {"exact": to_text(place.exact[node]) if node in place.exact else None, "value": place.numbers.get(node)}
+
+
+def _stability(stability: Stability) -> dict[str, Any]:
+    return {
+        "kind": stability.kind, "why": stability.why, "along": [q.name for q in stability.along],
+        "K": [[_entry(x) for x in row] for row in stability.K], "minors": [to_text(x) for x in stability.minors],
+    }  # fmt: skip
+
+
+def _entry(x: Scalar | float) -> str | float:
+    return x if isinstance(x, float) else to_text(x)

@@ -1,0 +1,181 @@
+"""Equilibria -> the steps that lead to them: the balance at rest, the places, their stability, the reactions there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from eomgen.mechanics.equilibria.resting_reactions import RestingReaction, reactions_or_why
+from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
+from eomgen.mechanics.equilibria.stability import Stability
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.reactions import Reactions
+from eomgen.model.values import exact_parameters
+from eomgen.report.bounded import page
+from eomgen.report.reaction_names import said
+from eomgen.report.reading import Reader
+from eomgen.report.setting_steps import count, listed
+from eomgen.report.statements import Cell, Entry, Formula, Grid, Law, Name, Piece, Prose, Statement, Step
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Node, Scalar
+
+REST = Law("Q_k = 0", "Q_{k} = 0")
+REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
+STIFFNESS = Law(
+    "K = -Z^T*d(Q + J^T*lam)/dq*Z",
+    r"K = -Z^{\mathsf{T}} \frac{\partial (Q + J^{\mathsf{T}} \lambda)}{\partial q} Z",
+)
+SECOND = Law("K = d2V/dq2", r"K = \frac{\partial^{2} V}{\partial q^{2}}")
+ALONG = Law("J*Z = 0", r"J Z = 0")
+MOST_SHOWN = 4  # coordinates of a K that is printed
+
+
+def equilibrium_steps(found: Equilibria, reader: Reader | None = None) -> tuple[Step, ...]:
+    """The balance at rest, every place, its stability, and the reactions at the nearest one."""
+    reader = reader or Reader()
+    steps = (balance_step(found.statics, reader), _places(found))
+    if not found.found:
+        return steps
+    return (*steps, _stability(found), *_reactions(found.found[0]))
+
+
+def balance_step(statics: StaticEquations, reader: Reader) -> Step:
+    """That the virtual work vanishes for every displacement: the equations."""
+    if not statics.q:
+        return Step("balance", "Balance at rest", (Prose(("No force changes with the place.",)),))
+    law = REST_WITH_TIES if statics.lam else REST
+    words = "At rest the virtual work of all forces vanishes for every displacement"
+    words += ", those of the ties included: " if statics.lam else ": "
+    held: list[Statement] = []
+    if statics.held:
+        held = [Prose((f"What the model drives is held where it starts: {', '.join(statics.held)}.",))]
+    forces = _all_forces(reader, statics)
+    ties = [Formula((reader.shown(x), 0)) for x in statics.phi]
+    between = [Prose(("The ties hold the coordinates by",))] if ties else []
+    return Step("balance", "Balance at rest", (*held, Prose((words, law, ".")), *forces, *between, *ties))
+
+
+def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+    """The equation along every coordinate; with ties the multipliers stand in it beside Q."""
+    if not statics.lam:
+        pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
+        return page(reader, pairs, then=(0,))
+    return tuple(Formula((reader.shown(x), 0)) for x in statics.forces)
+
+
+# -- the places ------------------------------------------------------------------------------------
+
+
+def _places(found: Equilibria) -> Step:
+    statements: list[Statement] = []
+    if found.indifferent:
+        symbols = found.indifferent
+        verb = "is" if len(symbols) == 1 else "are"
+        statements.append(Prose(("No force holds ", *listed(symbols), f": {verb} left where {_it(symbols)} start.")))
+    if not found.found:
+        statements.append(Prose((_how_many(found),)))
+        return Step("places", "Places of rest", tuple(statements))
+    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
+    kept = [k for k in range(5) if any(row[k] != "" for row in rows)]
+    head = ("place", "coordinate", "exact", "value", "stability")
+    grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    return Step("places", "Places of rest", (*statements, Prose((_how_many(found),)), grid))
+
+
+def _it(symbols: Sequence[Node]) -> str:
+    return "it" if len(symbols) == 1 else "they"
+
+
+def _how_many(found: Equilibria) -> str:
+    where = f" ({found.where})" if found.where else ""
+    if found.complete:
+        return f"There is {_places_in_words(len(found.found))}{where}." if len(found.found) == 1 else (
+            f"There are {_places_in_words(len(found.found))}{where}.")  # fmt: skip
+    many = _places_in_words(len(found.found))
+    return f"Found: {many}{where}. That there are no others is not proved."
+
+
+def _places_in_words(n: int) -> str:
+    return "none" if n == 0 else count(n, "place of rest", "places of rest")
+
+
+def _rows(number: int, place: Equilibrium) -> list[tuple[Cell, ...]]:
+    rows: list[tuple[Cell, ...]] = []
+    for k, q in enumerate(place.statics.system.symbols.q):
+        exact: Cell = place.exact.get(q, "")
+        value = f"{place.numbers[q]:.9g}" if q in place.numbers else ""
+        rows.append((str(number) if k == 0 else "", q, exact, value, place.stability.kind if k == 0 else ""))
+    return rows
+
+
+# -- stability -------------------------------------------------------------------------------------
+
+
+def _stability(found: Equilibria) -> Step:
+    ties = bool(found.statics.lam)
+    law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if ties else (SECOND,)
+    statements: list[Statement] = [Prose(("The second variation of the potential energy decides: ", *law, "."))]
+    for number, place in enumerate(found.found, start=1):
+        statements += _verdict(number, place.stability)
+    return Step("stability", "Stability", tuple(statements))
+
+
+def _verdict(number: int, stability: Stability) -> list[Statement]:
+    words: list[Statement] = [Prose((f"Place {number}: {stability.kind}; {stability.why}.",))]
+    if not stability.K or len(stability.along) > MOST_SHOWN:
+        return words
+    symmetric = stability.kind != "no potential energy"
+    entries: list[Statement] = []
+    for i, row in enumerate(stability.along):
+        for j, column in enumerate(stability.along):
+            if j >= i or not symmetric:
+                value = stability.K[i][j]
+                shown: Scalar | Law = Law(f"{value:.7g}", f"{value:.7g}") if isinstance(value, float) else value
+                entries.append(Formula((Entry("K", row, column), shown)))
+    minors = [Formula((_leading(n), x)) for n, x in enumerate(stability.minors, start=1) if n > 1]
+    return [*words, *entries, *minors]
+
+
+def _leading(n: int) -> Law:
+    return Law(f"det K_{n}", rf"\det K_{{{n}}}")
+
+
+# -- the reactions ---------------------------------------------------------------------------------
+
+
+def _reactions(place: Equilibrium) -> tuple[Step, ...]:
+    reactions, found, why = reactions_or_why(place)
+    title = "Reactions at place 1"
+    if reactions is None:
+        return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)
+    if not found:
+        return ()
+    numbers = numbers_of([each.value for each in found], values_of(place))
+    rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
+    kept = [k for k in range(5) if any(row[k] != "" for row in rows)]
+    head = ("reaction", "meaning", "exact", "value", "unit")
+    grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    pulls = [Prose((f"But '{name}' would have to pull there: it does not hold.",)) for name in place.pulling]
+    return (Step("reactions", title, (Prose(("By the balance of every body:",)), grid, *pulls)),)
+
+
+def _reaction_row(
+    place: Equilibrium, reactions: Reactions, each: RestingReaction, number: float | None
+) -> tuple[Cell, ...]:
+    named = each.named
+    exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
+    return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit
+
+
+def values_of(place: Equilibrium) -> dict[Node, float]:
+    """The parameters that have values."""
+    system = place.statics.system
+    return {system.symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
+
+
+def numbers_of(scalars: Sequence[Scalar | None], values: Mapping[Node, float]) -> list[float | None]:
+    """The scalars as numbers, None where one has none."""
+    ready = [x is not None and set(symbols_of((x,))) <= values.keys() for x in scalars]
+    found = iter(evaluate([x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None],
+                          values, FLOAT))  # fmt: skip
+    return [float(next(found)) + 0.0 if is_ready else None for is_ready in ready]

@@ -1,0 +1,251 @@
+"""Statics -> a picture: the structure with its loads and its reactions; forces of truss members beside them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import RunFailed
+from eomgen.mechanics.components import Component
+from eomgen.mechanics.effects import Axes, Effect
+from eomgen.mechanics.statics.blocks import members_of
+from eomgen.mechanics.statics.two_ways import StaticReactions
+from eomgen.mechanics.statics.virtual_work import loads_at_rest
+from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
+from eomgen.model.values import exact_parameters
+from eomgen.report.arrows import arrow, distributed, moment_arc
+from eomgen.report.drawing import ARROW, LOAD, REACTION, Place, Sketch, draw_model
+from eomgen.report.figures import draw
+from eomgen.report.statics.diagrams import diagram_panels, influence_panel
+from eomgen.report.statics.result import Statics
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.text import to_text
+
+TENSION, COMPRESSION = "#2457a6", "#b03a2e"
+NOTHING = 1e-9  # of the largest force, below which none is drawn
+SHORTEST = 0.45  # of the longest arrow
+WIDTH = 9.0  # of the picture [inches]
+COLUMN, DIAGRAM = 3.4, 1.5  # width and height of a diagram [inches]
+MOST_COLUMNS = 8  # bodies with diagrams
+LONGEST_LABEL = 24  # characters of a formula beside an arrow
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is drawn.
+
+    Args:
+        statics: the structure with its reactions.
+        known: all parameters have values; else those without are drawn as 1, and formulas stand for numbers.
+    """
+
+    statics: StaticReactions
+    known: bool
+
+    @cached_property
+    def sketch(self) -> Sketch:
+        system, at = self.statics.system, self.statics.structure.at
+        values = exact_parameters(system.scope.model)
+        numbers = {node: float(values.get(name, 1)) for name, node in system.symbols.parameters.items()}
+        numbers |= {p: 1.0 for p in system.symbols.unknowns.values()}
+        plain = Sketch(system, numbers)
+        found = dict(zip(at, plain.numbers(at.values()), strict=True))
+        unknowns = self.statics.balance.unknowns
+        found |= dict(zip(unknowns, plain.numbers(unknowns.values()), strict=True))
+        return Sketch(system, {**numbers, **found})
+
+    @cached_property
+    def forces(self) -> list[tuple[Place, Place, str, str]]:
+        """(tip, force, colour, label) of every single force, loads first."""
+        return [*self._loads(), *self._reactions()]
+
+    def length(self, force: Place) -> Place:
+        """An arrow for a force: longer for a larger one, never very short."""
+        size = math.hypot(*force)
+        share = SHORTEST + (1 - SHORTEST) * size / self.largest
+        scale = ARROW * self.sketch.extent * share / size
+        return force[0] * scale, force[1] * scale
+
+    @cached_property
+    def largest(self) -> float:
+        return max((math.hypot(*force) for _, force, _, _ in self.forces), default=0.0) or 1.0
+
+    def _loads(self) -> Iterable[tuple[Place, Place, str, str]]:
+        for acting in loads_at_rest(self.statics.structure):
+            load = acting.load
+            if isinstance(load, PointForce) and load.place[0] is not None:
+                x, y = self._vector(load.force, load.axes)
+                yield self.sketch.position(load.place), (x, y), LOAD, self._named(acting.name, math.hypot(x, y))
+
+    def _named(self, load: str, size: float) -> str:
+        """A load by its name, and how large it is."""
+        return f"{load} = {size:.4g}" if self.known else load
+
+    def _vector(self, vector: Any, axes: str | None) -> Place:
+        numbers = np.array(self.sketch.numbers(vector[:2]))
+        if axes is not None:
+            R = self.statics.system.motion.link(axes).pose.R
+            numbers = np.array([self.sketch.numbers(row[:2]) for row in R[:2]]) @ numbers
+        return float(numbers[0]), float(numbers[1])
+
+    def _reactions(self) -> Iterable[tuple[Place, Place, str, str]]:
+        for component, value, label in self._outer():
+            (effect,) = component.effects
+            x, y = self.sketch.numbers(effect.force[:2])
+            if math.hypot(x, y):
+                yield self.place(effect), (x * value, y * value), REACTION, label
+
+    def couples(self) -> Iterable[tuple[Place, float, str, str]]:
+        """(place, sense, colour, label) of every couple."""
+        for acting in loads_at_rest(self.statics.structure):
+            load = acting.load
+            if isinstance(load, Couple):
+                (size,) = self.sketch.numbers(load.couple[2:])
+                at = self._middle(load.body) if load.place is None else self.sketch.position(load.place)
+                yield at, size, LOAD, self._named(acting.name, abs(size))
+        for component, value, label in self._outer():
+            (effect,) = component.effects
+            (couple,) = self.sketch.numbers(effect.couple[2:])
+            if couple:
+                yield self._seat(component), couple * value, REACTION, label
+
+    def spreads(self) -> Iterable[tuple[SpreadLoad, str]]:
+        """Line loads with their names."""
+        for acting in loads_at_rest(self.statics.structure):
+            if isinstance(acting.load, SpreadLoad):
+                yield acting.load, acting.name
+
+    def _outer(self) -> Iterable[tuple[Component, float, str]]:
+        """(component, value, label) of the determinate reactions of the ground."""
+        for j, component in enumerate(self.statics.structure.components):
+            if len(component.effects) != 1 or not self.statics.balance.solution.determined(j):
+                continue
+            reaction = self.statics.by_name.get(component.name)
+            value = None if reaction is None else reaction.value
+            yield component, *self._shown(self.statics.balance.value(j) if value is None else value)
+
+    def _shown(self, value: Scalar) -> tuple[float, str]:
+        """(a value in the sense in which its label is positive, the label): a number, or a short formula."""
+        (number,) = self.sketch.numbers((value,))
+        if self.known:
+            return number, f"{abs(number):.4g}"
+        text = to_text(value)
+        turned = text.startswith("-") and not any(sign in text[1:] for sign in (" + ", " - "))
+        return math.copysign(number, -1 if turned else 1), self.label(value).removeprefix("-" if turned else "")
+
+    def label(self, value: Scalar) -> str:
+        """A value: a number, or a short formula where parameters have no values."""
+        text = f"{self.sketch.numbers((value,))[0]:.4g}" if self.known else to_text(value)
+        return text if len(text) <= LONGEST_LABEL else ""
+
+    def place(self, effect: Effect) -> Place:
+        """Where a reaction acts."""
+        axes = Axes(self.statics.system.motion)
+        link = axes.motion.links[effect.link]
+        x, y = self.sketch.place(link.pose.point(axes.masses[effect.link].com))
+        dx, dy = self.sketch.numbers(effect.arm[:2])
+        return x + dx, y + dy
+
+    def _seat(self, couple: Component) -> Place:
+        """Where a couple is drawn: at the forces of its tie or joint, else in the middle of the body."""
+        for other in self.statics.structure.components:
+            if other.owner == couple.owner and other.label != couple.label and len(other.effects) == 1:
+                return self.place(other.effects[0])
+        return self._middle(self.statics.system.motion.links[couple.effects[0].link].name)
+
+    def _middle(self, body: str) -> Place:
+        places = [self.sketch.position((body, r)) for name, r in self.statics.system.motion.points[body].items()
+                  if name not in ("origin", "center")]  # fmt: skip
+        found = np.mean(places or [self.sketch.position((body, ZERO))], axis=0)
+        return float(found[0]), float(found[1])
+
+
+def plot_statics(found: Statics, path: str) -> None:
+    """The structure with loads and reactions.
+
+    Raises:
+        RunFailed: it is in space.
+    """
+    if found.model.space != "plane":
+        raise RunFailed("structures in space are not drawn", mend="leave out --plot")
+    missing = missing_values(found)
+    scene = Scene(found.found, not missing)
+
+    bodies = list(found.sections.found.values())[:MOST_COLUMNS] if not missing else []
+    line = found.influence if not missing else None
+    heights = [height_of(scene), *([DIAGRAM] * (3 if bodies else 0)), *([1.5 * DIAGRAM] if line else [])]
+
+    def fill(figure: Any) -> None:
+        grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
+        draw_structure(figure.add_subplot(grid[0, :]), scene)
+        for column, forces in enumerate(bodies):
+            diagram_panels([figure.add_subplot(grid[1 + k, column]) for k in range(3)], forces, scene.sketch.values)
+        if line is not None:
+            influence_panel(figure.add_subplot(grid[-1, :]), line, scene.sketch.values)
+        if missing:
+            figure.supxlabel(f"drawn with {', '.join(missing)} = 1; no diagrams without values", fontsize=9)
+
+    draw(path, (max(WIDTH, COLUMN * len(bodies)), sum(heights)), fill, title=found.model.name)
+
+
+def height_of(scene: Scene) -> float:
+    """Of the picture, as the structure is wide or tall [inches]."""
+    places = np.array([*scene.sketch.points.values(), *(tip for tip, _, _, _ in scene.forces)])
+    wide, tall = np.ptp(places, axis=0) + 0.35 * scene.sketch.extent if len(places) else (1.0, 1.0)
+    return float(np.clip(WIDTH * tall / wide, 3.2, 8.0))
+
+
+def missing_values(found: Statics) -> list[str]:
+    """The parameters without a value."""
+    values = exact_parameters(found.model)
+    return [name for name in found.model.parameters if name not in values]
+
+
+def draw_structure(panel: Any, scene: Scene) -> None:
+    """Bodies, supports, loads in red, reactions in green, member forces in blue (tension) and red (compression)."""
+    sketch = scene.sketch
+    draw_model(panel, sketch)
+    for load, name in scene.spreads():
+        _spread(panel, scene, load, name)
+    for tip, force, color, label in scene.forces:
+        if math.hypot(*force) > NOTHING * scene.largest:
+            arrow(panel, tip, scene.length(force), color=color, label=label)
+    for at, sense, color, label in scene.couples():
+        if sense:
+            moment_arc(panel, sketch, at, sense, color=color, label=label)
+    _members(panel, scene)
+
+
+def _spread(panel: Any, scene: Scene, load: SpreadLoad, name: str) -> None:
+    """A line load, its largest arrow half as long as the longest of a force."""
+    ends = np.array([scene.sketch.numbers(q[:2]) for q in (load.at_start, load.at_end)])
+    highest = float(np.max(np.linalg.norm(ends, axis=1)))
+    if not highest:
+        return
+    (a, b), (c, d) = ends * (0.5 * ARROW * scene.sketch.extent / highest)
+    places = scene.sketch.position(load.start), scene.sketch.position(load.end)
+    distributed(panel, places, ((float(a), float(b)), (float(c), float(d))), label=name)
+
+
+def _members(panel: Any, scene: Scene) -> None:
+    """The force of every member of a truss, along it."""
+    for truss, member, (first, second) in members_of(scene.statics.system):
+        reaction = scene.statics.by_name.get(f"tension({truss}, {member})")
+        if reaction is None or reaction.value is None:
+            continue
+        (value,) = scene.sketch.numbers((reaction.value,))
+        a, b = (np.array(scene.sketch.position((node, ZERO))) for node in (first, second))
+        turn = math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
+        turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
+        small = abs(value) < NOTHING * scene.largest
+        color = "#808080" if small else TENSION if value > 0 else COMPRESSION
+        panel.annotate("0" if small else scene.label(reaction.value), (a + b) / 2, rotation=turn,
+                       rotation_mode="anchor", ha="center", va="bottom", color=color, fontsize=8, zorder=8)  # fmt: skip
+        panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
+

@@ -1,0 +1,167 @@
+"""Model -> Statics: a structure at rest as a user gets it: solved, written step by step, for machines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import UsageError
+from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
+from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
+from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
+from eomgen.mechanics.statics.virtual_work import WorkEquation
+from eomgen.mechanics.system import system_of
+from eomgen.model.findings import nearest
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.report import rendered
+from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.statements import Derivation
+from eomgen.report.statics.section_steps import (
+    Sections,
+    influence_payload,
+    influence_step,
+    section_payload,
+    section_steps,
+    sections_of,
+)
+from eomgen.report.statics.steps import contacts_step, statics_derivation
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.text import to_text
+
+ROUNDING = 1e-9  # of a force that is 0 but for rounding
+
+
+@dataclass(frozen=True)
+class Statics:
+    """A structure at rest: every reaction by virtual work and by equilibrium.
+
+    Args:
+        model: the structure.
+        found: its reactions.
+        influence: an influence line, where one was asked.
+    """
+
+    model: Model
+    found: StaticReactions
+    influence: InfluenceLine | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether the two ways agree."""
+        return not self.found.disagreeing
+
+    @cached_property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What must hold of contacts that can end or slide."""
+        return conditions_of(self.found)
+
+    @cached_property
+    def broken(self) -> tuple[str, ...]:
+        """Of these what does not hold, in words: then it is not at rest like this."""
+        margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
+        return tuple(words for words, margin in margins.items() if margin < -ROUNDING)
+
+    @cached_property
+    def sections(self) -> Sections:
+        """N, V and M of every body that is a beam."""
+        return sections_of(self.found.balance)
+
+    @cached_property
+    def exact(self) -> dict[str, str | None]:
+        """{reaction: its value as text}, None where it is statically indeterminate."""
+        return {r.name: None if r.value is None else to_text(r.value) for r in self.found.reactions}
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """{reaction: its number} [N, N m], of those that have one."""
+        return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None])
+
+    def _numbers(self, pairs: Iterable[tuple[str, Scalar]]) -> dict[str, float]:
+        """The scalars in numbers, those whose parameters have values."""
+        known = exact_parameters(self.model)
+        table = self.found.system.symbols.parameters
+        numbers = {node: float(known[name]) for name, node in table.items() if name in known}
+        ready = [(name, value) for name, value in pairs if set(symbols_of((value,))) <= numbers.keys()]
+        found = evaluate([value for _, value in ready], numbers, FLOAT)
+        return {name: float(x) + 0.0 for (name, _), x in zip(ready, found, strict=True)}
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The solution, step by step."""
+        contacts = contacts_step(self.conditions, self.broken)
+        influence = () if self.influence is None else (influence_step(self.influence),)
+        return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
+
+    def render(self, format: str = "text") -> str:
+        """In one of the formats text, latex, markdown, json."""
+        return rendered(self.derivation, format)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For machines."""
+        structure = self.found.structure
+        return {
+            "name": self.model.name,
+            "structure": {
+                "velocities": len(structure.columns), "reactions": len(structure.rows), "rank": structure.rank,
+                "mobility": structure.mobility, "indeterminacy": structure.indeterminacy,
+                "count": self.found.count[0], "formula": self.found.count[1],
+            },
+            "reactions": {reaction.name: self._reaction(reaction) for reaction in self.found.reactions},
+            "self_stresses": [{structure.names[j]: to_text(x) for j, x in stress.items()}
+                              for stress in structure.stresses],
+            "sections": section_payload(self.sections),
+            "influence": None if self.influence is None else influence_payload(self.influence),
+            "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
+            "broken": list(self.broken),
+            "agree": self.ok,
+            "steps": steps_as_dicts(self.derivation),
+        }  # fmt: skip
+
+    def _reaction(self, reaction: StaticReaction) -> dict[str, Any]:
+        return {
+            "exact": self.exact[reaction.name],
+            "value": self.values.get(reaction.name),
+            "unit": reaction.unit,
+            "by_equilibrium": _text(reaction.balanced),
+            "work": None if reaction.work is None else _work(reaction.work),
+            "agree": reaction.agree,
+            "message": None if reaction.value is not None else "statically indeterminate",
+        }
+
+    def _repr_markdown_(self) -> str:
+        return self.render("markdown")
+
+
+def _text(value: Scalar | None) -> str | None:
+    return None if value is None else to_text(value)
+
+
+def _work(equation: WorkEquation) -> dict[str, Any]:
+    """The equation of virtual work: along * R + sum of terms = 0."""
+    return {
+        "along": to_text(equation.along),
+        "terms": [{"load": term.acting.name, "work": to_text(term.work)} for term in equation.terms],
+        "value": to_text(equation.value),
+    }
+
+
+def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics:
+    """A structure at rest.
+
+    Args:
+        influence: the reaction, member force or section force whose influence line is asked too.
+        reaction: the only one that is found by virtual work too; None: all.
+    Raises:
+        UsageError: no reaction of that name.
+        DerivationError: bodies can move; a force acts at no place.
+    """
+    found = static_reactions_of(system_of(model, modes_at_rest(model)), only=reaction or "")
+    if reaction and reaction not in found.by_name:
+        raise UsageError(f"there is no reaction '{reaction}'", mend=nearest(reaction, found.by_name))
+    line = None if influence is None else influence_line(found.structure, influence)
+    return Statics(model, found, line)
