@@ -352,7 +352,7 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
 @main.command()
 @MODEL
 @JSON
-@click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True)
+@click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True, help="Language.")
 @click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
 def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
     """Write equations and reactions as code, with test vectors."""

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -78,6 +79,14 @@ def test_help_answers_in_a_fifth_of_a_second_of_cpu():
         assert result.returncode == 0
     assert min(spent) < 0.2
     assert [line.split()[0] for line in result.stdout.splitlines()[-len(VERBS) :]] == VERBS
+
+
+def test_the_list_of_verbs_says_each_in_a_line_of_eighty_columns():
+    """No verb's line ends in "...", none is longer than a screen; every option of a verb says what it is for."""
+    listed = started("--help", env={"COLUMNS": "80"}).stdout.splitlines()
+    assert not [line for line in listed if line.endswith("...") or len(line) > 80]
+    for verb in VERBS:
+        assert all(option.help for option in main.commands[verb].params if isinstance(option, click.Option)), verb
 
 
 def test_importing_eomgen_and_its_command_line_imports_nothing_heavy():

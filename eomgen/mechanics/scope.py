@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.model.composite import Composite
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.trusses import in_parts
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
@@ -53,6 +54,11 @@ class Scope:
     def flow(self) -> dict[Node, Scalar]:
         """The seeds of d/dt at a = 0: q -> q', t -> 1."""
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True))}
+
+    @cached_property
+    def composites(self) -> dict[str, Composite]:
+        """Bodies made of parts that were put together already, by name (`made_of` fills it)."""
+        return {}
 
     def value(self, expression: Expression | None) -> Scalar:
         """An expression of the model in the symbols (absent: 0)."""

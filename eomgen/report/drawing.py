@@ -61,10 +61,11 @@ class Sketch:
             return []
         if outlines := self.outlines(link):
             return [line for line, _ in outlines]
-        points = [self.position((link.name, self.system.motion.points[link.name][name])) for name in part.points]
-        if len(points) == 1 and link.joint is not None:
+        own = self.system.motion.points[link.name]
+        points = [self.position((link.name, own[name.rpartition(".")[2]])) for name in part.line or part.points]
+        if link.joint is not None and link.joint.carries_reaction:
             points.insert(0, self.position((link.name, link.point)))
-        return [np.array(points)] if len(points) > 1 else []
+        return [_straightened(np.array(points))] if len(points) > 1 else []
 
     def outlines(self, link: Link) -> list[tuple[np.ndarray, str]]:
         """The outlines of a body's shape or parts, each with the colour inside: of a hole that of the paper."""
@@ -181,6 +182,16 @@ def _beside(line: np.ndarray) -> Place:
 def _run(line: np.ndarray) -> np.ndarray:
     """How far along the line each of its points is."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+
+
+def _straightened(points: np.ndarray) -> np.ndarray:
+    """The points in their order; where all of them lie on one line, the two ends."""
+    along = points[np.argmax(np.linalg.norm(points - points[0], axis=1))] - points[0]
+    r = points - points[0]
+    if np.max(np.abs(r[:, 0] * along[1] - r[:, 1] * along[0])) > 1e-9 * float(along @ along):
+        return points
+    run = r @ along
+    return points[[int(np.argmin(run)), int(np.argmax(run))]]
 
 
 def _points(panel: Any, sketch: Sketch) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -32,32 +34,51 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def draw(path: str | Path, size: tuple[float, float], fill: Callable[[Any], None], *, title: str = "") -> None:
-    """Draw a picture into a PNG, SVG or PDF file.
+@dataclass(frozen=True)
+class Picture:
+    """A picture that is drawn when it is saved, or shown in a notebook.
 
     Args:
-        path: where to; the ending says which.
         size: width and height [inches].
         fill: puts panels into the matplotlib figure.
         title: above the picture, the model's name.
-    Raises:
-        UsageError: another ending.
-        RunFailed: the file cannot be written; what was there before is then still there.
     """
-    path = Path(path)
-    if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    with rc_context(STYLE):
-        figure = Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
-        fill(figure)
-        if title:
-            figure.suptitle(title.replace("$", r"\$"), fontsize=12, fontweight="bold", x=0.01, ha="left")
-        _save(figure, path)
+    size: tuple[float, float]
+    fill: Callable[[Any], None]
+    title: str = ""
+
+    def save(self, path: str | Path) -> None:
+        """Draw it into a PNG, SVG or PDF file; the ending says which.
+
+        Raises:
+            UsageError: another ending.
+            RunFailed: the file cannot be written; what was there before is then still there.
+        """
+        path = Path(path)
+        if path.suffix.lower() not in FORMATS:
+            raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
+        self._drawn(lambda figure: _save(figure, path))
+
+    def _drawn(self, keep: Callable[[Any], object]) -> None:
+        """Draw it, and keep it while the style of its numbers and letters holds."""
+        from matplotlib import rc_context
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        with rc_context(STYLE):
+            figure = Figure(figsize=self.size, layout="constrained")
+            FigureCanvasAgg(figure)
+            self.fill(figure)
+            if self.title:
+                title = self.title.replace("$", r"\$")
+                figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left")
+            keep(figure)
+
+    def _repr_png_(self) -> bytes:
+        page = io.BytesIO()
+        self._drawn(lambda figure: figure.savefig(page, format="png", dpi=100))
+        return page.getvalue()
 
 
 def mathtext(name: str) -> str:

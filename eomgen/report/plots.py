@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.report.figures import draw, mathtext
+from eomgen.report.figures import Picture, mathtext
 from eomgen.simulation.trajectory import Trajectory
 
 MOST_IN_LEGEND = 12
@@ -47,7 +47,7 @@ def plot_trajectory(
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
 
-    draw(path, (8, 1.0 + 2.1 * max(count, 1)), fill, title=title)
+    Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title).save(path)
 
 
 def _by_unit(trajectory: Trajectory, units: Mapping[str, str]) -> dict[str, list[str]]:

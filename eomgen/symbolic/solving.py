@@ -139,7 +139,8 @@ class _Search:
         discriminant = plus(expansion.product(c1, c1), expansion.product(c0, c2), -4)
         node = expansion.atoms.node
         whole = square_root(discriminant) if discriminant else {}
-        root = self.x.graph.sqrt(simplest(node(discriminant), self.limit, self.positive)) if whole is None else node(whole)
+        under = simplest(node(discriminant), self.limit, self.positive)
+        root = self.x.graph.sqrt(under) if whole is None else node(whole)
         for sign in (1, -1):
             yield over(sign * root - node(c1), 2 * node(c2))
 

@@ -1,4 +1,4 @@
-"""Chapters 9 and 10 and the turntable: what `solve` answers is what differentiated positions give, exactly and in units."""
+"""Chapters 9 and 10 and the turntable: `solve` answers what differentiated positions give, exactly and in units."""
 
 from __future__ import annotations
 

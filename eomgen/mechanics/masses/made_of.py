@@ -16,7 +16,13 @@ WORK = 20_000  # products of terms for making the pieces' formulas short
 
 
 def made_of(scope: Scope, body: str) -> Composite:
-    """The pieces of a body and the whole of them, each formula in readable form."""
+    """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
+    if body not in scope.composites:
+        scope.composites[body] = _put_together(scope, body)
+    return scope.composites[body]
+
+
+def _put_together(scope: Scope, body: str) -> Composite:
     part = scope.model.bodies[body]
     composite = composite_of(part.parts or (), part.mass, scope.value)
     everything = [composite.whole, *(placed.mass for placed in composite.pieces)]

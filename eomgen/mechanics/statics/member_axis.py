@@ -1,7 +1,8 @@
 """Motion, body -> MemberAxis: the line of straight legs along which a body is a beam, and how far along it a place is.
 
-It is the body's `line` where it has one; else the line through its points where they all lie on one, from end to end;
-else from point to point in the order of their declaration, what lies on the way left out.
+It is the body's `line` where it has one; else the line through its points where they all lie on one, from left to
+right in the body's axes, or upwards; else from point to point in the order of their declaration, what lies on the way
+left out.
 """
 
 from __future__ import annotations
@@ -185,9 +186,11 @@ def _on_one_line(places: Sequence[Vector], sizes: Sizes) -> bool:
 
 
 def _extremes(places: Sequence[Vector], named: Sequence[Vector], sizes: Sizes) -> list[Vector]:
-    """The first and the last place along the line, in the sense from the first to the last point that was declared."""
+    """The first and the last place along the line, from left to right in the body's axes, else upwards."""
     first, last = (named[0], named[-1]) if len(named) > 1 else (places[0], places[1])
     along = minus(last, first)
+    if (sizes.sign(along[0]) or sizes.sign(along[1])) < 0:
+        along = times(-1, along)
     lowest = highest = first
     for place in places:
         if sizes.sign(dot(along, minus(place, lowest))) < 0:

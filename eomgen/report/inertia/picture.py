@@ -1,7 +1,8 @@
-"""Model, Inertia -> a picture: plane bodies with their holes, mass centres and principal axes."""
+"""System, principal axes -> a picture: plane bodies with their holes, mass centres and principal axes."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,37 +10,37 @@ import numpy as np
 from eomgen.errors import RunFailed
 from eomgen.mechanics.masses.inertia_about import in_ground
 from eomgen.mechanics.start import start_state
-from eomgen.mechanics.system import System, system_of
-from eomgen.model.parts import Model
+from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.report.drawing import Sketch, draw_model
-from eomgen.report.figures import draw
-from eomgen.report.inertia.result import Inertia
+from eomgen.report.figures import Picture
 from eomgen.symbolic.graph import Node
 
 CENTER, AXIS = "#b03a2e", "#2e7d4f"
 
 
-def plot_inertia(model: Model, found: Inertia, path: str) -> None:
+def inertia_picture(system: System, axes: Mapping[str, Sequence[Sequence[float]]]) -> Picture:
     """The bodies where they start, each with its mass centre and its principal axes.
 
+    Args:
+        axes: the principal axes in numbers, the rows of R, by the body's name.
     Raises:
         RunFailed: the model is in space.
         MissingValues: a parameter has none.
     """
+    model = system.scope.model
     if model.space != "plane":
         raise RunFailed("bodies in space are not drawn", mend="leave out --plot")
-    system = system_of(model)
     sketch = Sketch(system, values_at_start(system))
 
     def fill(figure: Any) -> None:
         panel = figure.subplots()
         draw_model(panel, sketch)
-        for body, rows in found.axes.items():
+        for body, rows in axes.items():
             if body in system.motion.index:
                 _body(panel, sketch, body, np.array(rows))
 
-    draw(path, (8, 6), fill, title=model.name)
+    return Picture((8, 6), fill, model.name)
 
 
 def values_at_start(system: System) -> dict[Node, float]:

@@ -69,7 +69,14 @@ class Sum:
     rows: tuple[Row, ...]
 
     def short(self, x: Scalar) -> Scalar:
-        return short_form(x, self.positive)
+        """x in readable form; what was read once is not read again."""
+        if x not in self._known:
+            self._known[x] = short_form(x, self.positive)
+        return self._known[x]
+
+    @cached_property
+    def _known(self) -> dict[Scalar, Scalar]:
+        return {}
 
     @cached_property
     def positive(self) -> Collection[Node]:

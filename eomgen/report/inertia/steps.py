@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class Section:
     def plane(self) -> bool:
         return self.sum.motion.scope.model.space == "plane"
 
-    @property
+    @cached_property
     def tensor(self) -> Matrix:
         return self.sum.tensor(self.point)
 
@@ -107,7 +108,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
     if len(section.sum.rows) == 1:
         return
     count = 2 if section.plane else 3
-    head = ("", lettered("m"), *(lettered(f"{axis}_C") for axis in AXES[:count]))
+    head: tuple[Cell, ...] = ("", lettered("m"), *(lettered(f"{axis}_C") for axis in AXES[:count]))
     rows = [
         (row.label, section.sum.short(row.sign * row.mass.m), *map(section.sum.short, row.mass.com[:count]))
         for row in section.sum.rows
@@ -213,7 +214,7 @@ def _words(found: Principal) -> str:
 
 
 def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | None) -> Iterator[Statement]:
-    head = ("axis", *map(lettered, AXES))
+    head: tuple[Cell, ...] = ("axis", *map(lettered, AXES))
     words = "The rows of R are the principal axes, right-handed: R I R^T is diagonal."
     longest = LONGEST if rows is not None else LONGEST_LINE
     if found.axes is not None and all(text_size(x) <= longest for row in found.axes for x in row):

@@ -10,7 +10,6 @@ so that over the lines on which the mechanism is projected each body has a strai
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism
 from eomgen.report.arrows import arrow
 from eomgen.report.drawing import ARROW, REACTION, Place, Sketch, draw_model
-from eomgen.report.figures import draw
+from eomgen.report.figures import Picture
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar
 
@@ -30,20 +29,19 @@ CENTER = "#8e44ad"
 FAR = 1.6  # how far outside the mechanism a centre is still drawn, of its extent
 
 
-def plot_mechanism(state: KinematicState, path: str | Path) -> None:
-    """Draw a plane mechanism into a PNG, SVG or PDF file; a rate that was left as a symbol is 1 there.
+def mechanism_picture(state: KinematicState) -> Picture:
+    """A plane mechanism; a rate that was left as a symbol is 1 there.
 
     Raises:
-        RunFailed: it is in space; the file cannot be written.
+        RunFailed: it is in space.
         MissingValues: parameters without a value.
     """
     if state.mechanism is None:
         raise RunFailed("only plane mechanisms are drawn")
-    picture = _Picture(state, state.mechanism)
-    draw(path, SIZE, picture.fill, title=state.system.scope.model.name)
+    return Picture(SIZE, _Panels(state, state.mechanism).fill, state.system.scope.model.name)
 
 
-class _Picture:
+class _Panels:
     """The numbers of a picture, and its panels."""
 
     def __init__(self, state: KinematicState, mechanism: Mechanism) -> None:

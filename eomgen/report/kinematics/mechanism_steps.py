@@ -191,7 +191,8 @@ def _spins(state: KinematicState, words: str, letter: str, spins: Mapping[str, V
     turns = [(name, state.put(w)) for name, w in spins.items()]
     if state.plane:
         return Prose((words,)), Grid(("body", lettered(letter)), tuple((name, cell(state, w[2])) for name, w in turns))
-    return Prose((words,)), Grid(("body", *_components(letter, "xyz")), tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
+    head: tuple[Cell, ...] = ("body", *_components(letter, "xyz"))
+    return Prose((words,)), Grid(head, tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
 
 
 def _vectors(state: KinematicState, letter: str, rows: Sequence[tuple[str, Vector]]) -> Grid:

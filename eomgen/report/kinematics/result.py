@@ -13,9 +13,10 @@ from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Center
 from eomgen.report import rendered
+from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
-from eomgen.report.kinematics.mechanism_plot import plot_mechanism
+from eomgen.report.kinematics.mechanism_plot import mechanism_picture
 from eomgen.report.kinematics.mechanism_steps import how_found, in_numbers, mechanism_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.setting_steps import data_step
@@ -71,13 +72,19 @@ class Kinematics:
         """In one of the formats text, latex, markdown, json."""
         return rendered(self.derivation, format)
 
-    def plot(self, path: str | Path) -> None:
-        """Draw it as .png, .svg or .pdf.
+    @property
+    def picture(self) -> Picture:
+        """The mechanism with its centres and velocities.
 
         Raises:
+            RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        plot_mechanism(self.state, path)
+        return mechanism_picture(self.state)
+
+    def plot(self, path: str | Path) -> None:
+        """Draw it as .png, .svg or .pdf."""
+        self.picture.save(path)
 
     def _repr_markdown_(self) -> str:
         return self.render("markdown")
