@@ -38,10 +38,10 @@ _HOMES = {
     "model.reader": ("load", "loads"),
     "equations": ("Equations",),
     "pipeline": ("derive", "simulate"),
-    "report.inertia_result": ("Inertia", "inertia"),
-    "report.statics_result": ("Statics", "statics"),
+    "report.inertia.result": ("Inertia", "inertia"),
+    "report.statics.result": ("Statics", "statics"),
     "simulation.trajectory": ("Trajectory",),
-    "report.kinematics_result": ("Kinematics",),
+    "report.kinematics.result": ("Kinematics",),
     "velocities": ("kinematics",),
 }  # fmt: skip
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}

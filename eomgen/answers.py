@@ -152,7 +152,7 @@ class _Solver:
 
     @cached_property
     def snapshot(self) -> Snapshot:
-        return snapshot_of(self.model)
+        return snapshot_of(self.model, by_coordinates=True)
 
     def _of_the_instant(self, output: Output) -> Answer:
         scalar = self.snapshot.value(output.value)

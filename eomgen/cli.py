@@ -265,7 +265,7 @@ def reactions(
 @main.command()
 @_written
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
-@click.option("--influence", metavar="NAME", help='Influence line of a reaction, member or section force: "reaction_y(A)".')
+@click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
 def statics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
             **options: Any) -> int:  # fmt: skip
     """Give reactions at rest by virtual work, or the places of rest.
@@ -286,7 +286,8 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
 @_written
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
-@click.option("--relative", multiple=True, metavar='"POINT in BODY"', help="Motion of a point on a moving body: transport, relative, Coriolis.")
+@click.option("--relative", multiple=True, metavar='"POINT in BODY"',
+              help="Motion of a point on a moving body: transport, relative, Coriolis.")  # fmt: skip
 def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
                **options: Any) -> int:  # fmt: skip
     """Give velocities and centres of rotation at one instant.

@@ -14,7 +14,7 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.closure import gaps_of
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import system_of
@@ -140,7 +140,7 @@ def _watched(
         blocks = system.elimination.blocks
         determinants = _along(equations, tuple(block.determinant for block in blocks), p)
         run = ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
-    rank = len(system.ties.closing) - len(redundant_rows(system.ties))
+    rank = rank_of_ties(system.ties)
     if rank and len(run.t):
         J = _along(equations, tuple(x for row in equations.graph.J for x in row), p)
         rows = Independence(J, tuple(row.tie for row in system.ties.closing), rank)

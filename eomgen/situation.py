@@ -21,8 +21,9 @@ from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_ro
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.outputs import ASKING_REACTIONS, Quantities
+from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.reactions import values_at_a_state
 from eomgen.mechanics.start import fixed_by_position
 from eomgen.mechanics.statics.unknown_loads import still

@@ -15,7 +15,7 @@ from math import isfinite
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.journey import Journey
 from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.freedom import counted, redundant_rows
+from eomgen.mechanics.freedom import counted, freedoms
 from eomgen.mechanics.instant.kinematic_state import KinematicState, State
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.start import fixed_by_position
@@ -111,14 +111,14 @@ def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
         raise DerivationError("the state has no closed form, and without values of all parameters no number",
                               mend="give the parameters values")  # fmt: skip
     moving = {**{symbols.t: 0}, **moving}
-    ties = situation.system.ties
-    freedoms = len(symbols.u) - len(ties.closing) + len(redundant_rows(ties))
+    free = freedoms(situation.system.ties)
     count = counted((situation.system.free or situation.system).ties)
-    found = KinematicState(situation.system, moving, {}, freedoms, count, when, exact=whole)
-    if at is None and freedoms == 1 == len(symbols.u) and _rests(found):
+    found = KinematicState(situation.system, moving, {}, free, count, when, exact=whole)
+    if at is None and free == 1 == len(symbols.u) and _rests(found):
         (u,) = symbols.u
         return replace(found, moving={**moving, u: u}, rate=u.name, symbol=u)
-    return replace(found, accelerated=_with_accelerations(situation, moving, numbers))
+    accelerated, rounded = _with_accelerations(situation, moving, numbers)
+    return replace(found, accelerated=accelerated, rounded=rounded)
 
 
 def _sees_time(situation: Situation) -> bool:
@@ -128,29 +128,30 @@ def _sees_time(situation: Situation) -> bool:
 
 
 def _moment(journey: Journey, at: Equation | None) -> Moment:
-    """The start, or where the condition is met; in numbers where the ties place more than one coordinate."""
+    """The start, or where the condition is met."""
     if at is not None:
         return journey.until(at)
-    many = journey.numbers and len(fixed_by_position(journey.situation.system)) > 1
-    return Moment(journey.situation, {} if many else journey.start, journey.numbers, "at the start")
+    return Moment(journey.situation, journey.start, journey.numbers, "at the start")
 
 
-def _with_accelerations(situation: Situation, moving: State, numbers: Mapping[Node, float]) -> State:
-    """With the accelerations by the equations of motion, in numbers where formulas are long; {}: nothing has mass."""
+def _with_accelerations(situation: Situation, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
+    """(with the accelerations by the equations of motion, whether in numbers as formulas are long); {}: no mass."""
     symbols = situation.system.symbols
     if not symbols.u:
-        return moving
+        return moving, False
     try:
         raw = substituted(situation.accelerations, moving)
         if not numbers or sum(map(text_size, raw)) <= LONG:
             state = situation.complete(moving)
-            return state if all(a in state for a in symbols.a) else {}
+            return (state if all(a in state for a in symbols.a) else {}), False
         values = {**parameters_of(situation), **numbers}
         found = [situation.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
     except EomgenError:
-        return {}
+        return {}, False
+    if not all(map(isfinite, found)):
+        return {}, False
     inputs = situation.complete(moving, Expression.number(0))
-    return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))} if all(map(isfinite, found)) else {}
+    return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))}, True
 
 
 # -- as a user asks for it ------------------------------------------------------------------------------

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import doctest
 import re
+import shlex
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import eomgen
+from eomgen.cli import main
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.part import slots_of
@@ -129,6 +132,14 @@ def test_the_reference_names_every_field_of_the_tables(part):
     assert missing == []
 
 
+def test_the_reference_lists_every_model_of_the_folder():
+    """Each file of models/ by its stem, each chapter of models/seeds/ by its first word or its whole name."""
+    listed = set(re.findall(r"`(\w+)`", REFERENCE.split("## The models of this folder")[1]))
+    assert {path.stem for path in (ROOT / "models").glob("*.toml")} <= listed
+    for path in (ROOT / "models" / "seeds").glob("*.toml"):
+        assert {path.stem, path.stem.partition("_")[0]} & listed, path.stem
+
+
 def test_the_reference_names_every_function_and_unit():
     """The functions of expressions and of outputs, and the names of units, word by word."""
     words = set(re.findall(r"[\wµμ°]+", REFERENCE))
@@ -154,6 +165,21 @@ def test_the_python_of_the_readme_runs_as_it_stands(monkeypatch):
     for block in blocks(README, "python"):
         exec(compile(block, "README.md", "exec"), namespace)
     assert namespace["equations"].M.shape == (2, 2)
+
+
+CONSOLE = [block for page in (README, REFERENCE) for block in blocks(page, "text") if block.startswith("$ eomgen ")]
+
+
+@pytest.mark.parametrize("block", CONSOLE, ids=lambda block: block.splitlines()[0].removeprefix("$ eomgen "))
+def test_what_the_pages_show_of_a_command_is_what_it_prints(block, tmp_path, monkeypatch):
+    """```text blocks that begin with `$ eomgen ...`: the lines after it are lines of the output, in their order."""
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    monkeypatch.chdir(tmp_path)
+    command, *shown = block.splitlines()
+    result = CliRunner().invoke(main, shlex.split(command)[2:])
+    printed = iter(result.stdout.splitlines())
+    assert result.exit_code == 0
+    assert [line for line in shown if line != "..." and line not in printed] == []
 
 
 @pytest.mark.parametrize("page", [README, REFERENCE], ids=["README.md", "models/README.md"])

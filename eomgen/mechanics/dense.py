@@ -32,6 +32,19 @@ def independent(J: np.ndarray, *, smallest: float) -> bool:
     return len(J) == 0 or int(np.linalg.matrix_rank(balanced(J)[0], tol=smallest)) == len(J)
 
 
+def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
+    """The rows that do not follow from those before them: what these leave of a row is more than `smallest` of it."""
+    found, Q = [], np.zeros((0, A.shape[1]))
+    for i, row in enumerate(A):
+        left = row - Q.T @ (Q @ row)
+        left = left - Q.T @ (Q @ left)  # once more, for what rounding left
+        size = float(np.linalg.norm(left))
+        if size > smallest * float(np.linalg.norm(row)):
+            Q = np.vstack([Q, left / size])
+            found.append(i)
+    return found
+
+
 def scaled_condition(M: np.ndarray) -> float:
     """Condition number of M_ij / sqrt(M_ii M_jj): that of a mass matrix whatever the units of its coordinates."""
     scale = _roots(abs(np.diagonal(M)))

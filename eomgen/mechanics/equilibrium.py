@@ -144,8 +144,10 @@ def _of_pairs(wrenches: _Wrenches) -> str:
 def _takes_a_couple(system: System, component: Component) -> bool:
     """What the model has no bearing for: of a gear's frame, and of strands that keep their direction."""
     forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
-    side = component.label == "n" and hasattr(system.scope.model.constraints.get(component.owner), "strand_rows")
-    return component.kind == "tie" and (side or not forces)
+    if component.kind != "tie":
+        return False
+    side = component.label == "n" and bool(system.scope.model.constraints[component.owner].strand_rows())
+    return side or not forces
 
 
 def _is_inner(system: System, component: Component) -> bool:

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.errors import EomgenError, NotYet
-from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.closure import State, generic_state
 from eomgen.mechanics.contacts import Modes
+from eomgen.mechanics.dense import independent_rows
 from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.scope import scope_of
@@ -87,8 +88,8 @@ def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
         redundant = redundant_rows(ties)
     except EomgenError as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
-    rank = len(ties.closing) - len(redundant)
-    return Freedom(len(ties.motion.scope.symbols.u) - rank, count, formula, redundant, identical, closing)
+    speeds = len(ties.motion.scope.symbols.u)
+    return Freedom(speeds - len(ties.closing) + len(redundant), count, formula, redundant, identical, closing)
 
 
 # -- by formula ------------------------------------------------------------------------------------
@@ -129,9 +130,21 @@ def _components(link: Link, free: int) -> int:
 # -- by rank ---------------------------------------------------------------------------------------
 
 
-def redundant_rows(ties: Ties) -> tuple[Redundant, ...]:
+def freedoms(ties: Ties, state: State | None = None) -> int:
+    """nu - rank J; the state and the errors are those of `redundant_rows`."""
+    return len(ties.motion.scope.symbols.u) - rank_of_ties(ties, state)
+
+
+def rank_of_ties(ties: Ties, state: State | None = None) -> int:
+    """rank J, how many closing rows are independent; the state and the errors are those of `redundant_rows`."""
+    return len(ties.closing) - len(redundant_rows(ties, state))
+
+
+def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, ...]:
     """The closing rows that follow from those before them, at a generic configuration in which the ties hold.
 
+    Args:
+        state: such a configuration, where one is known already.
     Raises:
         MissingValues: the ties cannot be closed without values for the parameters.
         DerivationError: they do not close near the start.
@@ -139,20 +152,13 @@ def redundant_rows(ties: Ties) -> tuple[Redundant, ...]:
     closing = ties.closing
     if not closing:
         return ()
-    entries = evaluate([x for row in ties.J for x in row], generic_state(ties), fifty_digits())
+    entries = evaluate([x for row in ties.J for x in row], state or generic_state(ties), fifty_digits())
     J = np.array([float(x) for x in entries]).reshape(len(closing), len(ties.motion.scope.symbols.u))
-    found, basis = [], np.zeros((0, J.shape[1]))
-    kept: list[tuple[str, np.ndarray]] = []
-    for row, line in zip(closing, J, strict=True):
-        size = float(np.linalg.norm(line))
-        left = line - basis.T @ (basis @ line)
-        left = left - basis.T @ (basis @ left)
-        if size == 0 or np.linalg.norm(left) < DEPENDENT * size:
-            found.append(Redundant(row.tie, row.number, _others(row.tie, line, kept)))
-        else:
-            basis = np.vstack([basis, left / np.linalg.norm(left)])
-            kept.append((row.tie, line))
-    return tuple(found)
+    kept = independent_rows(J, DEPENDENT)
+    return tuple(
+        Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
+        for i, row in enumerate(closing) if i not in kept
+    )  # fmt: skip
 
 
 def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:

@@ -229,9 +229,9 @@ def start_value(scope, coordinate) -> Scalar:
 
 def loads_of(motion: Motion) -> Loads:
     """Every applied force of the model, as loads and potentials."""
-    scene = SystemScene(motion)
     applied = []
     for name, force in motion.scope.model.forces.items():
+        scene = SystemScene(motion, f"forces.{name}")
         if not force.works:
             raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
         loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))

@@ -6,13 +6,15 @@ ground's axes. Beside each contact that rubs stands its friction, reaction_t(wal
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.balance import Balance
 from eomgen.mechanics.components import Component, rubbing_of
 from eomgen.mechanics.effects import Effect, efforts_of
+from eomgen.model.constraints.members import ends_asked
 from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.expressions import Call, Expression, Reference
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
 
@@ -47,6 +49,19 @@ def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
     return tuple(named for owner in owners for named in _of_owner(balance, owner))
 
 
+def name_of(call: Call, names: Container[str]) -> str:
+    """The name in a table by which it is asked for: the ends of a member in either order."""
+    ends = ends_asked(call) if call.name == "tension" and call.args else None
+    either = () if ends is None else (ends, ends[::-1])
+    written = (f"tension({named(call.args[0])}, {a}-{b})" for a, b in either)
+    return next((name for name in written if name in names), str(call))
+
+
+def named(argument: Reference | Expression) -> str:
+    """An argument of a call as it was written."""
+    return argument.name if isinstance(argument, Reference) else argument.text
+
+
 def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     ties = [(j, c) for j, c in mine if c.kind != "drive"]
@@ -59,12 +74,12 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
         if not plane and any(_has_couple(c) for _, c in ties):
             yield from _vector(balance, owner, "", "couple_", COUPLE, along)
     for j, c in apart:
-        yield NamedReaction(_name(balance, c), owner, _unit(c), {j: 1})
+        yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
         if c.rubbing:
             yield NamedReaction(f"reaction_t({owner})", owner, FORCE, {j: rubbing_of(balance.system, c)[0]})
     for j, c in mine:
         if c.kind == "drive":
-            yield NamedReaction(_drive(balance, c), owner, _unit(c), {j: 1})
+            yield NamedReaction(_drive(balance, c), owner, unit_of(c), {j: 1})
 
 
 def _vector(
@@ -102,7 +117,8 @@ def _has_couple(component: Component) -> bool:
     return any(not is_zero(x) for effect in component.effects for x in effect.couple)
 
 
-def _unit(component: Component) -> str:
+def unit_of(component: Component) -> str:
+    """FORCE, or COUPLE of what is no force on any body."""
     forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
     return FORCE if forces else COUPLE
 
@@ -111,8 +127,7 @@ def _name(balance: Balance, component: Component) -> str:
     """A strand has the number that the string gives it; several may have one tension, the first gives the name."""
     if component.label != "tension" or component.side:
         return component.name
-    tie = balance.system.scope.model.constraints[component.owner]
-    numbers = tie.strand_rows() if hasattr(tie, "strand_rows") else (1,)
+    numbers = balance.system.scope.model.constraints[component.owner].strand_rows() or (1,)
     strand = numbers.index(component.number) + 1
     return f"tension({component.owner})" if strand == 1 else f"tension({component.owner}, {strand})"
 

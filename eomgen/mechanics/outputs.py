@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
-from eomgen.mechanics.drive import drive, multiplier
 from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
 from eomgen.mechanics.fields.field import (
     Field,
@@ -31,14 +30,13 @@ from eomgen.mechanics.instant.centers import finite_center
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
 from eomgen.mechanics.masses.inertia_about import Asked
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reactions import Reactions, reactions_of
-from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
+from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS, AskedReactions, name_of
+from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
-from eomgen.model.constraints.members import ends_asked
 from eomgen.model.forces.load import Place
 from eomgen.symbolic.derivative import derivative, substituted
-from eomgen.symbolic.expressions import Call, Expression, Reference, parse
+from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
@@ -89,13 +87,6 @@ def asks_motion(formula: Expression) -> bool:
     return any(call.name in OF_MOTION for call in formula.calls)
 
 
-COMPONENTS_OF_REACTIONS = {f"reaction_{axis}": i for axis, i in _AXES.items()}
-COUPLES = {"reaction_couple": 2, **{f"reaction_couple_{axis}": i for axis, i in _AXES.items()}}
-_ALONE = ("reaction_n", "reaction_t", "tension", "multiplier", "drive")
-ASKING_REACTIONS = frozenset((*COMPONENTS_OF_REACTIONS, *COUPLES, *_ALONE, *KINDS))
-"""Functions for which the balance of the bodies is needed."""
-
-
 @dataclass(frozen=True)
 class Quantities:
     """What the functions of the outputs are worth in one system.
@@ -108,10 +99,10 @@ class Quantities:
     system: System
     at: Mapping[Node, Scalar] = field(default_factory=dict)
 
-    @cached_property
+    @property
     def reactions(self) -> Reactions:
         """All reactions, of generic coordinates or at the given ones."""
-        return reactions_of(self.system, self.at, short=True)
+        return self._asked.reactions
 
     def value(self, call: Call) -> Scalar:
         """One function at its arguments, in q, u, a, t and the parameters.
@@ -122,102 +113,23 @@ class Quantities:
         """
         if waits := later(call.name):
             raise NotYet(f"'{call}': {waits}")
-        if call.name == "tension":
-            return self._tension(call)
-        if call.name in KINDS:
-            return self._section_force(call)
+        if call.name in ASKING_REACTIONS:
+            return self._asked.value(call)
         if call.name in MOMENTS_OF_INERTIA:
             asked = Asked(call, self.system.motion, lambda entries: substituted(tuple(entries), self.at))
             return MOMENTS_OF_INERTIA[call.name](asked)
-        names = [_name(call, argument) for argument in call.args]
-        if call.name in ASKING_REACTIONS:
-            return self._reaction(call, *names)
-        if call.name in COMPONENTS:
-            n, i = COMPONENTS[call.name]
-            return self.of_point(n, *names)[i]
-        if call.name in MAGNITUDES:
-            (vector,) = self._here(self.of_point(MAGNITUDES[call.name], *names))
-            return sqrt(dot(vector, vector))
-        if call.name in PARTS_OF_MOTION:
-            part, i = PARTS_OF_MOTION[call.name]
-            return part_of_motion(self.system.motion, part, *names)[i]
-        if call.name in SIZES_OF_PARTS:
-            (vector,) = self._here(part_of_motion(self.system.motion, SIZES_OF_PARTS[call.name], *names))
-            return sqrt(dot(vector, vector))
-        if call.name in ALONG_THE_PATH:
-            return ALONG_THE_PATH[call.name](*self._here(self.of_point(1, *names), self.of_point(2, *names)))
-        if call.name in TURNING:
-            n, i = TURNING[call.name]
-            return self.of_body(n, *names)[i]
-        if call.name not in _OTHERS:
+        if call.name not in _OF_NAMES:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
-        return _OTHERS[call.name](self, *names)
-
-    def _reaction(self, call: Call, owner: str, frame: str = "") -> Scalar:
-        """A component of a reaction: reaction_x(B), reaction_x(B.II), reaction_y(bar, bar), reaction_n(wall)."""
-        if call.name == "multiplier":
-            return self._multiplier(owner)
-        if call.name == "drive":
-            return drive(self.system, owner)
-        owner, _, side = owner.partition(".")
-        if side and call.name in ("reaction_n", "reaction_t"):
-            mend = f"ask {call.name}({owner}), at an instant where it is meant"
-            raise DerivationError(f"'{call}': normal force and friction are on the body named first", mend=mend)
-        if call.name == "reaction_n":
-            return self.reactions.normal(owner)
-        if call.name == "reaction_t":
-            return self.reactions.friction(owner)
-        if call.name in COMPONENTS_OF_REACTIONS:
-            return self.reactions.component("force", COMPONENTS_OF_REACTIONS[call.name], owner, side, frame)
-        return self.reactions.component("couple", COUPLES[call.name], owner, side, frame)
-
-    def _tension(self, call: Call) -> Scalar:
-        """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
-        owner, *strand = call.args
-        name = _name(call, owner)
-        tie = self.system.scope.model.constraints.get(name)
-        if tie is not None and tie.table == "trusses":
-            return self.reactions.member(name, *self._ends(call))
-        number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
-        if not isinstance(number, int) or len(strand) > 1:
-            raise DerivationError(f"'{call}': the second argument is the number of the strand, from 1")
-        return self.reactions.tension(name, number)
-
-    def _section_force(self, call: Call) -> Scalar:
-        """bending_moment(beam, a), shear_force(beam, a, before)."""
-        body, x, *side = call.args
-        sides = [_name(call, name) for name in side]
-        if any(name not in ("before", "after") for name in sides):
-            raise DerivationError(f"'{call}': the third argument is `before` or `after`")
-        names = self.system.scope.names
-        distance = (parse(x.name) if isinstance(x, Reference) else x).evaluate(names)  # L-c reads like a member
-        return self._beam(_name(call, body)).value(call.name, distance, *sides)
-
-    def _beam(self, body: str) -> SectionForces:
-        if body not in self.system.motion.index:
-            raise DerivationError(f"'{body}' is no body with section forces")
-        if body not in self._beams:
-            self._beams[body] = section_forces(self.reactions, body)
-        return self._beams[body]
+        return _OF_NAMES[call.name](self, *(name_of(call, argument) for argument in call.args))
 
     @cached_property
-    def _beams(self) -> dict[str, SectionForces]:
-        """The section forces of the bodies of which they were asked."""
-        return {}
+    def _asked(self) -> AskedReactions:
+        return AskedReactions(self.system, self.at)
 
-    def _ends(self, call: Call) -> tuple[str, str]:
-        """The nodes of the member that an output asks for."""
-        ends = ends_asked(call)
-        if ends is None:
-            raise DerivationError(f"'{call}' names no member of a truss", mend=f"write tension({call.args[0]}, n1-n2)")
-        return ends
-
-    def _multiplier(self, tie: str) -> Scalar:
-        """lam of a tie of one row; of one without a place it stands in the equations of motion."""
-        rows = [row for row in self.system.ties.rows if row.tie == tie]
-        if any(row.pushes for row in rows):
-            return self.reactions.multiplier(tie)
-        return multiplier(self.system, tie)
+    def size(self, vector: Vector) -> Scalar:
+        """|v|"""
+        (vector,) = self._here(vector)
+        return sqrt(dot(vector, vector))
 
     def of_point(self, order: int, point: str, frame: str = GROUND, axes: str = "") -> Vector:
         """Position (order 0), velocity (1) or acceleration (2) of a point, seen from `frame` [m, s].
@@ -234,6 +146,10 @@ class Quantities:
         if axes in ("", frame):
             return seen
         return apply(transposed(axes_of(motion, axes)), apply(axes_of(motion, frame), seen))
+
+    def along_the_path(self, law: Callable[[Vector, Vector], Scalar], *names: str) -> Scalar:
+        """What depends on velocity and acceleration of a point, at the given state."""
+        return law(*self._here(self.of_point(1, *names), self.of_point(2, *names)))
 
     def _here(self, *vectors: Vector) -> tuple[Vector, ...]:
         """The vectors at the given state, readable; as they are where none is given."""
@@ -339,13 +255,37 @@ class Quantities:
         return names.index(coordinate + "'")
 
 
-def _name(call: Call, argument: object) -> str:
-    if not isinstance(argument, Reference):
-        raise DerivationError(f"'{call}': names are needed as arguments")
-    return argument.name
+def _of_point(order: int, axis: int) -> Callable[..., Scalar]:
+    return lambda quantities, *names: quantities.of_point(order, *names)[axis]
 
 
-_OTHERS: dict[str, Callable[..., Scalar]] = {
+def _size_of_point(order: int) -> Callable[..., Scalar]:
+    return lambda quantities, *names: quantities.size(quantities.of_point(order, *names))
+
+
+def _part(part: str, axis: int) -> Callable[..., Scalar]:
+    return lambda quantities, *names: part_of_motion(quantities.system.motion, part, *names)[axis]
+
+
+def _size_of_part(part: str) -> Callable[..., Scalar]:
+    return lambda quantities, *names: quantities.size(part_of_motion(quantities.system.motion, part, *names))
+
+
+def _of_body(order: int, axis: int) -> Callable[..., Scalar]:
+    return lambda quantities, *names: quantities.of_body(order, *names)[axis]
+
+
+def _along_the_path(law: Callable[[Vector, Vector], Scalar]) -> Callable[..., Scalar]:
+    return lambda quantities, *names: quantities.along_the_path(law, *names)
+
+
+_OF_NAMES: dict[str, Callable[..., Scalar]] = {
+    **{name: _of_point(*asked) for name, asked in COMPONENTS.items()},
+    **{name: _size_of_point(order) for name, order in MAGNITUDES.items()},
+    **{name: _part(*asked) for name, asked in PARTS_OF_MOTION.items()},
+    **{name: _size_of_part(part) for name, part in SIZES_OF_PARTS.items()},
+    **{name: _along_the_path(law) for name, law in ALONG_THE_PATH.items()},
+    **{name: _of_body(*asked) for name, asked in TURNING.items()},
     "angle": Quantities.angle,
     "omega": lambda quantities, *names: quantities.turning(1, *names),
     "epsilon": lambda quantities, *names: quantities.turning(2, *names),
@@ -360,3 +300,4 @@ _OTHERS: dict[str, Callable[..., Scalar]] = {
     "potential_energy": lambda quantities, *names: energy_of_force(quantities.system, *names),
     "power": lambda quantities, *names: power(quantities.system, *names),
 }
+"""Functions of names: points, bodies, coordinates."""

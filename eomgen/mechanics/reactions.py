@@ -167,13 +167,11 @@ class Reactions:
         """Tension of a link, or of a strand of a string."""
         if self.is_open(owner):
             return 0
-        rows = getattr(self.balance.system.scope.model.constraints.get(owner), "strand_rows", None)
-        number = strand
-        if rows is not None:
-            numbers = rows()
-            if not 1 <= strand <= len(numbers):
-                raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
-            number = numbers[strand - 1]
+        tie = self.balance.system.scope.model.constraints.get(owner)
+        numbers = () if tie is None else tie.strand_rows()
+        if numbers and not 1 <= strand <= len(numbers):
+            raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
+        number = numbers[strand - 1] if numbers else strand
         found = [j for j, c in enumerate(self.components)
                  if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number]  # fmt: skip
         if not found:

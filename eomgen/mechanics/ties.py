@@ -25,8 +25,12 @@ from eomgen.symbolic.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.text import text_size, to_text
 
 Push = PointForce | Couple
+
+LONG = 60  # characters of a gap that is not printed
+MEETS = 1e-12  # a gap at the model's own values, below which points that stand still meet
 
 
 @dataclass(frozen=True)
@@ -166,7 +170,8 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
     status = "eliminated" if used else _status(motion, velocity, row.gap)
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
-        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}", f"constraints.{name}", mend)
+        off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
+        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
     return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
                row.tangent, sliding, part=row.part)  # fmt: skip
 
@@ -180,7 +185,14 @@ def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
 
 
 def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
-    return "identical" if holds_identically(velocity) and (gap is None or holds_identically(gap)) else "closing"
+    holds = holds_identically(velocity) and (gap is None or holds_identically(gap) or _is_met(motion, gap))
+    return "identical" if holds else "closing"
+
+
+def _is_met(motion: Motion, gap: Scalar) -> bool:
+    """Whether bodies that all stand still meet at the model's own values: 0.2 and r with r = 0.2."""
+    worth = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
+    return worth is not None and abs(worth) < MEETS
 
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:

@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance import DIRECTIONS, Balance
 from eomgen.mechanics.closure import generic_state
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import structure_of
@@ -34,7 +34,7 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
         DerivationError: the body that moves most in it, and the direction.
     """
     system = balance.system
-    motions = len(system.symbols.u) - len(system.ties.closing) + len(redundant_rows(system.ties))
+    motions = freedoms(system.ties)
     if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
         return
     if not system.symbols.u:

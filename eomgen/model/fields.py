@@ -265,7 +265,9 @@ class NameRule:
     def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
-        found.append(Finding(path, f"the name of {article(self.of)} is needed here, not {shown(raw)}"))
+        mend = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
+        found.append(Finding(path, f"the name of {article(self.of)} is needed here, not {shown(raw)}",
+                             mend if self.of == "point" else ""))  # fmt: skip
         return None
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:

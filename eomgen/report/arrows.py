@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from eomgen.report.drawing import LOAD, REACTION, Place, Sketch
+from eomgen.report.figures import halo
 
-__all__ = ["LOAD", "REACTION", "arrow", "distributed", "moment_arc"]
+__all__ = ["LOAD", "REACTION", "arrow", "distributed", "is_freer_outward", "moment_arc"]
+
+STEEP = 0.25  # sine of the angle below which two lines run along one another
+CLEAR = 0.15  # of an arrow: nearer to a line it is on it; so much of it is at its own place
 
 
 def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "", outward: bool = False) -> None:
@@ -32,7 +38,32 @@ def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "",
         sense = 1 if outward else -1
         x, y = 8 * sense * dx / length, 8 * sense * dy / length
         panel.annotate(label, free, xytext=(x, y), textcoords="offset points", color=color, fontsize=9, zorder=7,
-                       ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"))  # fmt: skip
+                       ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"),
+                       path_effects=halo())  # fmt: skip
+
+
+def is_freer_outward(lines: Iterable[np.ndarray], at: Place, vector: Place) -> bool:
+    """Whether an arrow meets fewer lines where it begins at its place than where it ends there."""
+    pieces = [piece for line in lines for piece in pairwise(line)]
+    place, stroke = np.array(at), np.array(vector)
+    begun, ended = (sum(_meets(a, b, place, s) for a, b in pieces) for s in (stroke, -stroke))
+    return begun < ended
+
+
+def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> bool:
+    """Whether a stroke from a place runs along the piece a b, or crosses it further on."""
+    along, away = b - a, at - a
+    turn = along[0] * stroke[1] - along[1] * stroke[0]
+    sizes = float(np.hypot(*along) * np.hypot(*stroke))
+    if not sizes:
+        return False
+    if abs(turn) < STEEP * sizes:
+        middle = away + stroke / 2
+        share = float(np.clip(middle @ along / (along @ along), 0, 1))
+        return bool(np.hypot(*(middle - share * along)) < CLEAR * np.hypot(*stroke))
+    on_piece = (away[0] * stroke[1] - away[1] * stroke[0]) / turn
+    on_stroke = (away[0] * along[1] - away[1] * along[0]) / turn
+    return bool(0 <= on_piece <= 1 and CLEAR < on_stroke <= 1)
 
 
 def _aligned(away: float, before: str, after: str) -> str:
@@ -50,7 +81,7 @@ def moment_arc(panel: Any, sketch: Sketch, at: Place, sense: float, *, color: st
                    arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0})
     if label:
         panel.annotate(label, (at[0], at[1] + r), xytext=(0, 5), textcoords="offset points", color=color, fontsize=9,
-                       ha="center", va="bottom", zorder=7)  # fmt: skip
+                       ha="center", va="bottom", zorder=7, path_effects=halo())  # fmt: skip
 
 
 def distributed(
@@ -72,5 +103,7 @@ def distributed(
         arrow(panel, (tip[0], tip[1]), (vector[0], vector[1]), color=color)
     panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
     if label:
-        panel.annotate(label, tuple(np.mean(tails, axis=0)), xytext=(0, 4), textcoords="offset points", color=color,
-                       fontsize=9, ha="center", va="bottom", zorder=7)  # fmt: skip
+        x, y = -4 * (p + q) / (np.linalg.norm(p + q) or 1.0)
+        panel.annotate(label, tuple(np.mean(tails, axis=0)), xytext=(x, y), textcoords="offset points", color=color,
+                       fontsize=9, ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"), zorder=7,
+                       path_effects=halo())  # fmt: skip

@@ -62,9 +62,10 @@ class Sketch:
         if outlines := self.outlines(link):
             return [line for line, _ in outlines]
         own = self.system.motion.points[link.name]
-        points = [self.position((link.name, own[name.rpartition(".")[2]])) for name in part.line or part.points]
+        points = [self.position((link.name, own[name])) for name in part.points]
         if link.joint is not None and link.joint.carries_reaction:
-            points.insert(0, self.position((link.name, link.point)))
+            seat = self.position((link.name, link.point))
+            points[:0] = [] if any(math.dist(seat, p) < 1e-9 for p in points) else [seat]
         return [_straightened(np.array(points))] if len(points) > 1 else []
 
     def outlines(self, link: Link) -> list[tuple[np.ndarray, str]]:

@@ -93,6 +93,13 @@ def mathtext(name: str) -> str:
     return f"{dotted}_{{{below}}}" if below else dotted
 
 
+def halo() -> list[Any]:
+    """A white edge round letters, so that they can be read over lines: `path_effects` of a text."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2.5, foreground="white")]
+
+
 def _save(figure: Any, path: Path) -> None:
     """Draw aside and move into place."""
     metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower(), {})

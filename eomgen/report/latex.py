@@ -44,8 +44,10 @@ PREAMBLE = r"""\documentclass[fleqn]{article}
 \setlength{\jot}{4pt}
 \setlength{\LTleft}{0pt}
 \setlength{\LTright}{\fill}
+\renewcommand{\arraystretch}{1.25}
 """
 WORDS = 60  # characters in a line of a column of words, and its width in mm
+SHORT = 24  # rows of a table that stays on one page
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
@@ -219,29 +221,42 @@ def value_latex(value: str) -> str:
 
 
 def _table(setter: Setter, table: Table) -> str:
-    """A table that may go over pages, without its empty columns."""
+    """A table without its empty columns."""
     kept = table.columns
     alignment = "".join(r"p{85mm}" if k == 1 else "l" for k in kept)
     head = " & ".join(escaped(table.head[k]) for k in kept)
-    lines = [rf"\begin{{longtable}}{{@{{}}{alignment}@{{}}}}", head + r" \\ \hline \noalign{\vskip 3pt} \endhead"]
+    lines = []
     for row in table.rows:
         symbol = f"${side_latex(setter, row.symbol)}$"
         cells = (symbol, escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
-        lines.append(" & ".join(cells[k] for k in kept) + r" \\")
-    return "\n".join([*lines, r"\end{longtable}"])
+        lines.append(" & ".join(cells[k] for k in kept))
+    return _ruled(alignment, head, lines)
+
+
+def _ruled(alignment: str, head: str, rows: list[str]) -> str:
+    """A table with a line under its head; a long one may go over pages, and then needs a second run of LaTeX."""
+    top = head + r" \\ \hline \noalign{\vskip 3pt}"
+    columns, lines = f"{{@{{}}{alignment}@{{}}}}", [rf"{row} \\" for row in rows]
+    if len(rows) > SHORT:
+        lines = [rf"\begin{{longtable}}{columns}", rf"{top} \endhead", *lines, r"\end{longtable}"]
+    else:
+        lines = [r"\medskip", rf"\begin{{tabular}}{columns}", top, *lines, r"\end{tabular}\medskip", ""]
+    return "\n".join(lines)
 
 
 def _grid(setter: Setter, grid: Grid) -> str:
-    """A table of words and formulas that may go over pages; columns of long words are wrapped."""
+    """A table of words and formulas; columns of long words are wrapped, units and numbers set as such."""
     alignment = "".join(f"p{{{WORDS}mm}}" if _is_wordy(grid, k) else "l" for k in range(len(grid.head)))
-    lines = [rf"\begin{{longtable}}{{@{{}}{alignment}@{{}}}}",
-             _cells(setter, grid.head) + r" \\ \hline \noalign{\vskip 3pt} \endhead"]  # fmt: skip
-    lines += [_cells(setter, row) + r" \\" for row in grid.rows]
-    return "\n".join([*lines, r"\end{longtable}"])
+    units = [head == "unit" for head in grid.head]
+    head = _cells(setter, grid.head, [True] * len(grid.head))
+    return _ruled(alignment, head, [_cells(setter, row, units) for row in grid.rows])
 
 
-def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
-    return " & ".join(escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$" for cell in row)
+def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:
+    """The cells of a row; `units`: which of them are units, if they are words."""
+    words = [unit_latex if unit else value_latex for unit in units]
+    return " & ".join(set_(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$"
+                      for set_, cell in zip(words, row, strict=True))  # fmt: skip
 
 
 def _is_wordy(grid: Grid, column: int) -> bool:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Container
 from dataclasses import dataclass
-from typing import Any
 
 from eomgen.mechanics.balance import Balance
 from eomgen.mechanics.components import Component
 from eomgen.mechanics.friction import Rub, rubbing_contacts
-from eomgen.mechanics.named_reactions import NamedReaction
+from eomgen.mechanics.named_reactions import NamedReaction, unit_of
 from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.ties import Row
+from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
 from eomgen.report.statements import Meaning, Table
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -53,7 +53,7 @@ class Lettered:
         rows = []
         for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
             if shown is None or symbol in shown:
-                rows.append(Meaning(symbol, meaning(self.balance, component), _unit(component)))
+                rows.append(Meaning(symbol, meaning(self.balance, component), unit_of(component)))
             for rub, friction in zip(self.rubs, self.frictions, strict=True):
                 if rub.component == j and (shown is None or friction in shown):
                     rows.append(Meaning(friction, f"friction {_on(self.balance, component)}, along the contact", "N"))
@@ -89,18 +89,16 @@ def _letters(balance: Balance, component: Component) -> str:
         return "_".join(filter(None, (component.owner, component.side, component.label)))
     kind, _, number = component.label.partition(" ")
     if kind == "tension" and component.side:
-        trusses = [name for name, tie in balance.system.scope.model.constraints.items() if hasattr(tie, "ends")]
+        trusses = trusses_of(balance.system.scope.model.constraints)
         return "_".join(("N", *([component.owner] if len(trusses) > 1 else []), *component.side.split("-")))
     return "_".join(filter(None, (LETTERS[kind], component.owner, number or _strand(balance, component))))
 
 
 def _strand(balance: Balance, component: Component) -> str:
     """The number of the first strand that has this tension, of a string that has several; else ""."""
-    tie: Any = balance.system.scope.model.constraints.get(component.owner)
-    if component.label != "tension" or not hasattr(tie, "strand_rows"):
-        return ""
-    rows = tie.strand_rows()
-    return str(rows.index(component.number) + 1) if max(rows) > 1 else ""
+    tie = balance.system.scope.model.constraints.get(component.owner)
+    rows = () if tie is None or component.label != "tension" else tie.strand_rows()
+    return str(rows.index(component.number) + 1) if max(rows, default=1) > 1 else ""
 
 
 def meaning(balance: Balance, component: Component) -> str:
@@ -186,11 +184,6 @@ def _named(direction: Vector) -> str:
     if all(type(x) is not Node for x in direction):
         return f"({', '.join(str(x) for x in direction)})"
     return "a direction across its freedom"
-
-
-def _unit(component: Component) -> str:
-    forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
-    return "N" if forces else "N*m"
 
 
 def _is_turned(row: Row, component: Component) -> bool:

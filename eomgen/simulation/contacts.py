@@ -1,4 +1,4 @@
-"""Model -> its contacts: what can end, rub or stick, and the pieces of its paths; and how all of them are at a time."""
+"""Model -> how all of its contacts, and the pieces of its paths, are at a time, and what changes in words."""
 
 from __future__ import annotations
 
@@ -7,42 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from eomgen.mechanics.contacts import Mode
-from eomgen.model.friction import Resistance
+from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
 from eomgen.symbolic.expressions import Expression
-
-
-@dataclass(frozen=True)
-class Contact:
-    """A tie, or the joint of a body on a path.
-
-    Args:
-        name: of the tie, or of the body.
-        kind: as the model file says it: "support", "link", "path".
-        unilateral: it can end.
-        friction: its law, or None.
-    """
-
-    name: str
-    kind: str
-    unilateral: bool
-    friction: Resistance | None
-
-    @property
-    def words(self) -> str:
-        return f"the body '{self.name}'" if self.kind == "path" else f"the {self.kind} '{self.name}'"
-
-    @property
-    def mu(self) -> Expression | None:
-        """The coefficient of Coulomb friction."""
-        return None if self.friction is None else self.friction.coulomb
-
-    @property
-    def pulls(self) -> bool:
-        """A wire or string, which goes slack; anything else opens."""
-        return self.kind in ("link", "string")
 
 
 @dataclass(frozen=True)
@@ -66,30 +35,12 @@ class Configuration:
 
 def has_phases(model: Model) -> bool:
     """Whether the model has anything that can change as it moves."""
-    return bool(contacts_of(model)) or any(_pieces(body) > 1 for body in model.bodies.values())
-
-
-def contacts_of(model: Model) -> tuple[Contact, ...]:
-    """Every tie that can end or rubs, and every body that rubs on its path."""
-    found = []
-    for name, tie in model.constraints.items():
-        friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
-        if unilateral or friction is not None:
-            found.append(Contact(name, tie.kind, unilateral, friction))
-    for name, body in model.bodies.items():
-        friction = getattr(body.joint, "friction", None)
-        if friction is not None:
-            found.append(Contact(name, "path", False, friction))
-    return tuple(found)
-
-
-def _pieces(body: Any) -> int:
-    return len(getattr(body.joint, "pieces", ()))
+    return bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
 
 
 def paths_of(model: Model) -> tuple[str, ...]:
     """The bodies on a path of several pieces."""
-    return tuple(name for name, body in model.bodies.items() if _pieces(body) > 1)
+    return tuple(name for name, body in model.bodies.items() if len(pieces_of(body)) > 1)
 
 
 def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:

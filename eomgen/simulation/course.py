@@ -15,9 +15,10 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.start import start_state
+from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
-from eomgen.simulation.contacts import Configuration, bounds_of, contacts_of, on_pieces, paths_of
+from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, paths_of
 from eomgen.simulation.events import Crossing
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.settling import settled

@@ -16,8 +16,9 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.reactions import Indeterminate
+from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
-from eomgen.simulation.contacts import Configuration, Contact, contacts_of, on_pieces
+from eomgen.simulation.contacts import Configuration, on_pieces
 from eomgen.simulation.stage import FORCE, Stage, Values, smallest_speed
 from eomgen.simulation.stages import OPEN, Stages
 

@@ -15,7 +15,8 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
-from eomgen.simulation.contacts import Configuration, Contact
+from eomgen.model.contacts import Contact
+from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.watching import Bound, Watch
 from eomgen.symbolic.derivative import depends_on

@@ -13,12 +13,13 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.freedom import freedoms, redundant_rows
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.release import released, stays_straight
 from eomgen.mechanics.system import System, system_of
+from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
-from eomgen.simulation.contacts import Configuration, Contact, bounds_of, contacts_of, on_pieces
+from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.stage import Stage, Values
 from eomgen.simulation.watching import Watch, sliding_velocity
@@ -146,13 +147,7 @@ def _released(system: System, tie: str) -> System:
     after = system_of(model, modes)
     dependent = redundant_rows(system.ties)
     held = [row for row in system.ties.rows if row.tie == tie and row not in dependent]
-    if _freedom(after) < _freedom(system) + len(held):
+    if freedoms(after.ties) < freedoms(system.ties) + len(held):
         raise DerivationError(f"'{tie}' ends, and what it held does not become free", f"constraints.{tie}",
                               "place the body by coordinates that can leave the contact")  # fmt: skip
     return after
-
-
-def _freedom(system: System) -> int:
-    """Independent speeds less the independent closing rows."""
-    ties = system.ties
-    return len(system.symbols.u) - len(ties.closing) + len(redundant_rows(ties))

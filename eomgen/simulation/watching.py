@@ -20,7 +20,8 @@ from eomgen.mechanics.freedom import redundant_rows
 from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
-from eomgen.simulation.contacts import Configuration, Contact
+from eomgen.model.contacts import Contact
+from eomgen.simulation.contacts import Configuration
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Scalar
 

@@ -17,6 +17,7 @@ _AFTER_QUARTERS = {  # name -> what it is after 0, 1, 2, 3 quarter turns
     "sin": (("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)),
     "cos": (("cos", 1), ("sin", -1), ("cos", -1), ("sin", 1)),
 }
+_OTHER = {"sin": "cos", "cos": "sin"}
 _SINES: dict[Fraction, Number] = {Fraction(0): 0, Fraction(1, 6): Fraction(1, 2), Fraction(1, 2): 1}  # rational ones
 _SQUARES = {Fraction(1, 4): 2, Fraction(1, 3): 3}  # sin(turn pi) = sqrt(square) / 2
 _INVERSES = {  # function -> {square of its argument: its value in units of pi}
@@ -28,7 +29,10 @@ LARGEST_MULTIPLE = 4  # of an inverse function under a sine or cosine
 
 
 def circular(graph: Any, name: str, a: Scalar) -> Scalar:
-    """sin or cos (the name) of a on the graph: the argument starts with a plus, multiples of pi are in [0, 1/2)."""
+    """sin or cos (the name) of a on the graph: the argument starts with a plus, multiples of pi are in [0, 1/2).
+
+    Where nothing else is in it, they are in [0, 1/4].
+    """
     if type(a) is Node and a.op == "symbol":
         return graph.held(name, (a,))
     terms = linear_terms(a)
@@ -50,10 +54,13 @@ def circular(graph: Any, name: str, a: Scalar) -> Scalar:
         sign = -1 if name == "sin" else 1
     quarter = int(2 * turn)
     name, flip = _AFTER_QUARTERS[name][quarter]
+    turn -= Fraction(quarter, 2)
+    if not ordered and number == 0 and turn > Fraction(1, 4):  # sin(3*pi/10) = cos(pi/5)
+        name, turn = _OTHER[name], Fraction(1, 2) - turn
     angle: Scalar = number
     for atom, c in ordered:
         angle = graph.add(angle, graph.mul(c, atom))
-    angle = graph.add(angle, graph.mul(tidy(turn - Fraction(quarter, 2)), graph.pi))
+    angle = graph.add(angle, graph.mul(tidy(turn), graph.pi))
     return graph.mul(sign * flip, graph.held(name, (angle,)))
 
 

@@ -156,7 +156,7 @@ class Expansion:
         for sign in (1, -1):
             if self._is_never_negative(scaled(f, sign)) or scaled(f, sign) in roots:
                 return sign
-        return self._sign_of_constant(self.atoms.node(f))
+        return self.sign_of_constant(self.atoms.node(f))
 
     def _is_never_negative(self, f: Terms) -> bool:
         """Whether every monomial is positive and its number outweighs its waves: 1 + cos(2 x) >= 0."""
@@ -167,7 +167,8 @@ class Expansion:
             least[monomial] = least.get(monomial, 0) + (-abs(Fraction(c)) if w else c)
         return all(number >= 0 for number in least.values())
 
-    def _sign_of_constant(self, x: Scalar) -> int | None:
+    def sign_of_constant(self, x: Scalar) -> int | None:
+        """The sign of a number without symbols, by its value; None for anything else, and for what may be 0."""
         if type(x) is not Node or any(node.op == "symbol" for node in order((x,))):
             return None
         try:

@@ -209,10 +209,16 @@ def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) ->
         return x
 
 
-def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
-    """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside."""
+def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = (), most: int | None = None) -> Scalar:
+    """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside.
+
+    Args:
+        most: terms; a longer sum stays as it is.
+    """
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
+        if most is not None and len(terms) > most:
+            return x
         writer = Writer(expansion)
         forms = [writer.sum(terms), *_quotients(expansion, writer, terms)]
     except TooLarge:

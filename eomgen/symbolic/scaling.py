@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.functions import over
+from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.linear import Solution, Values
 from eomgen.symbolic.linear import solved as solved_as_given
@@ -106,7 +106,10 @@ def monomial(x: Scalar) -> Monomial:
     stack: list[tuple[Scalar, int]] = [(x, 1)]
     while stack:
         part, e = stack.pop()
-        if type(part) is not Node:
+        roots = _two_roots(part)
+        if roots:
+            stack += [(root, e * sign) for root, sign in roots]
+        elif type(part) is not Node:
             number = number * Fraction(part) ** e
         elif part.op == "neg":
             number = -number
@@ -117,6 +120,18 @@ def monomial(x: Scalar) -> Monomial:
             powers[part] = powers.get(part, 0) + e
     whole = number.numerator if number.denominator == 1 else number
     return Monomial(whole, {atom: e for atom, e in powers.items() if e})
+
+
+def _two_roots(x: Scalar) -> tuple[tuple[Scalar, int], ...]:
+    """sqrt(n f) = sqrt(n) sqrt(f), sqrt(n/f), sqrt(f/n) with a positive number n: the roots and their powers."""
+    if type(x) is not Node or x.op != "sqrt":
+        return ()
+    (under,) = x.args
+    if type(under) is not Node or under.op not in ("mul", "div"):
+        return ()
+    a, b = under.args
+    n = next((part for part in (a, b) if type(part) is not Node), 0)
+    return ((sqrt(a), 1), (sqrt(b), 1 if under.op == "mul" else -1)) if n > 0 else ()
 
 
 def _taken(

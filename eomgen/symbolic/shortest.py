@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 from math import gcd
 
@@ -24,6 +25,7 @@ Sum = tuple[tuple[Number, Factors], ...]
 MOST_AXES = 6
 MOST_PAIRED = 60  # waves among which pairs are sought
 MOST_CHOICES = 64  # of forms along the directions, tried all
+KEPT = 4096  # sums of which the shortest form is remembered
 
 
 def shortest(waves: Waves) -> Sum:
@@ -34,7 +36,16 @@ def shortest(waves: Waves) -> Sum:
     """
     if len(waves) == 1 and not _has_multiple(waves):
         return _as_waves(waves)
+    return _shortest(tuple(waves.items()))
+
+
+@lru_cache(maxsize=KEPT)
+def _shortest(items: tuple[tuple[Wave, Number], ...]) -> Sum:
+    """The search itself: one sum comes several times on its way into a formula."""
+    waves = dict(items)
     pairs, rest = _paired(waves)
+    if not pairs:
+        return _without_pairs(waves)
     return min(_without_pairs(waves), _merged([*pairs, *_without_pairs(rest)]), key=_length)
 
 
@@ -168,6 +179,8 @@ def _by_support(waves: Waves) -> Sum:
     parts: dict[tuple[int, ...], Waves] = {}
     for w, c in waves.items():
         parts.setdefault(tuple(angle for angle, _ in w[1]) if w else (), {})[w] = c
+    if len(parts) == 1:
+        return _as_waves(waves)  # in one part it is what the other candidates are
     terms: list[tuple[Number, Factors]] = []
     for part in parts.values():
         candidates: list[Sum] = [_as_waves(part), _by_directions(part), _in_powers(part) or _as_waves(part)]

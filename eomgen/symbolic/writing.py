@@ -171,7 +171,7 @@ class Writer:
     def radical(self, x: Radical) -> Scalar:
         """above/below |bare| sqrt(...)"""
         graph = self.graph
-        bare = graph.call("abs", graph.div(self.in_factors(x.bare_above), self.in_factors(x.bare_below)))
+        bare = self._size(graph.div(self.in_factors(x.bare_above), self.in_factors(x.bare_below)))
         sign = -1 if x.number < 0 else 1
         above, below = self._product(({ONE: sign}, *x.under_above)), self._product(x.under_below)
         number = abs(Fraction(x.number))
@@ -181,6 +181,11 @@ class Writer:
             root = graph.sqrt(graph.mul(tidy(number), graph.div(above, below)))
         outside = graph.mul(self.in_factors(x.above), graph.mul(bare, root))
         return graph.div(outside, self.in_powers(x.below))
+
+    def _size(self, x: Scalar) -> Scalar:
+        """|x|; x or -x of a number without symbols."""
+        sign = self._expansion.sign_of_constant(x)
+        return self.graph.call("abs", x) if sign is None else self.graph.mul(sign, x)
 
     def _product(self, parts: tuple[Terms, ...]) -> Scalar:
         """The product, or what comes of multiplying it out where that is no longer."""

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.mechanics.instant.snapshot import mobility_of
-from eomgen.model.parts import Model
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
+from eomgen.mechanics.statics.structure import Structure, structure_of
+from eomgen.mechanics.system import system_of
+from eomgen.model.parts import Model, Truss
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.course import modes_at_start
@@ -22,11 +25,16 @@ def check(model: Model) -> Outcome:
     dependent = [name for name, coordinate in model.coordinates.items() if coordinate.dependent]
     remark = dict.fromkeys(driven, " (driven)") | dict.fromkeys(dependent, " (dependent)")
     lines = [f"{model.name}: no problems found", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
+    lines += [f"trusses: {listed(_truss(*each) for each in model.trusses.items())}"] if model.trusses else []
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
+    lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
-    mobility = mobility_of(model) if not model.coordinates and (model.constraints or model.trusses) else None
+    still = not model.coordinates and bool(model.constraints or model.trusses)
+    mobility = mobility_of(model) if still else None
+    structure = structure_of(system_of(model, modes_at_rest(model))) if still else None
     lines += _freedom_lines(model, freedom)
     lines += [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
+    lines += [] if structure is None else [f"structure: {_held(structure)}"]
     lines += [f"open at the start: {listed(away)}"] if away else []
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
     payload = {
@@ -34,11 +42,26 @@ def check(model: Model) -> Outcome:
         "coordinates": list(model.coordinates), "driven": driven, "dependent": dependent, "missing_values": missing,
         "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
         "not_counted": freedom.not_counted or None, "mobility": mobility,
+        "indeterminacy": None if structure is None else structure.indeterminacy, "unknowns": list(model.unknowns),
         "open_at_start": away, "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip
     return Outcome("\n".join(lines) + "\n", payload)
+
+
+def _truss(name: str, truss: Truss) -> str:
+    return f"{name} ({len(truss.nodes)} nodes, {len(truss.members)} members)"
+
+
+def _held(structure: Structure) -> str:
+    """How a structure stands, by the rank of what holds it; forces that are asked for hold it too."""
+    unknowns = f", held by {listed(p.name for p in structure.unknowns)} too" if structure.unknowns else ""
+    extra = structure.indeterminacy
+    surplus = "" if not extra else f"{extra} reaction{'s' if extra > 1 else ''} more than independent ones"
+    if structure.mobility and not structure.turns_idly:
+        return f"a mechanism, it can move{unknowns}" + (f"; {surplus}" if surplus else "")
+    return f"stable, statically {f'indeterminate: {surplus}' if surplus else 'determinate'}{unknowns}"
 
 
 def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from eomgen.model.parts import Model
-from eomgen.report.inertia.picture import plot_inertia
 from eomgen.report.inertia.result import inertia as found_in
-from eomgen.verbs.outcome import Outcome
+from eomgen.verbs.outcome import Outcome, prepared
 
 
 def inertia(
@@ -23,7 +22,7 @@ def inertia(
     """
     found = found_in(model, bodies, about=about, axis=axis)
     if plot is not None:
-        plot_inertia(model, found, plot)
+        found.plot(prepared(plot))
     if format == "json":
         return Outcome("", found.as_dict())
     return Outcome(found.render(format))

@@ -8,6 +8,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import CLOSED
 from eomgen.mechanics.reactions import Indeterminate, reactions_of
 from eomgen.mechanics.system import System
+from eomgen.model.contacts import contacts_of
 from eomgen.symbolic.derivative import symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
@@ -22,9 +23,8 @@ def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, 
         state: exact scalars of everything that moves.
         values: of the parameters.
     """
-    ties = system.scope.model.constraints
-    names = [name for name, tie in ties.items()
-             if getattr(tie, "unilateral", False) and system.modes.get(name, CLOSED).closed]  # fmt: skip
+    names = [contact.name for contact in contacts_of(system.scope.model)
+             if contact.unilateral and system.modes.get(contact.name, CLOSED).closed]  # fmt: skip
     if not names:
         return ()
     try:

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.dense import balanced
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic import cramer, linear
@@ -144,8 +144,7 @@ class _Place:
     @cached_property
     def _generic_rank(self) -> int:
         """Of J where the ties are not in a special position."""
-        ties = (self.statics.system.free or self.statics.system).ties
-        return len(ties.closing) - len(redundant_rows(ties))
+        return rank_of_ties((self.statics.system.free or self.statics.system).ties)
 
     @cached_property
     def _H(self) -> Matrix:

@@ -22,6 +22,7 @@ from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.work import generalized_forces, powered_forces
+from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.table import Table
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted
@@ -216,19 +217,11 @@ def _refuse_dry_friction(system: System) -> None:
     Raises:
         DerivationError: the contact is named.
     """
-    model = system.scope.model
-    for name, tie in model.constraints.items():
-        if getattr(getattr(tie, "friction", None), "coulomb", None) is not None:
-            raise _rubs(name, f"constraints.{name}")
-    for name, body in model.bodies.items():
-        pieces: Any = getattr(body.joint, "pieces", None) or ()
-        if any(getattr(piece.friction, "coulomb", None) is not None for piece in pieces):
-            raise _rubs(name, f"bodies.{name}.joint")
-
-
-def _rubs(name: str, where: str) -> DerivationError:
-    return DerivationError(f"'{name}' rubs: by dry friction it rests in a range of places, not in single ones", where,
-                           "leave the friction out, or ask at an instant which force it takes")  # fmt: skip
+    rough = rough_contacts(system.scope.model)
+    if rough:
+        what = f"'{rough[0].name}' rubs: by dry friction it rests in a range of places, not in single ones"
+        raise DerivationError(what, rough[0].declared_at,
+                              "leave the friction out, or ask at an instant which force it takes")  # fmt: skip
 
 
 def _refuse_signs_of_rates(Q: Row, free: System) -> None:

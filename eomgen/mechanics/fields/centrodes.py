@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.fields.curves import WORK, Curve, curve_of
 from eomgen.mechanics.fields.field import field_of, rotation_center
 from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
+from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.spatial import Vector, vector_of
@@ -76,17 +74,7 @@ def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
 
 def parameters(kinds: Kinds) -> int:
     """How many parameters move a system: its freedoms by rank, and the time where something moves as given."""
-    return freedoms(kinds) + moves_by_itself(kinds.system)
-
-
-def freedoms(kinds: Kinds) -> int:
-    """nu - rank J at a generic configuration."""
-    ties, speeds = kinds.system.ties, len(kinds.system.symbols.u)
-    if not ties.closing or not speeds:
-        return speeds
-    values = evaluate([x for row in ties.J for x in row], kinds.possible.states[0], fifty_digits())
-    J = np.array([float(x) for x in values]).reshape(-1, speeds)
-    return speeds - int(np.linalg.matrix_rank(J, tol=1e-9 * np.max(np.abs(J), initial=1e-300)))
+    return freedoms(kinds.system.ties, kinds.possible.states[0]) + moves_by_itself(kinds.system)
 
 
 def moves_by_itself(system: System) -> bool:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from random import Random
 from typing import Any
 
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.dense import independent_rows
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
@@ -26,6 +28,7 @@ from eomgen.symbolic.normal_form import collected_in, readable_all
 WORK = 50_000  # products of terms for one entry
 TRIES = 20
 RANK = 1e-9  # of a row's distance from those before it, against its length
+EXACT = 1e-20  # of an entry, against the largest of its row
 OPEN = 1e-9  # of a gap, against the size of the mechanism
 
 Values = Mapping[Node, Any]
@@ -86,11 +89,28 @@ def given_lines(
         where = f"given.{order}.{number}"
         sides = (equation.left, equation.right)
         left, right = (side.evaluate(system.scope.names, quantities.value) for side in sides)
+        _refuse_other_order(system, equation, left - right, order, where)
         (gap,) = substituted((left - right,), state)
         if order == "velocity" and depends_on(gap, symbols.a):
             raise DerivationError(f"'{equation.text}' holds an acceleration", where, "put it under `acceleration`")
         lines.append(linear_line(equation.text, gap, (*rates, *symbols.unknowns.values()), where))
     return lines
+
+
+def _refuse_other_order(system: System, equation: Equation, gap: Scalar, order: str, where: str) -> None:
+    """Refuse an equation that says nothing of its order: of places, or of velocities under `acceleration`.
+
+    Raises:
+        DerivationError: the equation is named.
+    """
+    symbols = system.symbols
+    unknowns = tuple(symbols.unknowns.values())
+    if depends_on(gap, (*symbols.a, *unknowns, *(symbols.u if order == "velocity" else ()))):
+        return
+    if depends_on(gap, (*symbols.u, *symbols.q)):
+        mend = "put it under `velocity`" if depends_on(gap, symbols.u) else "places are where points and starts are"
+        raise DerivationError(f"'{equation.text}' says nothing of {'velocities' if order == 'velocity' else 'accelerations'}",
+                              where, mend)  # fmt: skip
 
 
 def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> Line:
@@ -131,23 +151,27 @@ def _at_own_values(system: System, x: Scalar) -> float:
 
 
 def solution_of(
-    system: System, ties: Sequence[Line], given: Sequence[Line], unknowns: Sequence[Node]
+    system: System, ties: Sequence[Line], given: Sequence[Line], unknowns: Sequence[Node],
+    near: Mapping[Node, float] | None = None,
 ) -> tuple[dict[Node, Scalar], tuple[int, int]]:
     """(each unknown that the equations determine, with the free ones in it; ranks of the ties and of all).
 
+    Args:
+        near: where symbols of the configuration are, in rounded numbers: what nearly vanishes there does.
     Raises:
         DerivationError: equations that contradict one another.
     """
     lines = [*ties, *given]
-    own, shaken = (_values(system, lines, shaken=shaken) for shaken in (False, True))
+    own, shaken = (_values(system, lines, near or {}, shaken=shaken) for shaken in (False, True))
     matrix = _matrix(lines, unknowns, own)
     _refuse_contradiction(lines, matrix)
     rank = _rank(matrix)
-    values = shaken if _rank(_matrix(lines, unknowns, shaken)) == rank else own
+    values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
     found = solved(rows, [line.right for line in lines], len(unknowns),
-                   lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+                   lambda scalars: evaluate(scalars, values, fifty_digits()),
+                   tolerance=EXACT if near is None else RANK)  # fmt: skip
     result = {}
     for j, constant in found.constants.items():
         shares = [share * unknowns[f] for f, share in found.shares[j].items()]
@@ -155,12 +179,13 @@ def solution_of(
     return result, (_rank(matrix[: len(ties)]), rank)
 
 
-def _values(system: System, lines: Sequence[Line], *, shaken: bool) -> Values:
+def _values(system: System, lines: Sequence[Line], near: Mapping[Node, float], *, shaken: bool) -> Values:
     """Values of every symbol in the equations: parameters, and what is free or unknown in them."""
     scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
     for seed in range(1, TRIES):
         rng = Random(seed)
         values = values_of_parameters(system.scope, rng, shaken=shaken)
+        values |= {node: fifty_digits().number(Fraction(x)) for node, x in near.items()}
         values |= {x: fifty_digits().number(1) * rng.uniform(0.5, 2) for x in symbols_of(scalars) if x not in values}
         try:
             evaluate(scalars, values, fifty_digits())
@@ -186,18 +211,7 @@ def _matrix(lines: Sequence[Line], unknowns: Sequence[Node], values: Values) -> 
 
 def _rank(matrix: np.ndarray) -> int:
     """Of A in [A | b]."""
-    return len(list(_basis(matrix)))
-
-
-def _basis(matrix: np.ndarray) -> Iterator[int]:
-    """The rows of A that do not follow from those before them."""
-    Q = np.zeros((0, matrix.shape[1] - 1))
-    for i, row in enumerate(matrix[:, :-1]):
-        left = row - Q.T @ (Q @ row)
-        left = left - Q.T @ (Q @ left)
-        if np.linalg.norm(left) > RANK * max(float(np.linalg.norm(row)), RANK):
-            Q = np.vstack([Q, left / np.linalg.norm(left)])
-            yield i
+    return len(independent_rows(matrix[:, :-1], RANK))
 
 
 def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray) -> None:
@@ -206,7 +220,7 @@ def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray) -> None:
     Raises:
         DerivationError: all of them are named.
     """
-    kept = list(_basis(matrix))
+    kept = independent_rows(matrix[:, :-1], RANK)
     basis = matrix[kept]
     for i, line in enumerate(lines):
         if i in kept:

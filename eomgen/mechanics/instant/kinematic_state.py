@@ -43,6 +43,7 @@ class KinematicState:
         rate: the velocity that is left as a symbol, by which all others are expressed; "" where all are known.
         symbol: of it.
         exact: whether the state is known in closed form.
+        rounded: whether the accelerations are numbers although the state has a closed form.
     """
 
     system: System
@@ -55,6 +56,7 @@ class KinematicState:
     rate: str = ""
     symbol: Node | None = None
     exact: bool = True
+    rounded: bool = False
 
     @property
     def state(self) -> State:
@@ -64,7 +66,7 @@ class KinematicState:
     @property
     def is_short(self) -> bool:
         """Whether it is known exactly, by formulas that a reader can take."""
-        return self.exact and sum(map(text_size, self.state.values())) <= SHORT
+        return self.exact and not self.rounded and sum(map(text_size, self.state.values())) <= SHORT
 
     @property
     def plane(self) -> bool:

@@ -14,8 +14,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from eomgen.errors import DerivationError
-from eomgen.mechanics.elimination import dependent_coordinates
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.instant.given_rows import (
     Line,
     given_lines,
@@ -28,13 +27,14 @@ from eomgen.mechanics.instant.given_rows import (
 from eomgen.mechanics.instant.loose import freed
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.statics.rest import at_rest
 from eomgen.mechanics.system import System, free_system_of, reduced
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.trusses import is_node
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.expressions import Expression, parse
 from eomgen.symbolic.graph import Node, Scalar
@@ -42,6 +42,7 @@ from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.text import text_size
 
 WORK = 50_000  # products of terms for one value
+SHORT = 80  # characters of where a coordinate is that stands for it in formulas
 LONG = 400  # characters from which a value is no easier to read than it came
 
 State = dict[Node, Scalar]
@@ -79,6 +80,7 @@ class Snapshot:
         speeds: the start speeds of the model's own coordinates that are given, too.
         assumed: a velocity that is taken to be a symbol: {text: symbol}.
         exact: whether the places are; else they are numbers.
+        located: where coordinates are that stay symbols, as their closed form would be long, in numbers.
     """
 
     system: System
@@ -88,6 +90,7 @@ class Snapshot:
     speeds: Mapping[str, Expression] = field(default_factory=dict)
     assumed: Mapping[str, Node] = field(default_factory=dict)
     exact: bool = True
+    located: Mapping[Node, float] = field(default_factory=dict)
 
     # -- what is known -----------------------------------------------------------------------------
 
@@ -132,7 +135,8 @@ class Snapshot:
     def _known(self, ties: list[Line], given: list[Line], rates: Sequence[Node], state: State) -> Known:
         unknowns = [x for x in self.system.symbols.unknowns.values() if x not in state]
         standing = [x for x in unknowns if any(x in line.entries for line in given)]
-        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing))
+        near = None if self.exact and not self.located else self.located
+        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), near)
         values = {node: self.simple(x) for node, x in solution.items()}
         free = tuple(node for node in (*rates, *standing) if node not in values)
         return Known(values, free, len(rates) - ranks[0], ranks[1] - ranks[0])
@@ -230,35 +234,54 @@ class Snapshot:
             raise self._open(self.velocities, "velocity", "rate")
 
 
-def snapshot_of(model: Model, places: Mapping[str, Scalar] | None = None) -> Snapshot:
+def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     """The model at its start, with what it gives of velocities and accelerations.
 
     Start speeds that the model says count as given.
 
+    Args:
+        by_coordinates: coordinates that the ties place in no short closed form stay symbols; else they are numbers.
     Raises:
         DerivationError: ties that do not close at the start.
     """
     free = free_system_of(freed(model))
-    still, exact = _places(free)
-    open_gaps(free, still)
+    places, numbers = _places(free)
+    located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
+    exact = by_coordinates or not located
+    still = _still(free, at_rest(free, {**{q: q for q in located}, **places})) if exact else _in_numbers(free, numbers)
+    if not located:
+        open_gaps(free, still)
     given = model.given
     speeds = {f"{name}'": part.speed for name, part in model.coordinates.items()
               if part.speed is not None and not part.driven}  # fmt: skip
     velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
-    return Snapshot(free, still, velocity, acceleration, speeds, exact=exact)
+    return Snapshot(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
 
 
-def _places(free: System) -> tuple[State, bool]:
-    """The start, and whether it is exact: where the ties place coordinates without closed form it is in numbers."""
-    if not dependent_coordinates(free.scope):
-        return _still(free, at_rest(free)), True
+def _places(free: System) -> tuple[State, Mapping[str, float]]:
+    """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
     system = reduced(free)
+    sought, found = fixed_by_position(system), State()
+    if not sought:
+        return {}, {}
     try:
-        return _still(free, at_rest(system)), True
+        found = at_rest(system)
     except DerivationError:
-        values = start_state(system)
-        numbers = {q: Fraction(values[q.name]) for q in free.symbols.q}
-        return _still(free, at_rest(free, numbers)), False
+        start_state(system)
+    short = {q: found[q] for q in sought if q in found and text_size(found[q]) <= SHORT}
+    try:
+        return short, {} if len(short) == len(sought) else start_state(system)
+    except MissingValues:
+        return {q: found[q] for q in sought}, {}
+
+
+def _in_numbers(free: System, start: Mapping[str, float]) -> State:
+    """Coordinates, and the parameters that have values, as the exact numbers that these doubles are."""
+    symbols, values = free.symbols, exact_parameters(free.scope.model)
+    parameters = {symbols.parameters[name]: Fraction(x) for name, x in values.items()}
+    places = {q: Fraction(start[q.name]) for q in symbols.q}
+    still = _still(free, at_rest(free, places))
+    return {node: substituted((x,), parameters)[0] for node, x in still.items()} | parameters
 
 
 def _still(system: System, state: State) -> State:

@@ -30,6 +30,7 @@ from eomgen.symbolic.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix
 from eomgen.symbolic.text import text_size
 
 WORK = 4_000  # products of terms for making one formula short
+TERMS = 60  # of a sum that is made short; a longer one nobody reads
 LONGEST = 3_000  # characters of a tensor whose characteristic polynomial may have factors
 HALF = Fraction(1, 2)
 Moments = tuple[Scalar, Scalar, Scalar]
@@ -146,7 +147,7 @@ class _Tensor:
     def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> Moments:
         q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
         A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
-        p = sqrt(short(over(sum(x * x for row in A for x in row), 6)))
+        p = short(sqrt(short(over(sum(x * x for row in A for x in row), 6))))
         turn = over(function("acos", over(short(dot(A[0], cross(A[1], A[2]))), 2 * p * p * p)), 3)
         third = over(2 * self.scope.graph.pi, 3)
         return q + 2 * p * cos(turn + third), q + 2 * p * cos(turn - third), q + 2 * p * cos(turn)
@@ -278,10 +279,10 @@ def _ascending(tensor: _Tensor) -> list[int] | None:
 
 
 def short_form(x: Scalar, positive: Collection[Node]) -> Scalar:
-    """x in readable form, the magnitudes of constants by their sign."""
-    found = simplest(x, WORK, positive)
+    """x in readable form, the magnitudes of constants by their sign; a long sum as it is."""
+    found = simplest(x, WORK, positive, TERMS)
     signed = _with_signs(found)
-    return found if signed is found else simplest(signed, WORK, positive)
+    return found if signed is found else simplest(signed, WORK, positive, TERMS)
 
 
 def _with_signs(x: Scalar) -> Scalar:
@@ -295,10 +296,15 @@ def _with_signs(x: Scalar) -> Scalar:
     return substituted((x,), known)[0] if known else x
 
 
-def values_of(scalars: Sequence[Scalar], scope: Scope) -> list[float] | None:
-    """What scalars of parameters are worth; None where they hold something else, or one without a value."""
-    symbols = symbols_of(tuple(scalars))
-    known: Mapping[str, float] = {name: float(x) for name, x in exact_parameters(scope.model).items()}
-    if any(symbol.name not in known or symbol not in scope.symbols.parameters.values() for symbol in symbols):
-        return None
-    return list(evaluate(tuple(scalars), {symbol: known[symbol.name] for symbol in symbols}, FLOAT))
+def values_of(
+    scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
+) -> list[float] | None:
+    """What scalars are worth; None where they hold what has no value.
+
+    Args:
+        state: values of other symbols than parameters (None: those have none).
+    """
+    symbols, known = symbols_of(tuple(scalars)), dict(state or {})
+    values: Mapping[str, float] = {name: float(x) for name, x in exact_parameters(scope.model).items()}
+    known |= {node: values[name] for name, node in scope.symbols.parameters.items() if name in values}
+    return None if any(symbol not in known for symbol in symbols) else list(evaluate(tuple(scalars), known, FLOAT))

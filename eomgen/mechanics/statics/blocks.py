@@ -6,10 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from eomgen.mechanics.fields.field import Field
 from eomgen.mechanics.statics.velocity_plan import ZERO_AT_50, Center, Plan
 from eomgen.mechanics.system import System
+from eomgen.model.constraints.members import trusses_of
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
 
 
@@ -38,11 +41,7 @@ class Block:
 
     def center(self, plan: Plan) -> Center:
         """Its centre of rotation in the plane."""
-        if plan.vanishes(self.spin):
-            return Center(None, ZERO if plan.vanishes(self.velocity) else self.velocity)
-        w = self.spin[2]
-        x, y = (plan.simple(over(k, w)) for k in (-self.velocity[1], self.velocity[0]))
-        return Center((x, y, 0))
+        return plan.center(Field(v=self.velocity, w=self.spin))
 
 
 def blocks_of(plan: Plan) -> tuple[Block, ...]:
@@ -61,6 +60,15 @@ def blocks_of(plan: Plan) -> tuple[Block, ...]:
     return (*blocks, *_single_nodes(plan, blocks))
 
 
+def turning_by_one(plan: Plan) -> Scalar:
+    """1/w of the first block that turns about one axis; 1 where none does."""
+    for part in (*_bodies(plan), *_members(plan)):
+        spins = [w for w in part.spin if not plan.vanishes((w,))]
+        if len(spins) == 1:
+            return plan.simple(over(1, spins[0]))
+    return 1
+
+
 def resting(plan: Plan) -> tuple[str, ...]:
     """The bodies and trusses of which nothing moves, by name."""
     links = plan.system.motion.links
@@ -72,12 +80,8 @@ def resting(plan: Plan) -> tuple[str, ...]:
 
 def members_of(system: System) -> list[tuple[str, str, tuple[str, str]]]:
     """(truss, member, its two nodes) of every truss."""
-    found = []
-    for name, tie in system.scope.model.constraints.items():
-        truss: Any = tie
-        if hasattr(truss, "ends"):
-            found += [(name, member, truss.ends(member)) for member in truss.members]
-    return found
+    trusses = trusses_of(system.scope.model.constraints)
+    return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
 
 
 def _bodies(plan: Plan) -> Iterable[Block]:

@@ -16,17 +16,16 @@ from itertools import pairwise
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
-from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.named_reactions import name_of, named_reactions
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, sizes_of
 from eomgen.mechanics.statics.section_forces import KINDS
-from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis, named
+from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
-from eomgen.model.constraints.members import ends_asked
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import Call, parse
+from eomgen.symbolic.expressions import Call, single_call
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.solving import vanishes
 from eomgen.symbolic.spatial import ZERO, Vector, dot, plus, vector_of
@@ -107,22 +106,18 @@ def _way(text: str) -> tuple[str, tuple[str, ...]]:
 
 def _call(asked: str) -> Call:
     try:
-        expression = parse(asked, references=True)
+        call = single_call(asked)
     except ExpressionError as error:
         raise UsageError(f"influence line: '{asked}': {error.what}", mend=error.mend) from error
-    calls = tuple(expression.calls)
-    if len(calls) != 1 or len(expression.code) != 1:
+    if call is None:
         raise UsageError(f"influence line: '{asked}' is not one force", mend='ask "reaction_y(A)"')
-    return calls[0]
+    return call
 
 
 def _combination(structure: Structure, call: Call) -> dict[int, Scalar]:
     """The reaction as a sum of components."""
     table = {n.name: n for n in named_reactions(structure.balance)}
-    name = str(call)
-    if call.name == "tension" and (ends := ends_asked(call)) is not None:
-        owner = named(call.args[0])
-        name = next((n for n in (f"tension({owner}, {a}-{b})" for a, b in (ends, ends[::-1])) if n in table), name)
+    name = name_of(call, table)
     if name not in table:
         listed = nearest(name, table) or f"there are {', '.join(table)}"
         raise UsageError(f"influence line: there is no reaction '{name}'", mend=listed)

@@ -7,10 +7,10 @@ only push, or only pull, needs N >= 0.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
+from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model
 from eomgen.symbolic.functions import function
 from eomgen.symbolic.graph import Scalar
@@ -39,28 +39,21 @@ class Condition:
 
 def modes_at_rest(model: Model) -> Modes:
     """Every contact with dry friction sticks."""
-    rough = [name for name, tie in model.constraints.items() if _coulomb(getattr(tie, "friction", None))]
-    rough += [name for name, body in model.bodies.items()
-              if any(_coulomb(piece.friction) for piece in getattr(body.joint, "pieces", None) or ())]  # fmt: skip
-    return {name: Mode(sense=0) for name in rough}
-
-
-def _coulomb(law: Any) -> Any:
-    return None if law is None else law.coulomb
+    return {contact.name: Mode(sense=0) for contact in rough_contacts(model)}
 
 
 def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
     """What must hold of contacts that can end or slide, those whose reactions are determinate."""
     found = []
-    for name, tie in statics.system.scope.model.constraints.items():
+    for contact in contacts_of(statics.system.scope.model):
+        name = contact.name
         normal, along, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "reaction_t", "tension"))
-        if getattr(tie, "unilateral", None) and normal is not None:
+        if contact.unilateral and normal is not None:
             found.append(Condition(name, "pushes", normal))
-        if getattr(tie, "unilateral", None) and pull is not None:
+        if contact.unilateral and pull is not None:
             found.append(Condition(name, "pulls", pull))
-        mu = _coulomb(getattr(tie, "friction", None))
-        if mu is not None and normal is not None and along is not None:
-            most = statics.system.scope.value(mu) * function("abs", normal)
+        if contact.mu is not None and normal is not None and along is not None:
+            most = statics.system.scope.value(contact.mu) * function("abs", normal)
             found.append(Condition(name, "sticks", most - function("abs", along)))
     return tuple(found)
 

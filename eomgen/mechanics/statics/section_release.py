@@ -15,13 +15,14 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.effects import Effect
+from eomgen.mechanics.named_reactions import named
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of
 from eomgen.mechanics.statics.member_loads import place_of
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import Call, Expression, Reference, parse
+from eomgen.symbolic.expressions import Call, Reference, parse
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.text import to_text
@@ -54,6 +55,9 @@ class Cut:
 
 def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     """The released section: N shifts along t, V across, -n, M turns by 1."""
+    if not 2 <= len(call.args) <= 3:
+        raise UsageError(f"influence line: {call}: a body and a place along it are asked for",
+                         mend=f'ask "{call.name}(body, x)"')  # fmt: skip
     body, where, *side = call.args
     motion, names = structure.system.motion, structure.system.scope.names
     name = named(body)
@@ -116,8 +120,3 @@ def loaded_axis(structure: Structure, body: str, sizes: Sizes) -> MemberAxis:
     link = motion.index[body]
     acting = [e.place for c in structure.components for e in c.effects if e.link == link and e.place is not None]
     return axis_of(motion, body, acting, sizes)
-
-
-def named(argument: Reference | Expression) -> str:
-    """An argument of a call as it was written."""
-    return argument.name if isinstance(argument, Reference) else argument.text

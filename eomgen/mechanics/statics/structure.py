@@ -24,6 +24,7 @@ from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Axes
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import State, at_rest, values_of_parameters
+from eomgen.mechanics.statics.unknown_loads import slope
 from eomgen.mechanics.statics.velocity_plan import ZERO_AT_50, Plan
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
@@ -250,8 +251,11 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
     Args:
         at: exact scalars in place of coordinates; None: the start.
     Raises:
-        DerivationError: a force, an energy or a tie that acts at no place; ties that do not close.
+        DerivationError: there is no body; a force, an energy or a tie that acts at no place; ties that do not close;
+            loads that are not linear in an unknown.
     """
+    if not system.motion.links:
+        raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
     balance = balance_of(system)
     state = at_rest(system, at)
     unknowns = balance.unknowns
@@ -263,7 +267,7 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
         for j, x in ({} if equation is None else equation.coefficients).items():
             rows[j][k] = x
         for j, unknown in enumerate(unknowns, start=len(balance.components)):
-            rows[j][k] = 0 if equation is None else derivative(equation.applied, unknown)
+            rows[j][k] = 0 if equation is None else slope(balance, equation, unknown)
     return Structure(balance, state, columns, _placed(system, rows, state))
 
 

@@ -7,12 +7,13 @@ nothing else: the loads' works are those of their own points, line loads by the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from eomgen.errors import ExpressionError, UsageError
 from eomgen.mechanics.freedom import counted
-from eomgen.mechanics.named_reactions import NamedReaction
+from eomgen.mechanics.named_reactions import NamedReaction, name_of
 from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import Structure, structure_of
@@ -23,11 +24,16 @@ from eomgen.mechanics.statics.virtual_work import (
     unknown_by_virtual_work,
 )
 from eomgen.mechanics.system import System
+from eomgen.model.findings import nearest
 from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expressions import single_call
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import equal, simplest
+from eomgen.symbolic.normal_form import simplest
 
 WORK = 50_000  # products of terms for one value
+UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}
+"""By the exponents of m, kg, s."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +42,34 @@ class StaticReaction:
 
     Args:
         name: as outputs ask for it.
-        unit: N, N*m; "" for an unknown.
+        unit: N, N*m; of an unknown "" where the model does not say what it is.
         named: the reaction; None for an unknown.
-        balanced: its value by the balance of the bodies; None where that leaves it open.
+        solved: its value as the balance of the bodies gives it; None where that leaves it open.
+        positive: parameters that stand for positive numbers.
         work: the equation of virtual work; None where it is indeterminate, or was not asked.
-        agree: the two values are the same function of the parameters.
     """
 
     name: str
     unit: str
     named: NamedReaction | None
-    balanced: Scalar | None
+    solved: Scalar | None
+    positive: frozenset[Node]
     work: WorkEquation | None
-    agree: bool
+
+    @cached_property
+    def balanced(self) -> Scalar | None:
+        """Its value by the balance of the bodies, as a person writes it."""
+        return None if self.solved is None else simplest(self.solved, WORK, self.positive)
+
+    @cached_property
+    def agree(self) -> bool:
+        """Whether the two values are the same function of the parameters.
+
+        What only one of the ways leaves open is a difference too.
+        """
+        if self.work is None:
+            return True
+        return self.solved is not None and equal_at_random_states([(self.solved, self.work.value)]).equal
 
     @property
     def value(self) -> Scalar | None:
@@ -90,17 +111,22 @@ class StaticReactions:
 
     @property
     def count(self) -> tuple[int, str]:
-        """3 Nb + 2 Np - components, and as text."""
-        return counted(self.system.ties)
+        """3 Nb + 2 Np - components - unknown loads, and as text."""
+        number, text = counted(self.system.ties)
+        loads = len(self.structure.unknowns)
+        return (number - loads, f"{text} - {loads} (unknown loads)") if loads else (number, text)
 
 
-def static_reactions_of(system: System, at: Mapping[Node, Scalar] | None = None, *, only: str = "") -> StaticReactions:
+def static_reactions_of(
+    system: System, at: Mapping[Node, Scalar] | None = None, *, only: str | None = None
+) -> StaticReactions:
     """Every reaction of a structure at a configuration.
 
     Args:
         at: exact places of coordinates; None: the start.
-        only: the one reaction that is found by virtual work too; "" all.
+        only: the one reaction that is found by virtual work too; None: all.
     Raises:
+        UsageError: there is no such reaction.
         DerivationError: bodies can move; a force acts at no place.
     """
     structure = structure_of(system, at)
@@ -108,27 +134,45 @@ def static_reactions_of(system: System, at: Mapping[Node, Scalar] | None = None,
     return reactions_in(structure, only=only)
 
 
-def reactions_in(structure: Structure, *, only: str = "") -> StaticReactions:
+def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReactions:
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""
     system = structure.system
     balance = reactions_of(system, structure.at)
+    asked, positive = asked_reactions(structure), structure.positive
+    one = None if only is None else _one_of((*asked, *(unknown.name for unknown in structure.unknowns)), only)
     found = []
-    for named in asked_reactions(structure).values():
-        work = by_virtual_work(structure, named) if only in ("", named.name) else None
-        found.append(_compared(named.name, named.unit, named, _balanced(balance, structure, named), work))
+    for named in asked.values():
+        work = by_virtual_work(structure, named) if one in (None, named.name) else None
+        solved = _balanced(balance, structure, named)
+        found.append(StaticReaction(named.name, named.unit, named, solved, positive, work))
     for unknown in structure.unknowns:
-        work = unknown_by_virtual_work(structure, unknown) if only in ("", unknown.name) else None
-        value = balance.unknowns.get(unknown)
-        found.append(_compared(unknown.name, "", None, None if value is None else _simple(structure, value), work))
+        work = unknown_by_virtual_work(structure, unknown) if one in (None, unknown.name) else None
+        solved, unit = balance.unknowns.get(unknown), unit_of(structure, unknown)
+        found.append(StaticReaction(unknown.name, unit, None, solved, positive, work))
     return StaticReactions(structure, tuple(found), balance)
 
 
-def _compared(
-    name: str, unit: str, named: NamedReaction | None, balanced: Scalar | None, work: WorkEquation | None
-) -> StaticReaction:
-    """Both ways, and whether they agree; what only one of them leaves open is a difference too."""
-    agree = work is None or (balanced is not None and equal(balanced, work.value))
-    return StaticReaction(name, unit, named, balanced, work, agree)
+def unit_of(structure: Structure, unknown: Node) -> str:
+    """The unit of SI of an unknown force, couple or line load, where the model says what it is."""
+    unit = structure.system.scope.model.unknowns[unknown.name].unit
+    return "" if unit is None else UNITS.get(unit.dimension, "")
+
+
+def _one_of(names: Sequence[str], asked: str) -> str:
+    """The name of the reaction, or of the unknown, that is asked for.
+
+    Raises:
+        UsageError: there is none.
+    """
+    try:
+        call = single_call(asked)
+    except ExpressionError:
+        call = None
+    name = asked if call is None else name_of(call, names)
+    if name not in names:
+        listed = nearest(name, names) or f"there are {', '.join(names)}"
+        raise UsageError(f"there is no reaction '{name}'", mend=listed)
+    return name
 
 
 def _balanced(balance: Reactions, structure: Structure, named: NamedReaction) -> Scalar | None:
@@ -139,10 +183,4 @@ def _balanced(balance: Reactions, structure: Structure, named: NamedReaction) ->
     except Indeterminate:
         return None
     (given,) = substituted((given,), balance.unknowns)
-    return _simple(structure, value + given)
-
-
-def _simple(structure: Structure, value: Scalar) -> Scalar:
-    return simplest(value, WORK, structure.positive)
-
-
+    return value + given

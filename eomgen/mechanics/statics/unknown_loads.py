@@ -29,19 +29,24 @@ def with_unknowns(balance: Balance) -> tuple[list[dict[int, Scalar]], list[Scala
     rows, needed = [], []
     zero = dict.fromkeys(balance.unknowns, 0)
     for equation in balance.equations:
-        own = {len(balance.components) + k: _slope(balance, equation, p) for k, p in enumerate(balance.unknowns)}
+        own = {len(balance.components) + k: slope(balance, equation, p) for k, p in enumerate(balance.unknowns)}
         rows.append({**equation.coefficients, **{j: x for j, x in own.items() if not is_zero(x)}})
         needed.append(substituted((equation.needed,), zero)[0] if zero else equation.needed)
     return rows, needed
 
 
-def _slope(balance: Balance, equation: BodyEquation, unknown: Node) -> Scalar:
-    slope = derivative(equation.applied, unknown)
-    if depends_on(slope, balance.unknowns):
-        names = ", ".join(f"'{p.name}'" for p in balance.unknowns if depends_on(slope, (p,)))
+def slope(balance: Balance, equation: BodyEquation, unknown: Node) -> Scalar:
+    """d(applied)/dP
+
+    Raises:
+        DerivationError: an unknown stands in it: the loads are not linear.
+    """
+    found = derivative(equation.applied, unknown)
+    if depends_on(found, balance.unknowns):
+        names = ", ".join(f"'{p.name}'" for p in balance.unknowns if depends_on(found, (p,)))
         what = f"the loads on '{equation.body}' are not linear in the unknown {names}"
         raise DerivationError(what, f"unknowns.{unknown.name}", "let an unknown be one force, couple or intensity")
-    return slope
+    return found
 
 
 def still(system: System) -> dict[Node, Scalar]:

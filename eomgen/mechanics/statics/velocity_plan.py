@@ -13,16 +13,17 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.mechanics.effects import Axes, Effect
+from eomgen.mechanics.fields.field import Field, rotation_center
 from eomgen.mechanics.loads import in_ground_axes
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import readable_all, simplest
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, vector_of
+from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, vector_of
 
 WORK = 20_000  # products of terms for one velocity
 SIXTH = Fraction(1, 6)
@@ -40,14 +41,6 @@ class Center:
 
     place: Vector | None
     direction: Vector | None = None
-
-    @property
-    def at_rest(self) -> bool:
-        return self.direction == ZERO
-
-    @property
-    def at_infinity(self) -> bool:
-        return self.place is None and not self.at_rest
 
 
 @dataclass(frozen=True)
@@ -68,6 +61,8 @@ class Plan:
 
     def scaled(self, k: Scalar) -> Plan:
         """k times as fast."""
+        if k == 1:
+            return self
         flat = readable_all([k * x for six in self.velocities for x in six], WORK, self._positive)
         return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
 
@@ -89,25 +84,17 @@ class Plan:
         """Angular velocity in ground axes; of the ground (None) 0."""
         return self._simple(self.raw_spin(body))
 
-    def turning(self, body: str) -> Scalar:
-        """Angular velocity in the plane, counter-clockwise."""
-        return self.spin(body)[2]
-
     def center_velocity(self, body: str) -> Vector:
         """Of the mass centre, ground axes."""
-        return self._simple(self._in_ground(body, self._six(body)[:3]))
+        return self._simple(self.field(body).v)
 
     def velocity(self, place: Place) -> Vector:
         """Of a place of a body, ground axes; of the ground 0."""
         return self._simple(self.raw_velocity(place))
 
-    def velocity_at(self, body: str, position: Vector) -> Vector:
-        """Of the point of a body that is at a place of the ground, ground axes."""
-        return self._simple(self.raw_velocity_at(body, position))
-
     def raw_spin(self, body: str | None) -> Vector:
         """`spin`, not written out."""
-        return ZERO if body is None or body not in self.moving else self._in_ground(body, self._six(body)[3:])
+        return ZERO if body is None else self.field(body).w
 
     def raw_velocity(self, place: Place) -> Vector:
         """`velocity`, not written out."""
@@ -115,11 +102,18 @@ class Plan:
         return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
 
     def raw_velocity_at(self, body: str, position: Vector) -> Vector:
-        """`velocity_at`, not written out: v_C + w x r"""
-        if body not in self.moving:
-            return ZERO
-        arm = minus(position, self.mass_center(body))
-        return plus(self._in_ground(body, self._six(body)[:3]), cross(self.raw_spin(body), arm))
+        """Of the point of a body that is at a place of the ground, ground axes, not written out."""
+        return self.field(body).velocity(position)
+
+    def field(self, body: str) -> Field:
+        """Velocities of a body by that of its mass centre; of a body at rest all 0."""
+        if body not in self._fields:
+            self._fields[body] = self._field(body) if body in self.moving else Field()
+        return self._fields[body]
+
+    def _field(self, body: str) -> Field:
+        six = self._six(body)
+        return Field(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
 
     def position(self, place: Place) -> Vector:
         """Of a place in this configuration, ground axes."""
@@ -128,33 +122,21 @@ class Plan:
     def mass_center(self, body: str) -> Vector:
         return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
 
-    def center(self, body: str) -> Center:
-        """The centre of rotation of a body in the plane: C + z x v_C / w."""
-        v, w = self.center_velocity(body), self.turning(body)
-        if self.vanishes((w,)):
-            return Center(None, ZERO if self.vanishes(v) else v)
-        x, y, _ = self.mass_center(body)
-        return Center((self.simple(x - over(v[1], w)), self.simple(y + over(v[0], w)), 0))
-
-    def relative_center(self, body: str, other: str) -> Center:
-        """The point at which two bodies in the plane have one velocity."""
-        index = self.system.motion.index[body]
-        shift = minus(self.velocity_at(other, self.mass_center(body)), ZERO)
-        six = list(self.velocities[index])
-        six[0], six[1] = (self.simple(six[k] - shift[k]) for k in range(2))
-        six[5] = self.simple(six[5] - self.turning(other))
-        rows = (*self.velocities[:index], tuple(six), *self.velocities[index + 1 :])
-        return replace(self, velocities=rows).center(body)
+    def center(self, field: Field) -> Center:
+        """The centre of rotation of what moves so in the plane."""
+        if self.vanishes(field.w):
+            return Center(None, ZERO if self.vanishes(field.v) else self._simple(field.v))
+        return Center(self._simple(rotation_center(field)))
 
     # -- work ----------------------------------------------------------------------------------------
 
     def work(self, load: PointForce | Couple | SpreadLoad) -> Scalar:
-        """Power of a load on the bodies in this motion: its virtual work."""
+        """Power of a load on the bodies in this motion, its virtual work, not written out."""
         if isinstance(load, Couple):
-            return self.simple(dot(self.force(load.couple, load.axes), self.raw_spin(load.body)))
+            return dot(self.force(load.couple, load.axes), self.raw_spin(load.body))
         if isinstance(load, PointForce):
-            return self.simple(dot(self.force(load.force, load.axes), self.raw_velocity(load.place)))
-        return self.simple(self._work_along(load))
+            return dot(self.force(load.force, load.axes), self.raw_velocity(load.place))
+        return self._work_along(load)
 
     def _work_along(self, load: SpreadLoad) -> Scalar:
         """L/6 (2 q_A.v_A + q_A.v_B + q_B.v_A + 2 q_B.v_B): the integral of two linear functions of s."""
@@ -165,12 +147,12 @@ class Plan:
         return SIXTH * self.simple(sqrt(self.simple(dot(along, along)))) * total
 
     def work_of_effects(self, effects: Sequence[Effect]) -> Scalar:
-        """Of forces and couples as the bodies' equations hold them."""
+        """Of forces and couples as the bodies' equations hold them, not written out."""
         total: Scalar = 0
         for effect in effects:
             pairs = zip(substituted(effect.six, self.at), self.velocities[effect.link], strict=True)
             total = total + sum((f * v for f, v in pairs), start=0)
-        return self.simple(total)
+        return total
 
     def force(self, vector: Vector, axes: str | None = None) -> Vector:
         """A vector of a load in this configuration, ground axes."""
@@ -201,6 +183,10 @@ class Plan:
 
     @cached_property
     def _written(self) -> dict[Node, Scalar]:
+        return {}
+
+    @cached_property
+    def _fields(self) -> dict[str, Field]:
         return {}
 
     @cached_property

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.loads import SystemScene
 from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.outputs import ASKING_REACTIONS
-from eomgen.mechanics.statics.blocks import blocks_of
+from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.statics.blocks import turning_by_one
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
@@ -41,7 +41,7 @@ class Acting:
     effects: tuple[Effect, ...] = ()
 
     def work(self, plan: Plan) -> Scalar:
-        """Its virtual work in a motion."""
+        """Its virtual work in a motion, not written out."""
         return plan.work_of_effects(self.effects) if self.load is None else plan.work(self.load)
 
 
@@ -117,21 +117,12 @@ def _equation(
     if not structure.determines(combination):
         return None
     plan = structure.released(combination)
-    along, plan = _scaled(plan)
+    along = turning_by_one(plan)
+    plan = plan.scaled(along)
     still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or are what is asked
-    works = [(load, load.work(plan)) for load in loads_at_rest(structure)]
-    without = substituted(tuple(work for _, work in works), still)
-    terms = tuple(Term(load, work) for (load, _), work in zip(works, without, strict=True)
+    loads = loads_at_rest(structure)
+    works = substituted(tuple(load.work(plan) for load in loads), still)
+    terms = tuple(Term(load, plan.simple(work)) for load, work in zip(loads, works, strict=True)
                   if not plan.vanishes((work,)))  # fmt: skip
     total = sum((term.work for term in terms), start=0)
     return WorkEquation(name, plan, along, terms, given, plan.simple(over(-total, along) + given))
-
-
-def _scaled(plan: Plan) -> tuple[Scalar, Plan]:
-    """(displacement along the reaction, the motion in which the first block that turns does so by 1)."""
-    for block in blocks_of(plan):
-        spins = [w for w in block.spin if not plan.vanishes((w,))]
-        if len(spins) == 1:
-            along = plan.simple(over(1, spins[0]))
-            return along, plan.scaled(along)
-    return 1, plan

@@ -22,49 +22,45 @@ class Signature:
     more: str = ""
 
 
-def _functions() -> dict[str, Signature]:
-    point, pair = Signature(("point", "body"), 1), Signature(("body", "body"), 1)
-    components, parts = Signature(("point", "body", "body"), 1), Signature(("point", "body", "body"), 2)
-    table = {f"{order}{axis}": components for order in ("", "v", "a") for axis in "xyz"}
-    sizes = ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius")
-    table |= {name: point for name in sizes}
-    kinds_of_parts = ("transport_v", "transport_a", "coriolis_a", "euler_a", "centripetal_a")
-    table |= {f"{part}{axis}": parts for part in kinds_of_parts for axis in "xyz"}
-    of_parts = ("transport_speed", *(f"{p}_acceleration" for p in ("transport", "coriolis", "euler", "centripetal")))
-    table |= {name: Signature(("point", "body"), 2) for name in of_parts}
-    table |= {f"acceleration_pole_{axis}": Signature(("body",), 1) for axis in "xy"}
-    table["least_speed"] = Signature(("point", "point"), 2)
-    turning = ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y")
-    table |= {name: pair for name in (*turning, *(f"{n}_{axis}" for n in ("omega", "epsilon") for axis in "xyz"))}
-    reactions = [f"reaction_{c}" for c in ("x", "y", "z", "n", "t", "couple", "couple_x", "couple_y", "couple_z")]
-    table |= {name: Signature(("reaction", "body"), 1) for name in reactions}
-    table |= {name: Signature(("coordinate", "coordinate"), 2) for name in ("mass", "damping", "stiffness")}
-    table |= {
-        name: Signature(kinds, len(kinds), "body")
-        for name, kinds in {
-            "inertia_point": ("point",), "inertia_axis": ("point", "point or axis"), "inertia_plane": ("point", "axis"),
-            "inertia_product": ("point", "axis", "axis"), "inertia_tensor": ("point", "axis", "axis"),
-            "principal_moment": ("point", "number"), **{f"angular_momentum_{axis}": ("point",) for axis in "xyz"},
-        }.items()
-    }  # fmt: skip
-    return table | {
-        "kinetic_energy": Signature(("body",), 0),
-        "potential_energy": Signature(("body or force",), 0),
-        "power": Signature(("body or force",), 0),
-        "generalized_force": Signature(("coordinate",), 1),
-        "drive": Signature(("coordinate",), 1),
-        "momentum": Signature(("coordinate or speed",), 1),
-        "frequency": Signature(("number",), 1),
-        "mass_of": Signature(("body", "number"), 1),
-        **{name: Signature(("body", "number", "side"), 2) for name in ("axial_force", "shear_force", "bending_moment")},
-        "multiplier": Signature(("tie",), 1),
-        "tension": Signature(("tie or truss", "any", "any"), 1),
-    }
+def _along(*names: str) -> tuple[str, ...]:
+    """Each name with x, y and z in place of its star."""
+    return tuple(name.replace("*", axis) for name in names for axis in AXES)
 
 
 AXES = ("x", "y", "z")
+_BY_SIGNATURE = (
+    (Signature(("point", "body", "body"), 1), _along("*", "v*", "a*")),
+    (Signature(("point", "body"), 1),
+     ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius")),
+    (Signature(("point", "body", "body"), 2),
+     _along("transport_v*", "transport_a*", "coriolis_a*", "euler_a*", "centripetal_a*")),
+    (Signature(("point", "body"), 2),
+     ("transport_speed", "transport_acceleration", "coriolis_acceleration", "euler_acceleration",
+      "centripetal_acceleration")),
+    (Signature(("body",), 1), ("acceleration_pole_x", "acceleration_pole_y")),
+    (Signature(("point", "point"), 2), ("least_speed",)),
+    (Signature(("body", "body"), 1),
+     ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y", *_along("omega_*", "epsilon_*"))),
+    (Signature(("reaction", "body"), 1),
+     ("reaction_n", "reaction_t", "reaction_couple", *_along("reaction_*", "reaction_couple_*"))),
+    (Signature(("tie or truss", "any", "any"), 1), ("tension",)),
+    (Signature(("tie",), 1), ("multiplier",)),
+    (Signature(("body", "number", "side"), 2), ("axial_force", "shear_force", "bending_moment")),
+    (Signature(("body", "number"), 1), ("mass_of",)),
+    (Signature(("point",), 1, "body"), ("inertia_point", *_along("angular_momentum_*"))),
+    (Signature(("point", "point or axis"), 2, "body"), ("inertia_axis",)),
+    (Signature(("point", "axis"), 2, "body"), ("inertia_plane",)),
+    (Signature(("point", "axis", "axis"), 3, "body"), ("inertia_product", "inertia_tensor")),
+    (Signature(("point", "number"), 2, "body"), ("principal_moment",)),
+    (Signature(("body",), 0), ("kinetic_energy",)),
+    (Signature(("body or force",), 0), ("potential_energy", "power")),
+    (Signature(("coordinate",), 1), ("generalized_force", "drive")),
+    (Signature(("coordinate or speed",), 1), ("momentum",)),
+    (Signature(("coordinate", "coordinate"), 2), ("mass", "damping", "stiffness")),
+    (Signature(("number",), 1), ("frequency",)),
+)  # fmt: skip
 SIDES = ("before", "after")
-FUNCTIONS = _functions()
+FUNCTIONS = {name: signature for signature, names in _BY_SIGNATURE for name in names}
 """The functions of the motion, by name."""
 
 

@@ -1,6 +1,6 @@
 """References: every body, point, coordinate that is named was declared; every vector has its length."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
@@ -36,7 +36,7 @@ def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | N
         nodes = (catalog.table("trusses")[owner] and catalog.table("trusses")[owner].nodes) or {}
         if name in nodes:
             return None
-        return f"truss '{owner}' has no node '{name}'", nearest(name, nodes), len(owner) + 1, len(name)
+        return f"truss '{owner}' has no node '{name}'", nearest(name, nodes) or _nodes(nodes), len(owner) + 1, len(name)
     if owner not in catalog.table("bodies"):
         return _unknown_body(catalog, owner)
     return _missing_own(catalog, owner, name, len(owner) + 1)
@@ -134,7 +134,11 @@ def _member(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
         if truss.nodes is not None and node not in truss.nodes:
             column = 0 if k == 0 else len(ends[0]) + 1
             what = f"truss '{leaf.path[1]}' has no node '{node}'"
-            yield Finding(leaf.path, what, nearest(node, truss.nodes), column, len(node))
+            yield Finding(leaf.path, what, nearest(node, truss.nodes) or _nodes(truss.nodes), column, len(node))
+
+
+def _nodes(nodes: Iterable[str]) -> str:
+    return f"its nodes are {', '.join(nodes)}"
 
 
 _CHECKS: dict[str, Callable[[Catalog, Leaf], Any]] = {

@@ -26,6 +26,10 @@ class Constraint(Part, ABC):
         """Whether this version derives the tie in this space."""
         return space in cls.spaces
 
+    def strand_rows(self) -> tuple[int, ...]:
+        """Of each strand of a string the row that holds its tension, from 1; () where it is no string."""
+        return ()
+
     @abstractmethod
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """The rows of the tie, asked only where it works.

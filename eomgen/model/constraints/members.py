@@ -1,5 +1,6 @@
 """Members: the two-force bars of a truss. A model holds them once its trusses are taken apart; no file names them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
@@ -62,6 +63,11 @@ class Members(Constraint):
         x, y, z = _direction(scene, r)
         pulls = (PointForce(scene.place(ends[0]), (x, y, z)), PointForce(scene.place(ends[1]), times(-1, (x, y, z))))
         return replace(row, part=member, pushes=pulls)
+
+
+def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
+    """The trusses of a model in parts, by name."""
+    return {name: tie for name, tie in constraints.items() if isinstance(tie, Members)}
 
 
 def _direction(scene: Scene, r: Vector) -> tuple[Scalar, ...]:

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
+from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, SpreadLoad, Vector
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.symbolic.functions import sqrt
+from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import dot, minus, plus, times
 
 
@@ -31,18 +33,32 @@ class Distributed(Force):
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """Forces (2 q_A + q_B) L / 6 at A and (q_A + 2 q_B) L / 6 at B: the same resultant and moment as the load."""
         (line,) = self.spread(scene)
-        along = minus(line.end[1], line.start[1])
-        length = sqrt(dot(along, along))
+        length = _length(line)
         return (
             PointForce(line.start, _resultant(length, line.at_start, line.at_end)),
             PointForce(line.end, _resultant(length, line.at_end, line.at_start)),
         )
 
     def spread(self, scene: Scene) -> tuple[SpreadLoad, ...]:
-        """q_A at A, q_B at B, linear between."""
+        """q_A at A, q_B at B, linear between.
+
+        Raises:
+            ModelError: A and B are at one place.
+        """
         a, b = (scene.place(_own(self.body, name)) for name in self.between)
         q_A, q_B = (scene.vector(q) for q in self.intensities or (self.intensity, self.intensity))
-        return (SpreadLoad(a, b, q_A, q_B),)
+        line = SpreadLoad(a, b, q_A, q_B)
+        length = _length(line)
+        if is_zero(length) or scene.worth(length) == 0:
+            ends = " and ".join(f"'{name}'" for name in self.between)
+            raise ModelError(f"{ends} are at one place: a load along a line needs a length", scene.where,
+                             "name two points, or put a force there")  # fmt: skip
+        return (line,)
+
+
+def _length(line: SpreadLoad) -> Scalar:
+    along = minus(line.end[1], line.start[1])
+    return sqrt(dot(along, along))
 
 
 def _resultant(length: Scalar, near: Vector, far: Vector) -> Vector:

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+from pathlib import Path
 from typing import Any
 
-from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.masses.inertia_about import flat_bodies
+from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import values_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.report import rendered
-from eomgen.report.inertia.rows import own_sum, together
+from eomgen.report.figures import Picture
+from eomgen.report.inertia.picture import inertia_picture, values_at_start
+from eomgen.report.inertia.rows import State, Sum, own_sum, together
 from eomgen.report.inertia.steps import (
     LONGEST,
     Result,
@@ -32,12 +37,15 @@ from eomgen.report.inertia.steps import (
 from eomgen.report.json_form import steps
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
+from eomgen.symbolic.derivative import symbols_of
 from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import IDENTITY, Vector, minus
 from eomgen.symbolic.text import text_size, to_text
 
 TENSOR = Law("I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
              r"I_{xx} = \int (y^{2} + z^{2})\,dm,\ I_{xy} = -\int x y\,dm")  # fmt: skip
+POLAR = Law("J_P = integral r^2 dm", r"J_{P} = \int r^{2}\,dm")
+PLANAR = Law("P_x = integral x^2 dm", r"P_{x} = \int x^{2}\,dm")
 TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
 
 
@@ -55,11 +63,13 @@ class Inertia:
     """What is asked of the inertia of a model's bodies.
 
     Args:
+        system: whose bodies they are.
         results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
         axes: the principal axes in numbers, the rows of R, by "plate" or "O".
         derivation: how they are found.
     """
 
+    system: System
     results: dict[str, Value]
     axes: dict[str, list[list[float]]]
     derivation: Derivation
@@ -76,6 +86,20 @@ class Inertia:
 
     def latex(self) -> str:
         return self.render("latex")
+
+    @property
+    def picture(self) -> Picture:
+        """The bodies with mass centres and principal axes.
+
+        Raises:
+            RunFailed: they are in space.
+            MissingValues: parameters without a value.
+        """
+        return inertia_picture(self.system, self.axes)
+
+    def plot(self, path: str | Path) -> None:
+        """Draw it as .png, .svg or .pdf."""
+        self.picture.save(path)
 
     def _repr_markdown_(self) -> str:
         return self.render("markdown")
@@ -115,6 +139,21 @@ class _Report:
     about: str | None
     axis: str | None
 
+    @cached_property
+    def start(self) -> State:
+        """Where moving bodies are taken in numbers; empty where the start is not known."""
+        try:
+            return values_at_start(self.system)
+        except (MissingValues, DerivationError):
+            return {}
+
+    def _when(self, section: Section) -> Iterable[Statement]:
+        """Where the numbers are taken, if what is asked moves."""
+        moving = set(self.system.scope.symbols.q) & set(symbols_of((*section.point, *chain(*section.tensor))))
+        if moving and self.start:
+            where = ", ".join(f"{q.name} = {self.start[q]:.6g}" for q in self.system.scope.symbols.q if q in moving)
+            yield Prose((f"Numbers at the start: {where}.",))
+
     @property
     def bodies(self) -> tuple[str, ...]:
         """The bodies that are meant, with a mass.
@@ -137,8 +176,8 @@ class _Report:
         sections = [self._own(body) for body in bodies]
         made = [self._step(f"Body '{s.of}'", f"inertia_{s.of}", s) for s in sections]
         if len(bodies) > 1:
-            whole = together(self.system.motion, bodies)
-            section = Section(whole, whole.com, "", bool(flat_bodies(self.system.motion, bodies)), True)
+            whole = together(self.system.motion, bodies, self.start)
+            section = self._centroidal(whole, "", bodies)
             made.append(self._step("The bodies together, ground axes", "inertia_together", section))
         if self.about is not None or self.axis is not None:
             made.append(self._about(bodies))
@@ -149,22 +188,30 @@ class _Report:
         first = (setting_steps(self.system)[0], _conventions())
         derivation = Derivation(model.name, model.about or "", model.source or "", model.space, "inertia",
                                 (*first, *(step for step, _, _ in made)))  # fmt: skip
-        return Inertia({name: self._value(r) for name, r in named_results(results).items()}, axes, derivation)
+        values = {name: self._value(r) for name, r in named_results(results).items()}
+        return Inertia(self.system, values, axes, derivation)
 
     def _value(self, result: Result) -> Value:
-        values = values_of((result.value,), self.system.scope)
+        values = values_of((result.value,), self.system.scope, self.start)
         return Value(to_text(result.value), None if values is None else values[0] + 0.0, result.unit)
 
     def _own(self, body: str) -> Section:
-        own = own_sum(self.system.motion, body)
-        return Section(own, own.com, body, bool(flat_bodies(self.system.motion, (body,))), True)
+        return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))
+
+    def _centroidal(self, sum: Sum, of: str, bodies: tuple[str, ...]) -> Section:
+        motion = self.system.motion
+        return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies))
 
     def _step(self, title: str, key: str, section: Section, axis: tuple[Vector, Vector] | None = None) -> Any:
         """A section as a step, its results, and its principal axes in numbers."""
         masses, tensor = mass_results(section), tensor_results(section)
-        statements: list[Statement] = []
+        statements: list[Statement] = [*self._when(section)]
         if section.centroidal:
             statements += [*masses_grid(section), *(line(section, result) for result in masses)]
+        if section.silent:
+            silent = ", ".join(f"'{body}'" for body in section.silent)
+            words = f"No moments: of the inertia of {silent} the model says nothing."
+            return Step(key, title, (*statements, Prose((words,)))), masses, (section.of, None)
         statements += [*moments_grid(section), conventions_grid(section)]
         if any(text_size(result.value) > LONGEST for result in tensor):  # the table then holds numbers
             statements += [line(section, result) for result in tensor]
@@ -178,8 +225,11 @@ class _Report:
     def _about(self, bodies: tuple[str, ...]) -> Any:
         """The bodies together about a point, and about an axis through it."""
         point, name, axis = self._point_and_axis()
+        if silent := shapeless(self.system.motion, bodies):
+            raise ModelError(f"body '{silent[0]}' has a mass and no inertia", f"bodies.{silent[0]}",
+                             "give 'inertia' (0 for a point), or a shape; or leave it out: --body")  # fmt: skip
         flat = bool(flat_bodies(self.system.motion, bodies))
-        section = Section(together(self.system.motion, bodies), point, name, flat, False)
+        section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False)
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
         return self._step(title, "inertia_about", section, axis)
 
@@ -217,13 +267,13 @@ def points_of(system: System) -> list[str]:
 
 def together_mass(system: System, body: str) -> Any:
     """The mass of a body, its pieces added up."""
-    return own_sum(system.motion, body).m
+    return own_sum(system.motion, body, {}).m
 
 
 def _conventions() -> Step:
     words: Iterable[Any] = (
         "I is the inertia tensor, ", TENSOR, ". The product of inertia of the textbooks has the other sign, ", TEXTBOOK,
-        "; J_x is the moment about x, the same as I_xx. J_P is the moment about the point, the integral of r^2 dm; P_x "
-        "is that about the plane across x, the integral of x^2 dm. In kg, m and kg m^2.",
+        "; ", Law("J_x = I_xx", "J_{x} = I_{xx}"), " is the moment about x, ", POLAR, " that about the point, ", PLANAR,
+        " that about the plane across x. In SI units.",
     )  # fmt: skip
     return Step("conventions", "Conventions", (Prose(tuple(words)),))

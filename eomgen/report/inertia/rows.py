@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import ModelError
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.masses.inertia_about import shapeless
 from eomgen.mechanics.masses.made_of import made_of
-from eomgen.mechanics.masses.principal import short_form
+from eomgen.mechanics.masses.principal import short_form, values_of
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.model.composite import about, scaled
 from eomgen.model.shapes import MassProperties
@@ -30,6 +28,9 @@ from eomgen.symbolic.spatial import (
     transposed,
     vector_of,
 )
+
+State = Mapping[Node, float]
+"""Coordinates and what else moves, in numbers."""
 
 
 @dataclass(frozen=True)
@@ -63,10 +64,16 @@ class Sum:
     Args:
         motion: whose formulas they are.
         rows: in one set of axes.
+        start: where the numbers are taken: the coordinates there (empty: moving things have no numbers).
     """
 
     motion: Motion
     rows: tuple[Row, ...]
+    start: State
+
+    def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
+        """What scalars are worth at the start; None where one holds what has no value."""
+        return values_of(scalars, self.motion.scope, self.start)
 
     def short(self, x: Scalar) -> Scalar:
         """x in readable form; what was read once is not read again."""
@@ -104,22 +111,19 @@ class Sum:
         return matrix_of((self.short(x) for x in line) for line in total)
 
 
-def own_sum(motion: Motion, body: str) -> Sum:
+def own_sum(motion: Motion, body: str, start: State) -> Sum:
     """One body in its own axes: its pieces, or itself."""
-    return Sum(motion, _rows(motion, body, Pose()))
+    return Sum(motion, _rows(motion, body, Pose()), start)
 
 
-def together(motion: Motion, bodies: Sequence[str]) -> Sum:
+def together(motion: Motion, bodies: Sequence[str], start: State) -> Sum:
     """Several bodies where they are, ground axes."""
     rows = [row for body in bodies for row in _rows(motion, body, motion.link(body).pose, body)]
-    return Sum(motion, tuple(rows))
+    return Sum(motion, tuple(rows), start)
 
 
 def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[Row, ...]:
     """The pieces of a body, or itself, seen from where `pose` leads."""
-    if unknown := shapeless(motion, (body,)):
-        raise ModelError(f"body '{unknown[0]}' has a mass and no inertia", f"bodies.{unknown[0]}",
-                         "give 'inertia' (0 for a point), or a shape")  # fmt: skip
     if motion.scope.model.bodies[body].parts is None:
         return (Row(body, 1, _seen(mass_properties(motion.scope, body), pose)),)
     pieces = made_of(motion.scope, body).pieces

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from eomgen.mechanics.masses.inertia_about import about_axis, polar, second_moments
-from eomgen.mechanics.masses.principal import Principal, principal_of, values_of
+from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.report.inertia.rows import Sum
 from eomgen.report.latex_names import lettered
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement
@@ -45,6 +45,7 @@ class Section:
         of: what the names of the results hold in parentheses: "plate", "plate, O", "O".
         flat: only the moment about z is known.
         centroidal: the point is the mass centre.
+        silent: bodies that have a mass and say nothing of their inertia: no moments are known.
     """
 
     sum: Sum
@@ -52,6 +53,7 @@ class Section:
     of: str
     flat: bool
     centroidal: bool
+    silent: tuple[str, ...] = ()
 
     @property
     def plane(self) -> bool:
@@ -70,16 +72,20 @@ class Section:
 
 def number(section: Section, x: Scalar) -> str:
     """The value as text; "" where it holds what has none."""
-    values = values_of((x,), section.sum.motion.scope)
+    values = section.sum.numbers((x,))
     return "" if values is None else f"{values[0] + 0.0:.6g}"
 
 
 def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str | Law | Scalar]]) -> Grid:
     """A table of scalars and words: exact where all are short or one has no value, else in numbers."""
     scalars = [x for row in rows for x in row if not isinstance(x, str | Law)]
-    if all(text_size(x) <= LONGEST for x in scalars) or not all(number(section, x) for x in scalars):
-        return Grid(head, tuple(map(tuple, rows)))
-    return Grid(head, tuple(tuple(x if isinstance(x, str | Law) else number(section, x) for x in row) for row in rows))
+    valued = all(number(section, x) for x in scalars)
+    in_numbers = valued and any(text_size(section.sum.short(x)) > LONGEST for x in scalars)
+
+    def cell(x: str | Law | Scalar) -> Cell:
+        return x if isinstance(x, str | Law) else number(section, x) if in_numbers else section.sum.short(x)
+
+    return Grid(head, tuple(tuple(map(cell, row)) for row in rows))
 
 
 def line(section: Section, result: Result) -> Formula:
@@ -110,7 +116,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
     count = 2 if section.plane else 3
     head: tuple[Cell, ...] = ("", lettered("m"), *(lettered(f"{axis}_C") for axis in AXES[:count]))
     rows = [
-        (row.label, section.sum.short(row.sign * row.mass.m), *map(section.sum.short, row.mass.com[:count]))
+        (row.label, row.sign * row.mass.m, *row.mass.com[:count])
         for row in section.sum.rows
     ]
     yield grid(section, head, rows)
@@ -127,15 +133,15 @@ def moments_grid(section: Section) -> Iterator[Statement]:
     rows: list[tuple[str | Scalar, ...]] = []
     for row in section.sum.rows:
         for what, part in (("own", row.own()), ("parallel axes", row.shift(section.point))):
-            rows.append((f"{row.label}, {what}", *(_plus(section, part, i, j) for i, j in columns)))
-    rows.append(("sum", *(_plus(section, section.tensor, i, j) for i, j in columns)))
+            rows.append((f"{row.label}, {what}", *(_plus(part, i, j) for i, j in columns)))
+    rows.append(("sum", *(_plus(section.tensor, i, j) for i, j in columns)))
     yield Prose(("Own moments, and with d from the point to the mass centre, ", STEINER, ":"))
     yield grid(section, ("", *(lettered(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
 
 
-def _plus(section: Section, I: Matrix, i: int, j: int) -> Scalar:
+def _plus(I: Matrix, i: int, j: int) -> Scalar:
     """A moment, or a product with the textbook's plus."""
-    return section.sum.short(I[i][j] if i == j else -I[i][j])
+    return I[i][j] if i == j else -I[i][j]
 
 
 STEINER = Law("J_x + m (d_y^2 + d_z^2), J_xy + m d_x d_y, and so on",
@@ -153,7 +159,9 @@ def tensor_results(section: Section) -> list[Result]:
     I = section.tensor
     found = [section.named("I", AXES[i] + AXES[j], I[i][j], "kg*m^2") for i, j in _columns(section)]
     products = [(i, j) for i, j in _columns(section) if i != j]
-    return [*found, *(section.named("J", AXES[i] + AXES[j], _plus(section, I, i, j), "kg*m^2") for i, j in products)]
+    textbook = (section.sum.short(_plus(I, i, j)) for i, j in products)
+    named = (section.named("J", AXES[i] + AXES[j], x, "kg*m^2") for (i, j), x in zip(products, textbook, strict=True))
+    return [*found, *named]
 
 
 def conventions_grid(section: Section) -> Grid:
@@ -164,7 +172,7 @@ def conventions_grid(section: Section) -> Grid:
         pair = AXES[i] + AXES[j]
         other = AXES[i] if i == j else pair
         textbook = Law(f"J_{other}", f"J_{{{other}}}")
-        rows.append((Law(f"I_{pair}", f"I_{{{pair}}}"), I[i][j], textbook, _plus(section, I, i, j)))
+        rows.append((Law(f"I_{pair}", f"I_{{{pair}}}"), I[i][j], textbook, _plus(I, i, j)))
     return grid(section, ("tensor (products with -)", "kg*m^2", "textbook (products with +)", "kg*m^2"), rows)
 
 
@@ -194,11 +202,18 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Result
     found = principal_of(section.tensor, section.sum.motion.scope)
     results = [section.named("I", str(k), x, "kg*m^2") for k, x in enumerate(found.moments, start=1)]
     if not is_zero(section.sum.m):
-        radii = (section.sum.short(sqrt(section.sum.short(over(x, section.sum.m)))) for x in found.moments)
+        radii = (_radius(section.sum, x) for x in found.moments)
         results += [section.named("k", str(k), x, "m") for k, x in enumerate(radii, start=1)]
     rows = axes_in_numbers(section, found)
     statements: list[Statement] = [Prose((_words(found),)), *(line(section, result) for result in results)]
     return [*statements, *_axes_grid(section, found, rows)], results, rows
+
+
+def _radius(sum: Sum, moment: Scalar) -> Scalar:
+    """k = sqrt(I/m), short where the moment is."""
+    if text_size(moment) > LONGEST_LINE:
+        return sqrt(over(moment, sum.m))
+    return sum.short(sqrt(sum.short(over(moment, sum.m))))
 
 
 def _words(found: Principal) -> str:
@@ -229,12 +244,11 @@ def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | Non
 
 def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | None:
     """The rows of R in floating point: the exact ones, else by the eigenvectors of the tensor."""
-    scope = section.sum.motion.scope
     if found.axes is not None and len(order([x for row in found.axes for x in row])) < 5000:
-        flat = values_of([x for row in found.axes for x in row], scope)
+        flat = section.sum.numbers([x for row in found.axes for x in row])
         if flat is not None and np.isfinite(flat).all():
             return [list(row) for row in np.reshape(flat, (3, 3))]
-    entries = values_of([x for row in section.tensor for x in row], scope)
+    entries = section.sum.numbers([x for row in section.tensor for x in row])
     if entries is None:
         return None
     axes = np.linalg.eigh(np.reshape(entries, (3, 3)))[1].T

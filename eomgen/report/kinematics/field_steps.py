@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from eomgen.mechanics.fields.centrodes import Centrodes, all_centrodes
@@ -37,7 +37,13 @@ VECTORS = ("body, along", "omega", "epsilon")
 INVARIANTS = ("body", "omega.omega", "omega.v")
 
 
-def field_steps(system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None) -> tuple[Step, ...]:
+Shown = Callable[[Scalar], Cell]
+"""How a value is written: as its formula, or as its number."""
+
+
+def field_steps(
+    system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None, shown: Shown = lambda x: x
+) -> tuple[Step, ...]:
     """Kinds of motion, spins, centres, poles and slowest points at a state, and centrodes.
 
     Args:
@@ -45,8 +51,9 @@ def field_steps(system: System, state: Mapping[Node, Scalar], kinds: Kinds | Non
         kinds: of the motions in the long run, of which the state is an instant; None: only the instant is known.
     """
     motions, particles = body_motions(system, state, kinds), particles_of(system)
-    steps = (kinds_step(motions, particles), fields_step([m for m in motions if m.body not in particles],
-                                                         plane=system.scope.model.space == "plane"))  # fmt: skip
+    bodies = [motion for motion in motions if motion.body not in particles]
+    fields = fields_step(bodies, shown, plane=system.scope.model.space == "plane")
+    steps = (kinds_step(motions, particles), fields)
     return steps if kinds is None else (*steps, *centrodes_step(all_centrodes(kinds), kinds.constants.positive))
 
 
@@ -124,48 +131,48 @@ def _place(place: Vector, least: int = 2) -> tuple[Piece, ...]:
     return (*pieces, ")")
 
 
-def fields_step(motions: Sequence[BodyMotion], *, plane: bool) -> Step:
+def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> Step:
     """Spins, centres and poles of the bodies that move, and the slowest points of bars."""
     moving = [m for m in motions if not all(is_zero(x) for x in (*m.field.w, *m.field.v, *m.field.a, *m.field.e))]
     statements: tuple[Statement, ...] = (
         Prose(("Every body has one field of velocities and accelerations, ", VELOCITIES, ".")),
-        *(_in_plane(moving) if plane else _in_space(moving)),
+        *(_in_plane(moving, shown) if plane else _in_space(moving, shown)),
     )
-    bars = tuple((f"{m.slowest[0]} to {m.slowest[1]}", m.slowest[2]) for m in moving if m.slowest is not None)
+    bars = tuple((f"{m.slowest[0]} to {m.slowest[1]}", shown(m.slowest[2])) for m in moving if m.slowest is not None)
     if bars:
         words = "Of a bar the slowest point is the foot of the perpendicular from the centre of rotation, or an end:"
         statements += (Prose((words,)), *tabled(("bar", "least speed"), bars))
     return Step("fields", "Angular velocities, centres, poles", statements)
 
 
-def _in_plane(moving: Sequence[BodyMotion]) -> Iterator[Statement]:
-    yield from tabled(NUMBERS, [(m.body, m.field.w[2], m.field.e[2]) for m in moving])
+def _in_plane(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
+    yield from tabled(NUMBERS, [(m.body, shown(m.field.w[2]), shown(m.field.e[2])) for m in moving])
     yield Prose(("From the origin of the body to its centre of rotation ", CENTER, ", to its pole of accelerations ",
                  POLE, ":"))  # fmt: skip
-    yield from tabled(PLACES, [(m.body, *_pair(m.center), *_pair(m.pole)) for m in moving])
-    circles = tuple(row for m in moving for row in _inflection(m))
+    yield from tabled(PLACES, [(m.body, *_pair(m.center, shown), *_pair(m.pole, shown)) for m in moving])
+    circles = tuple(row for m in moving for row in _inflection(m, shown))
     if circles:
         words = "The points whose path is straight there lie on the inflection circle, through the centre of rotation:"
         yield Prose((words,))
         yield from tabled(("body", "centre of the circle: x", "centre of the circle: y", "radius"), circles)
 
 
-def _inflection(motion: BodyMotion) -> Iterator[tuple[Cell, ...]]:
+def _inflection(motion: BodyMotion, shown: Shown) -> Iterator[tuple[Cell, ...]]:
     if motion.inflection is not None and not vanishes(motion.inflection[1]):
-        yield motion.body, *_pair(motion.inflection[0]), motion.inflection[1]
+        yield motion.body, *_pair(motion.inflection[0], shown), shown(motion.inflection[1])
 
 
-def _in_space(moving: Sequence[BodyMotion]) -> Iterator[Statement]:
-    rows = [(f"{m.body}, {AXES[i]}", m.field.w[i], m.field.e[i]) for m in moving for i in range(3)]
+def _in_space(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
+    rows = [(f"{m.body}, {AXES[i]}", shown(m.field.w[i]), shown(m.field.e[i])) for m in moving for i in range(3)]
     yield from tabled(VECTORS, rows)
     yield Prose(("The two invariants of the field; the axis of the motion at this instant goes through the point ",
                  CENTER, " from the origin of the body, the advance along it per radian is omega.v/omega.omega:"))
-    yield from tabled(INVARIANTS, [(m.body, *m.invariants) for m in moving])
+    yield from tabled(INVARIANTS, [(m.body, *map(shown, m.invariants)) for m in moving])
 
 
-def _pair(place: Vector | None) -> tuple[Cell, Cell]:
+def _pair(place: Vector | None, shown: Shown) -> tuple[Cell, Cell]:
     """x and y in two cells; where there is no such point, that."""
-    return (NONE, "") if place is None else (place[0], place[1])
+    return (NONE, "") if place is None else (shown(place[0]), shown(place[1]))
 
 
 # -- centrodes -------------------------------------------------------------------------------------

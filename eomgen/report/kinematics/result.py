@@ -17,14 +17,15 @@ from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
 from eomgen.report.kinematics.mechanism_plot import mechanism_picture
-from eomgen.report.kinematics.mechanism_steps import how_found, in_numbers, mechanism_steps
+from eomgen.report.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.setting_steps import data_step
-from eomgen.report.statements import Derivation, Step
+from eomgen.report.statements import Cell, Derivation, Law, Step
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import Vector
 from eomgen.symbolic.text import text_size, to_text
 
+LINE = 80  # characters of a formula among the fields
 LONGEST = 20_000  # characters of an exact value
 
 
@@ -61,8 +62,13 @@ class Kinematics:
         """Kinds of motion; spins, poles and centrodes where the accelerations are known exactly."""
         system, state = self.state.system, self.state.state
         if self.state.accelerated and self.state.is_short:
-            return field_steps(system, state, self.kinds)
+            return field_steps(system, state, self.kinds, self._shown)
         return (kinds_step(body_motions(system, self.state.moving, self.kinds), particles_of(system)),)
+
+    def _shown(self, x: Scalar) -> Cell:
+        """A value of the fields: a number where its formula is longer than a line."""
+        written = x if text_size(x) <= LINE else cell(self.state, x)
+        return Law(written, written) if isinstance(written, str) else written
 
     def _seen(self) -> tuple[Step, ...]:
         return tuple(step for point, body in self.relative

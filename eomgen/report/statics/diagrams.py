@@ -8,33 +8,40 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.statics.influence import InfluenceLine
-from eomgen.mechanics.statics.section_forces import KINDS, Piece, SectionForces
+from eomgen.mechanics.statics.section_forces import KINDS, Extreme, Piece, SectionForces
+from eomgen.report.figures import halo
+from eomgen.report.quantities import Scale, figures
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar
 
 COLORS = {"axial_force": "#2457a6", "shear_force": "#2e7d4f", "bending_moment": "#b03a2e"}
+UNITS = {"axial_force": "N", "shear_force": "N", "bending_moment": "N m"}
 NAMES = {"axial_force": "N", "shear_force": "V", "bending_moment": "M"}
 FINE = 40  # points of a curve within one piece
+SI = Scale()
 SAME = 1e-9  # of the largest value, below which a value is another one's twin, or 0
 
 
-def diagram_panels(panels: Sequence[Any], forces: SectionForces, values: Mapping[Node, float]) -> None:
+def diagram_panels(
+    panels: Sequence[Any], forces: SectionForces, values: Mapping[Node, float], scale: Scale = SI
+) -> None:
     """N, V and M along one body, one panel each; M is drawn on the side of the stretched fibre: downward.
 
     Args:
         panels: three matplotlib axes.
         values: of the parameters.
+        scale: of the forces and couples.
     """
     for panel, kind in zip(panels, KINDS, strict=True):
-        curves = [_curve(piece, kind, values) for piece in forces.pieces]
+        curves = [_curve(piece, kind, values, scale) for piece in forces.pieces]
         _filled(panel, curves, COLORS[kind])
         ends = [(x[k], y[k]) for x, y in curves for k in (0, -1)]
-        extremes = [tuple(_numbers((e.x, e.M), values)) for e in forces.extremes] if kind == "bending_moment" else []
+        extremes = [_extreme(e, values, scale) for e in forces.extremes] if kind == "bending_moment" else []
         if kind == "bending_moment":
             panel.invert_yaxis()
         _labels(panel, [*ends, *extremes])
-        panel.set_ylabel(f"{NAMES[kind]} of {forces.axis.body}")
-    panels[-1].set_xlabel("x")
+        panel.set_ylabel(f"{NAMES[kind]} of {forces.axis.body} [{scale.unit(UNITS[kind])}]")
+    panels[-1].set_xlabel("x [m]")
 
 
 def influence_panel(panel: Any, line: InfluenceLine, values: Mapping[Node, float]) -> None:
@@ -50,7 +57,7 @@ def influence_panel(panel: Any, line: InfluenceLine, values: Mapping[Node, float
     _filled(panel, curves, "#7a4ea3")
     _labels(panel, [(x[k], y[k]) for x, y in curves for k in (0, -1)])
     panel.set_ylabel(line.name)
-    panel.set_xlabel("x" if _is_level(line, values) else "way of the load")
+    panel.set_xlabel("x [m]" if _is_level(line, values) else "way of the load [m]")
 
 
 def _is_level(line: InfluenceLine, values: Mapping[Node, float]) -> bool:
@@ -59,11 +66,16 @@ def _is_level(line: InfluenceLine, values: Mapping[Node, float]) -> bool:
     return bool(np.ptp(heights) < SAME * max(1.0, np.abs(heights).max())) and all(b >= a for a, b in starts)
 
 
-def _curve(piece: Piece, kind: str, values: Mapping[Node, float]) -> tuple[np.ndarray, np.ndarray]:
+def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tuple[float, float]:
+    x, M = _numbers((extreme.x, extreme.M), values)
+    return x, scale(M)
+
+
+def _curve(piece: Piece, kind: str, values: Mapping[Node, float], scale: Scale) -> tuple[np.ndarray, np.ndarray]:
     """Points of one piece."""
     start, end = _numbers((piece.start, piece.end), values)
     s = np.linspace(0.0, end - start, FINE)
-    coefficients = _numbers(piece.coefficients(kind), values)
+    coefficients = [scale(c) for c in _numbers(piece.coefficients(kind), values)]
     return start + s, sum(c * s**k for k, c in enumerate(coefficients))  # type: ignore[return-value]
 
 
@@ -85,8 +97,8 @@ def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
         if abs(y) > SAME * largest and not twin:
             shown.append((x, y))
             up = (y > 0) != panel.yaxis_inverted()
-            panel.annotate(f"{y:.4g}", (x, y), xytext=(0, 3 if up else -3), textcoords="offset points", fontsize=8,
-                           ha="center", va="bottom" if up else "top")  # fmt: skip
+            panel.annotate(figures(y), (x, y), xytext=(0, 3 if up else -3), textcoords="offset points", fontsize=8,
+                           path_effects=halo(), ha="center", va="bottom" if up else "top")  # fmt: skip
     panel.margins(x=0.03, y=0.22)
     if not largest:
         panel.set_yticks([0])

@@ -1,31 +1,32 @@
-"""Resting -> a picture: the system in each place of rest, the stable ones marked."""
+"""Places of rest -> a picture: the system in each place of rest, the stable ones marked."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.report.drawing import Sketch, draw_model
-from eomgen.report.figures import draw
-from eomgen.report.statics.equilibrium_result import Resting
+from eomgen.report.figures import Picture
 from eomgen.report.statics.equilibrium_steps import values_of
 
 MOST = 6  # places that are drawn
 SIDE = 3.4  # of one panel [inches]
 
 
-def plot_resting(resting: Resting, path: str) -> None:
-    """Draw the places of rest of a plane system, the nearest to the start first.
+def resting_picture(places: Sequence[Equilibrium]) -> Picture:
+    """The first places of rest of a plane system.
 
     Raises:
         RunFailed: there is none; the system is not plane; parameters have no values.
     """
-    places = resting.places[:MOST]
+    places = places[:MOST]
     if not places:
         raise RunFailed("there is no place of rest to be drawn")
-    if resting.model.space != "plane":
+    model = places[0].statics.system.scope.model
+    if model.space != "plane":
         raise RunFailed("pictures of places of rest are drawn of plane systems")
     if not all(place.numbers for place in places):
         raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
@@ -38,7 +39,7 @@ def plot_resting(resting: Resting, path: str) -> None:
             draw_model(panel, _sketch(place), names=k == 1)
             panel.set_title(f"{k}: {place.stability.kind}", fontsize=10)
 
-    draw(path, (SIDE * columns, SIDE * rows), fill, title=resting.model.name)
+    return Picture((SIDE * columns, SIDE * rows), fill, model.name)
 
 
 def _sketch(place: Equilibrium) -> Sketch:

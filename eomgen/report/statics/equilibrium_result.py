@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from eomgen.mechanics.equilibria.resting_reactions import reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.parts import Model
 from eomgen.report import rendered
+from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.setting_steps import data_step
 from eomgen.report.statements import Derivation
+from eomgen.report.statics.equilibrium_picture import resting_picture
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps, numbers_of, values_of
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Node, Scalar
@@ -36,6 +39,11 @@ class Resting:
 
     model: Model
     found: Equilibria
+
+    @property
+    def failed(self) -> str:
+        """What is wrong with the result, in words: nothing."""
+        return ""
 
     @property
     def places(self) -> tuple[Equilibrium, ...]:
@@ -65,6 +73,22 @@ class Resting:
             "steps": steps_as_dicts(self.derivation),
         }
 
+    @property
+    def picture(self) -> Picture:
+        """The system in each place of rest.
+
+        Raises:
+            RunFailed: there is none; the system is in space; parameters have no values.
+        """
+        return resting_picture(self.places)
+
+    def plot(self, path: str | Path) -> None:
+        """Draw it as .png, .svg or .pdf."""
+        self.picture.save(path)
+
+    def __str__(self) -> str:
+        return self.render("text")
+
     def _repr_markdown_(self) -> str:
         return self.render("markdown")
 
@@ -72,9 +96,8 @@ class Resting:
 def has_freedoms(system: System) -> bool:
     """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
     unknowns = system.symbols.unknowns.values()
-    held = len(system.ties.closing) - len(redundant_rows(system.ties))
     forces = generalized_forces(system.loads)
-    return len(system.symbols.u) > held and not any(depends_on(x, unknowns) for x in forces)
+    return freedoms(system.ties) > 0 and not any(depends_on(x, unknowns) for x in forces)
 
 
 def resting_places(model: Model, system: System) -> Resting:

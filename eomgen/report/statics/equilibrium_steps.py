@@ -11,6 +11,7 @@ from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.reactions import Reactions
 from eomgen.model.values import exact_parameters
 from eomgen.report.bounded import page
+from eomgen.report.naming import Written, with_roots_named
 from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count, listed
@@ -33,10 +34,11 @@ MOST_SHOWN = 4  # coordinates of a K that is printed
 def equilibrium_steps(found: Equilibria, reader: Reader | None = None) -> tuple[Step, ...]:
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
     reader = reader or Reader()
-    steps = (balance_step(found.statics, reader), _places(found))
-    if not found.found:
-        return steps
-    return (*steps, _stability(found), *_reactions(found.found[0]))
+    steps: tuple[Step, ...] = (balance_step(found.statics, reader), _places(found))
+    if found.found:
+        steps = (*steps, _stability(found), *_reactions(found.found[0]))
+    scope = found.statics.system.scope
+    return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
 
 
 def balance_step(statics: StaticEquations, reader: Reader) -> Step:

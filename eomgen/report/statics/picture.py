@@ -1,4 +1,4 @@
-"""Statics -> a picture: the structure with its loads and its reactions; forces of truss members beside them."""
+"""StaticReactions -> a picture: the structure with its loads and its reactions; forces of truss members beside them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ from eomgen.errors import RunFailed
 from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Axes, Effect
 from eomgen.mechanics.statics.blocks import members_of
+from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.two_ways import StaticReactions
 from eomgen.mechanics.statics.virtual_work import loads_at_rest
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
+from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.report.arrows import arrow, distributed, moment_arc
+from eomgen.report.arrows import arrow, distributed, is_freer_outward, moment_arc
 from eomgen.report.drawing import ARROW, LOAD, REACTION, Place, Sketch, draw_model
-from eomgen.report.figures import draw
+from eomgen.report.figures import Picture, halo
+from eomgen.report.quantities import Scale, scale_of
 from eomgen.report.statics.diagrams import diagram_panels, influence_panel
-from eomgen.report.statics.result import Statics
+from eomgen.report.statics.section_steps import Sections
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import ZERO
 from eomgen.symbolic.text import to_text
@@ -65,6 +68,22 @@ class Scene:
         """(tip, force, colour, label) of every single force, loads first."""
         return [*self._loads(), *self._reactions()]
 
+    @cached_property
+    def scale(self) -> Scale:
+        """Of all forces and couples, the loads' and the reactions'."""
+        loads = [acting.load for acting in loads_at_rest(self.statics.structure)]
+        sizes = [math.hypot(*self._vector(load.force, load.axes)) for load in loads if isinstance(load, PointForce)]
+        values = self.sketch.numbers(each.value for each in self.statics.reactions if each.value is not None)
+        return scale_of([*sizes, *values])
+
+    @cached_property
+    def lines(self) -> list[np.ndarray]:
+        """Of bodies and of members of trusses."""
+        system = self.statics.system
+        bodies = [line for link in system.motion.links for line in self.sketch.lines(link)]
+        ends = [pair for _, _, pair in members_of(system)]
+        return [*bodies, *(np.array([self.sketch.position((node, ZERO)) for node in pair]) for pair in ends)]
+
     def length(self, force: Place) -> Place:
         """An arrow for a force: longer for a larger one, never very short."""
         size = math.hypot(*force)
@@ -81,11 +100,11 @@ class Scene:
             load = acting.load
             if isinstance(load, PointForce) and load.place[0] is not None:
                 x, y = self._vector(load.force, load.axes)
-                yield self.sketch.position(load.place), (x, y), LOAD, self._named(acting.name, math.hypot(x, y))
+                yield self.sketch.position(load.place), (x, y), LOAD, self._named(acting.name, math.hypot(x, y), "N")
 
-    def _named(self, load: str, size: float) -> str:
+    def _named(self, load: str, size: float, unit: str) -> str:
         """A load by its name, and how large it is."""
-        return f"{load} = {size:.4g}" if self.known else load
+        return f"{load} = {self.scale.text(size, unit)}" if self.known else load
 
     def _vector(self, vector: Any, axes: str | None) -> Place:
         numbers = np.array(self.sketch.numbers(vector[:2]))
@@ -108,7 +127,7 @@ class Scene:
             if isinstance(load, Couple):
                 (size,) = self.sketch.numbers(load.couple[2:])
                 at = self._middle(load.body) if load.place is None else self.sketch.position(load.place)
-                yield at, size, LOAD, self._named(acting.name, abs(size))
+                yield at, size, LOAD, self._named(acting.name, abs(size), "N m")
         for component, value, label in self._outer():
             (effect,) = component.effects
             (couple,) = self.sketch.numbers(effect.couple[2:])
@@ -116,10 +135,16 @@ class Scene:
                 yield self._seat(component), couple * value, REACTION, label
 
     def spreads(self) -> Iterable[tuple[SpreadLoad, str]]:
-        """Line loads with their names."""
+        """Line loads with their names and sizes."""
         for acting in loads_at_rest(self.statics.structure):
             if isinstance(acting.load, SpreadLoad):
-                yield acting.load, acting.name
+                yield acting.load, self._spread_label(acting.load, acting.name)
+
+    def _spread_label(self, load: SpreadLoad, name: str) -> str:
+        """Its name, and how large it is: at both ends where it changes."""
+        sizes = [math.hypot(*self.sketch.numbers(q[:2])) for q in (load.at_start, load.at_end)]
+        texts = list(dict.fromkeys(self.scale.number(size) for size in sizes))
+        return f"{name} = {' to '.join(texts)} {self.scale.unit('N/m')}" if self.known else name
 
     def _outer(self) -> Iterable[tuple[Component, float, str]]:
         """(component, value, label) of the determinate reactions of the ground."""
@@ -128,20 +153,21 @@ class Scene:
                 continue
             reaction = self.statics.by_name.get(component.name)
             value = None if reaction is None else reaction.value
-            yield component, *self._shown(self.statics.balance.value(j) if value is None else value)
+            unit = "N m" if component.label.startswith("couple") else "N"
+            yield component, *self._shown(self.statics.balance.value(j) if value is None else value, unit)
 
-    def _shown(self, value: Scalar) -> tuple[float, str]:
+    def _shown(self, value: Scalar, unit: str) -> tuple[float, str]:
         """(a value in the sense in which its label is positive, the label): a number, or a short formula."""
         (number,) = self.sketch.numbers((value,))
         if self.known:
-            return number, f"{abs(number):.4g}"
+            return number, self.scale.text(abs(number), unit)
         text = to_text(value)
         turned = text.startswith("-") and not any(sign in text[1:] for sign in (" + ", " - "))
         return math.copysign(number, -1 if turned else 1), self.label(value).removeprefix("-" if turned else "")
 
     def label(self, value: Scalar) -> str:
-        """A value: a number, or a short formula where parameters have no values."""
-        text = f"{self.sketch.numbers((value,))[0]:.4g}" if self.known else to_text(value)
+        """A value: a number without its unit, or a short formula where parameters have no values."""
+        text = self.scale.number(self.sketch.numbers((value,))[0]) if self.known else to_text(value)
         return text if len(text) <= LONGEST_LABEL else ""
 
     def place(self, effect: Effect) -> Place:
@@ -166,32 +192,33 @@ class Scene:
         return float(found[0]), float(found[1])
 
 
-def plot_statics(found: Statics, path: str) -> None:
-    """The structure with loads and reactions.
+def statics_picture(found: StaticReactions, sections: Sections, influence: InfluenceLine | None) -> Picture:
+    """The structure with loads and reactions; below it N, V and M of its beams, and an influence line.
 
     Raises:
         RunFailed: it is in space.
     """
-    if found.model.space != "plane":
+    model = found.system.scope.model
+    if model.space != "plane":
         raise RunFailed("structures in space are not drawn", mend="leave out --plot")
-    missing = missing_values(found)
-    scene = Scene(found.found, not missing)
-
-    bodies = list(found.sections.found.values())[:MOST_COLUMNS] if not missing else []
-    line = found.influence if not missing else None
+    missing = missing_values(model)
+    scene = Scene(found, not missing)
+    bodies = list(sections.found.values())[:MOST_COLUMNS] if not missing else []
+    line = influence if not missing else None
     heights = [height_of(scene), *([DIAGRAM] * (3 if bodies else 0)), *([1.5 * DIAGRAM] if line else [])]
 
     def fill(figure: Any) -> None:
         grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
         draw_structure(figure.add_subplot(grid[0, :]), scene)
         for column, forces in enumerate(bodies):
-            diagram_panels([figure.add_subplot(grid[1 + k, column]) for k in range(3)], forces, scene.sketch.values)
+            diagram_panels([figure.add_subplot(grid[1 + k, column]) for k in range(3)], forces, scene.sketch.values,
+                           scene.scale)  # fmt: skip
         if line is not None:
             influence_panel(figure.add_subplot(grid[-1, :]), line, scene.sketch.values)
         if missing:
             figure.supxlabel(f"drawn with {', '.join(missing)} = 1; no diagrams without values", fontsize=9)
 
-    draw(path, (max(WIDTH, COLUMN * len(bodies)), sum(heights)), fill, title=found.model.name)
+    return Picture((max(WIDTH, COLUMN * len(bodies)), sum(heights)), fill, model.name)
 
 
 def height_of(scene: Scene) -> float:
@@ -201,10 +228,10 @@ def height_of(scene: Scene) -> float:
     return float(np.clip(WIDTH * tall / wide, 3.2, 8.0))
 
 
-def missing_values(found: Statics) -> list[str]:
+def missing_values(model: Model) -> list[str]:
     """The parameters without a value."""
-    values = exact_parameters(found.model)
-    return [name for name in found.model.parameters if name not in values]
+    values = exact_parameters(model)
+    return [name for name in model.parameters if name not in values]
 
 
 def draw_structure(panel: Any, scene: Scene) -> None:
@@ -215,7 +242,8 @@ def draw_structure(panel: Any, scene: Scene) -> None:
         _spread(panel, scene, load, name)
     for tip, force, color, label in scene.forces:
         if math.hypot(*force) > NOTHING * scene.largest:
-            arrow(panel, tip, scene.length(force), color=color, label=label)
+            vector = scene.length(force)
+            arrow(panel, tip, vector, color=color, label=label, outward=is_freer_outward(scene.lines, tip, vector))
     for at, sense, color, label in scene.couples():
         if sense:
             moment_arc(panel, sketch, at, sense, color=color, label=label)
@@ -234,7 +262,8 @@ def _spread(panel: Any, scene: Scene, load: SpreadLoad, name: str) -> None:
 
 
 def _members(panel: Any, scene: Scene) -> None:
-    """The force of every member of a truss, along it."""
+    """The force of every member of a truss, along it, and what the colours say."""
+    drawn = False
     for truss, member, (first, second) in members_of(scene.statics.system):
         reaction = scene.statics.by_name.get(f"tension({truss}, {member})")
         if reaction is None or reaction.value is None:
@@ -246,6 +275,11 @@ def _members(panel: Any, scene: Scene) -> None:
         small = abs(value) < NOTHING * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
         panel.annotate("0" if small else scene.label(reaction.value), (a + b) / 2, rotation=turn,
-                       rotation_mode="anchor", ha="center", va="bottom", color=color, fontsize=8, zorder=8)  # fmt: skip
+                       rotation_mode="anchor", ha="center", va="bottom", color=color, fontsize=8, zorder=8,
+                       path_effects=halo())  # fmt: skip
         panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
+        drawn = True
+    if drawn:
+        unit = f" [{scene.scale.unit('N')}]" if scene.known else ""
+        panel.set_title(f"members{unit}: tension blue, compression red", fontsize=9, loc="right", color="#505050")
 

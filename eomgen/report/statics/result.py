@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from eomgen.errors import UsageError
@@ -13,12 +14,14 @@ from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, mod
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import WorkEquation
 from eomgen.mechanics.system import system_of
-from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.report import rendered
+from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.statements import Derivation
+from eomgen.report.statics.equilibrium_result import Resting, has_freedoms, resting_places
+from eomgen.report.statics.picture import statics_picture
 from eomgen.report.statics.section_steps import (
     Sections,
     influence_payload,
@@ -54,6 +57,24 @@ class Statics:
     def ok(self) -> bool:
         """Whether the two ways agree."""
         return not self.found.disagreeing
+
+    @property
+    def failed(self) -> str:
+        """What is wrong with the result, or open in it, in words; "" as it must be."""
+        if self.ok:
+            return "; ".join((*self._open, *self.broken))
+        wrong = ", ".join(reaction.name for reaction in self.found.disagreeing)
+        return f"virtual work and equilibrium do not agree: {wrong}"
+
+    @property
+    def _open(self) -> tuple[str, ...]:
+        """That some reactions are statically indeterminate."""
+        names = [reaction.name for reaction in self.found.open]
+        if not names:
+            return ()
+        degree = self.found.structure.indeterminacy
+        return (f"the structure is statically indeterminate, to the degree {degree}: the balance of rigid bodies "
+                f"leaves {', '.join(names)} open; take a redundant tie away, or let something give",)  # fmt: skip
 
     @cached_property
     def conditions(self) -> tuple[Condition, ...]:
@@ -133,6 +154,22 @@ class Statics:
             "message": None if reaction.value is not None else "statically indeterminate",
         }
 
+    @property
+    def picture(self) -> Picture:
+        """The structure with its loads and reactions, N, V and M.
+
+        Raises:
+            RunFailed: it is in space.
+        """
+        return statics_picture(self.found, self.sections, self.influence)
+
+    def plot(self, path: str | Path) -> None:
+        """Draw it as .png, .svg or .pdf."""
+        self.picture.save(path)
+
+    def __str__(self) -> str:
+        return self.render("text")
+
     def _repr_markdown_(self) -> str:
         return self.render("markdown")
 
@@ -150,18 +187,32 @@ def _work(equation: WorkEquation) -> dict[str, Any]:
     }
 
 
-def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics:
-    """A structure at rest.
+def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
+    """A structure at rest; of a system that is free to move, its places of rest.
 
     Args:
         influence: the reaction, member force or section force whose influence line is asked too.
         reaction: the only one that is found by virtual work too; None: all.
     Raises:
-        UsageError: no reaction of that name.
+        UsageError: no reaction of that name; one is asked by itself of a system that is free to move.
         DerivationError: bodies can move; a force acts at no place.
     """
-    found = static_reactions_of(system_of(model, modes_at_rest(model)), only=reaction or "")
-    if reaction and reaction not in found.by_name:
-        raise UsageError(f"there is no reaction '{reaction}'", mend=nearest(reaction, found.by_name))
+    system = system_of(model, modes_at_rest(model))
+    if has_freedoms(system):
+        _refuse_for_resting(reaction=reaction, influence=influence)
+        return resting_places(model, system)
+    found = static_reactions_of(system, only=reaction)
     line = None if influence is None else influence_line(found.structure, influence)
     return Statics(model, found, line)
+
+
+def _refuse_for_resting(**asked: str | None) -> None:
+    """Refuse what is asked of structures alone.
+
+    Raises:
+        UsageError: it is named.
+    """
+    for name, value in asked.items():
+        if value is not None:
+            raise UsageError(f"--{name} is of structures that stand, and this system is free to move",
+                             mend="without it the places of rest are given")  # fmt: skip

@@ -105,7 +105,7 @@ def _free(structure: Structure) -> str:
 def _law(formula: str) -> Law:
     """The count as it stands, words upright."""
     latex = formula.replace("*", r" \cdot ")
-    for word in ("bodies", "particles", "joints", "ties", "given motions"):
+    for word in ("bodies", "particles", "joints", "ties", "given motions", "unknown loads"):
         latex = latex.replace(f"({word})", rf"\ \text{{({word})}}")
     return Law(formula, latex)
 
@@ -188,8 +188,8 @@ def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
         return ()
     wrong = statics.disagreeing
     if not wrong:
-        text = (f"The balance of forces and moments of every body gives the same {count(len(compared), 'value')}, "
-                "as functions of the parameters.")  # fmt: skip
+        what = "value" if len(compared) == 1 else f"{len(compared)} values"
+        text = f"The balance of forces and moments of every body gives the same {what}, as formulas of the parameters."
         return (Step("agreement", "Check by equilibrium", (Prose((text,)),)),)
     rows = [(r.name, _or_open(None if r.work is None else r.work.value), _or_open(r.balanced)) for r in wrong]
     return (Step("agreement", "Check by equilibrium: FAILED", (

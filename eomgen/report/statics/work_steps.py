@@ -75,7 +75,7 @@ def _mechanism(plan: Plan, blocks: Sequence[Block], delta: Node) -> Grid:
         place: tuple[Cell, Cell] = ("at infinity", "") if center.place is None else (center.place[0], center.place[1])
         moved = [plan.simple(x) for x in center.direction or (0, 0, 0)]
         shift = ("", "") if center.place is not None else (moved[0] * delta, moved[1] * delta)
-        rows.append((_numeral(number), _parts(plan, block), *place, block.spin[2] * delta, *shift))
+        rows.append((_numeral(number), _parts(plan, block, blocks), *place, block.spin[2] * delta, *shift))
     return _narrow(("block", "moves", "centre x", "centre y", "rotation", "shift x", "shift y"), rows)
 
 
@@ -87,7 +87,7 @@ def _mechanism_in_space(plan: Plan, blocks: Sequence[Block], delta: Node) -> Gri
             continue
         moved = plan.center_velocity(block.bodies[0])
         spin = tuple(plan.simple(x) * delta for x in block.spin)
-        rows.append((_numeral(number), _parts(plan, block), *spin, *(x * delta for x in moved)))
+        rows.append((_numeral(number), _parts(plan, block, blocks), *spin, *(x * delta for x in moved)))
     nodes = tuple(node for block in blocks for node in block.nodes)
     if nodes:
         rows.append(("nodes", _listed(nodes), *("",) * 6))
@@ -96,9 +96,9 @@ def _mechanism_in_space(plan: Plan, blocks: Sequence[Block], delta: Node) -> Gri
     return _narrow(head, rows)
 
 
-def _parts(plan: Plan, block: Block) -> str:
+def _parts(plan: Plan, block: Block, blocks: Sequence[Block]) -> str:
     """Its bodies, members and nodes; a truss as one where all of it is in the block."""
-    if len(plan.moving) == len(plan.system.motion.links) and len(blocks_of(plan)) == 1:
+    if len(plan.moving) == len(plan.system.motion.links) and len(blocks) == 1:
         return "the whole structure"
     of_truss = Counter(truss for truss, _, _ in members_of(plan.system))
     inside = Counter(truss for truss, _ in block.members)

@@ -1,0 +1,72 @@
+"""Model -> its contacts: what can end, or rubs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.model.friction import Resistance
+from eomgen.model.parts import Body, Model
+from eomgen.symbolic.expressions import Expression
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A tie, or the joint of a body on a path.
+
+    Args:
+        name: of the tie, or of the body.
+        kind: as the model file says it: "support", "link", "path".
+        unilateral: it can end.
+        friction: its law, or None.
+    """
+
+    name: str
+    kind: str
+    unilateral: bool
+    friction: Resistance | None
+
+    @property
+    def words(self) -> str:
+        return f"the body '{self.name}'" if self.kind == "path" else f"the {self.kind} '{self.name}'"
+
+    @property
+    def declared_at(self) -> str:
+        """Where: constraints.wall, bodies.bead.joint."""
+        return f"bodies.{self.name}.joint" if self.kind == "path" else f"constraints.{self.name}"
+
+    @property
+    def mu(self) -> Expression | None:
+        """The coefficient of Coulomb friction."""
+        return None if self.friction is None else self.friction.coulomb
+
+    @property
+    def pulls(self) -> bool:
+        """A wire or string, which goes slack; anything else opens."""
+        return self.kind in ("link", "string")
+
+
+def contacts_of(model: Model) -> tuple[Contact, ...]:
+    """Every tie that can end or rubs, and every body that rubs on its path."""
+    laws = ((name, getattr(body.joint, "friction", None)) for name, body in model.bodies.items())
+    return (*_ties(model), *(Contact(name, "path", False, law) for name, law in laws if law is not None))
+
+
+def rough_contacts(model: Model) -> tuple[Contact, ...]:
+    """Every tie with dry friction, and every body on a path of which a piece has it."""
+    pieces = (Contact(name, "path", False, piece.friction)
+              for name, body in model.bodies.items() for piece in pieces_of(body))  # fmt: skip
+    return tuple(contact for contact in (*_ties(model), *pieces) if contact.mu is not None)
+
+
+def pieces_of(body: Body) -> tuple[Any, ...]:
+    """The pieces of the path on which a body is; () where it is on none."""
+    return getattr(body.joint, "pieces", None) or ()
+
+
+def _ties(model: Model) -> Iterator[Contact]:
+    for name, tie in model.constraints.items():
+        friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
+        if unilateral or friction is not None:
+            yield Contact(name, tie.kind, unilateral, friction)

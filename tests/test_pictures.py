@@ -1,0 +1,79 @@
+"""Pictures of structures: one unit for all forces, arrows on the free side, and a display in notebooks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.report.arrows import is_freer_outward
+from eomgen.report.quantities import figures, scale_of
+
+MODELS = Path(__file__).parent.parent / "models"
+
+CHORD = np.array([[0.0, 0.0], [4.0, 0.0]])
+UPPER = np.array([[0.0, 0.5], [4.0, 0.5]])
+POST = np.array([[2.0, 0.0], [2.0, 3.0]])
+
+
+@pytest.mark.parametrize(
+    ("values", "texts"),
+    [
+        ((41_930.0, -6_000.0), ("41.93 kN", "-6 kN")),
+        ((2_500_000.0, 12_340.0), ("2500 kN", "12.34 kN")),
+        ((1_500.0, 0.5), ("1500 N", "0.5 N")),
+        ((7.0, 1 / 3), ("7 N", "0.3333 N")),
+        ((0.02, 0.0005), ("20 mN", "0.5 mN")),
+        ((0.0, 0.0), ("0 N", "0 N")),
+    ],
+)
+def test_all_forces_of_a_picture_are_in_one_unit_with_four_figures(values, texts):
+    """41930 N and 6000 N are 41.93 kN and 6 kN: the prefix is that of the largest."""
+    scale = scale_of(values)
+    assert tuple(scale.text(value, "N") for value in values) == texts
+
+
+@pytest.mark.parametrize(("value", "text"), [(41_934.6, "41930"), (1e-5, "0.00001"), (-2.0, "-2"), (0.0, "0")])
+def test_a_label_has_no_power_of_ten_where_it_is_short_without(value, text):
+    """4.193e+04 is 41930."""
+    assert figures(value) == text
+
+
+def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():
+    """A load at the lower chord under a post hangs below it; a push on the chord's end stays outside."""
+    lines = [CHORD, POST]
+    assert is_freer_outward(lines, (2.0, 0.0), (0.0, -1.0))  # down, else it would run up along the post
+    assert not is_freer_outward(lines, (2.0, 0.0), (0.0, 1.0))  # up, from below
+    assert is_freer_outward(lines, (0.0, 0.0), (-1.0, 0.0))  # to the left, else it would lie in the chord
+    assert not is_freer_outward(lines, (0.0, 0.0), (1.0, 0.0))
+    assert not is_freer_outward([CHORD], (2.0, 0.0), (0.0, -1.0))  # a free beam carries its load on top
+    assert is_freer_outward([CHORD, UPPER], (2.0, 0.0), (0.0, -1.0))  # else it would cross the upper chord
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: eomgen.statics(eomgen.load(MODELS / "beam_with_overhang.toml")),
+        lambda: eomgen.statics(eomgen.load(MODELS / "elastic_pendulum.toml")),
+        lambda: eomgen.kinematics(eomgen.load(MODELS / "seeds" / "ch11_p4.toml")),
+        lambda: eomgen.inertia(eomgen.load(MODELS / "seeds" / "ch13_p2.toml")),
+    ],
+    ids=["structure", "places of rest", "mechanism", "inertia"],
+)
+def test_results_show_themselves_and_their_pictures_in_a_notebook(made, tmp_path):
+    """`_repr_markdown_` of the steps, `_repr_png_` of the picture, and the same as a file."""
+    found = made()
+    assert found._repr_markdown_().startswith("# ")
+    assert found.picture._repr_png_().startswith(b"\x89PNG")
+    found.plot(tmp_path / "it.svg")
+    assert "<svg" in (tmp_path / "it.svg").read_text()
+
+
+def test_the_python_name_gives_places_of_rest_where_the_verb_does():
+    """`eomgen.statics` of a system that is free to move: its places of rest; a single reaction is then refused."""
+    pendulum = eomgen.load(MODELS / "simple_pendulum.toml")
+    assert len(eomgen.statics(pendulum).places) == 2
+    with pytest.raises(eomgen.UsageError, match="free to move"):
+        eomgen.statics(pendulum, reaction="reaction_y(bar)")
