@@ -13,7 +13,15 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import DerivationError, ExpressionError, MissingValues, NotYet, RunFailed
+from eomgen.errors import (
+    DerivationError,
+    EomgenError,
+    ExpressionError,
+    MissingValues,
+    ModelError,
+    NotYet,
+    RunFailed,
+)
 from eomgen.journey import Journey
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.outputs import asks_motion, later
@@ -68,10 +76,18 @@ def solve(model: Model) -> dict[str, Answer]:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
     Raises:
-        ModelError: an output needs accelerations and a free coordinate moves no mass.
+        ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
     """
-    solver = _Solver(model)
-    return {name: solver.answer(output) for name, output in model.outputs.items()}
+    solver, found, wrong = _Solver(model), {}, []
+    for name, output in model.outputs.items():
+        try:
+            found[name] = solver.answer(output)
+        except ModelError as error:
+            wrong.append(error)
+            found[name] = _unanswered(output, error)
+    if wrong and not any(answer.answered for answer in found.values()):
+        raise wrong[0]
+    return found
 
 
 def table(answers: dict[str, Answer]) -> str:
@@ -119,12 +135,11 @@ class _Solver:
 
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
-        unit = "" if output.unit is None else output.unit.text
         try:
             _refuse_later(output)
-            return replace(self._answer(output), unit=unit)
+            return replace(self._answer(output), unit=_unit(output))
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
-            return Answer(unit=unit, message=f"{error.what}; {error.mend}" if error.mend else error.what)
+            return _unanswered(output, error)
 
     def _answer(self, output: Output) -> Answer:
         if output.at is not None:
@@ -267,6 +282,14 @@ class _Solver:
         known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
         value = situation.number(output.value, {**known, **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
+
+
+def _unit(output: Output) -> str:
+    return "" if output.unit is None else output.unit.text
+
+
+def _unanswered(output: Output, error: EomgenError) -> Answer:
+    return Answer(unit=_unit(output), message=f"{error.what}; {error.mend}" if error.mend else error.what)
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:

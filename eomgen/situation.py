@@ -16,6 +16,7 @@ from functools import cached_property
 from eomgen.codegen.factorization import solved
 from eomgen.errors import MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.balance_solution import values_at_a_state
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
@@ -24,7 +25,6 @@ from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.reactions import values_at_a_state
 from eomgen.mechanics.start import fixed_by_position
 from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of
@@ -37,8 +37,7 @@ from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import readable_all, simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.normal_form import legible, readable_all
 
 WORK = 50_000  # products of terms for making one formula readable
 LONG = 400  # characters from which a formula is no easier to read than it came
@@ -119,9 +118,7 @@ class Situation:
 
     def simple(self, scalar: Scalar) -> Scalar:
         """A scalar in its most readable form; as it came where multiplying out made it longer still."""
-        found = simplest(scalar, WORK, self.positive)
-        size = text_size(found)
-        return scalar if size > LONG and text_size(scalar) < size else found
+        return legible(scalar, WORK, self.positive, LONG)
 
     # -- at an instant ---------------------------------------------------------------------------
 

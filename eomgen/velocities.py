@@ -18,7 +18,6 @@ from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.freedom import counted, freedoms
 from eomgen.mechanics.instant.kinematic_state import KinematicState, State
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
-from eomgen.mechanics.start import fixed_by_position
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
 from eomgen.model.parts import Given, Model

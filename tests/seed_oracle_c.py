@@ -312,9 +312,7 @@ def ch10_p2(p: Numbers) -> Answers:
 @oracle
 def ch10_p3(p: Numbers) -> Answers:
     """The radius AP turns by the arc over R, pi t^2/12."""
-    v, a = motion(
-        lambda t: (p["a_0"] * t**2 + p["R"] * cos(pi * t**2 / 12), p["R"] * sin(pi * t**2 / 12)), p["t1"]
-    )
+    v, a = motion(lambda t: (p["a_0"] * t**2 + p["R"] * cos(pi * t**2 / 12), p["R"] * sin(pi * t**2 / 12)), p["t1"])
     return {**named("v", v), **named("a", a)}
 
 

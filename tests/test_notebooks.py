@@ -29,7 +29,7 @@ def shown(cell: str, namespace: dict[str, Any]) -> Any:
 def is_rich(value: Any) -> bool:
     """Whether a notebook shows more than the repr, or the repr is all there is to show."""
     ours = type(value).__module__.split(".")[0] == "eomgen"
-    methods = ("_repr_mimebundle_", "_repr_latex_", "_repr_html_", "_repr_markdown_")
+    methods = ("_repr_mimebundle_", "_repr_latex_", "_repr_html_", "_repr_markdown_", "_repr_png_")
     return not ours or any(getattr(value, method, None) is not None for method in methods)
 
 

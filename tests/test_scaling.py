@@ -10,6 +10,7 @@ from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.functions import sin, sqrt
 from eomgen.symbolic.graph import Graph, Node
 from eomgen.symbolic.scaling import monomial, scaled, solved
+from eomgen.symbolic.text import to_text
 
 
 def values(scalars):
@@ -35,6 +36,16 @@ def test_lengths_and_heights_leave_plain_numbers():
     L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
     found = scaled([{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, 1], {a, h})
     assert all(type(x) is not Node for row in found.rows for x in row.values())
+
+
+def test_a_root_of_a_quotient_is_two_roots():
+    """sqrt(3/f) = sqrt(3)/sqrt(f), so that a bar's length is seen in all of (-3 a/L, sqrt(3/L^2) a, 2 h/L)."""
+    g = Graph()
+    a, h = g.symbol("a"), g.symbol("h")
+    f = 3 * a * a + h * h
+    found = scaled([{0: -3 * a / sqrt(f), 1: a * sqrt(3 / f)}, {0: h, 1: a}], [0, 0], {a, h})
+    assert all("sqrt(3*a^2" not in to_text(x) for row in found.rows for x in row.values())
+    assert monomial(g.sqrt(5 * a)).powers == monomial(g.sqrt(5) * g.sqrt(a)).powers
 
 
 def test_the_solution_is_that_of_the_equations_as_given():

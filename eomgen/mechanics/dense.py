@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 
-from eomgen.symbolic.evaluation import NoValue
+from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
 
@@ -43,6 +46,26 @@ def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
             Q = np.vstack([Q, left / size])
             found.append(i)
     return found
+
+
+def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
+    """How many rows {column: number of 50 digits} are independent."""
+    left = [dict(row) for row in rows]
+    rank = 0
+    while left:
+        row = max(left, key=lambda line: max(map(abs, line.values()), default=0))
+        left.remove(row)
+        column = max(row, key=lambda k: abs(row[k]), default=None)
+        if column is None or abs(row[column]) < ZERO_AT_50:
+            break
+        rank += 1
+        for other in left:
+            if column in other:
+                factor = other.pop(column) / row[column]
+                for k, x in row.items():
+                    if k != column:
+                        other[k] = other.get(k, 0) - factor * x
+    return rank
 
 
 def scaled_condition(M: np.ndarray) -> float:

@@ -120,17 +120,23 @@ def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located
 
 
 def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
-    """An equation solved for one of its unknowns; the one in which it has a single root first."""
+    """An equation solved for one of its unknowns; the one in which it has a single root first.
+
+    Where there is a loop only such a one; a cos q + b sin q + r has two.
+    """
     several: Step | None = None
+    in_loop = any(True for _ in _loops(left, unknowns))
     for i, equation in enumerate(left):
         for q in _held(equation, unknowns):
+            if in_loop and _waves(equation, q) is not None:
+                continue
             candidates = roots(equation, q, located.positive, LIMIT)
             root = located.chosen(candidates, q, equation)
             if root is not None and len(candidates) == 1:
                 return q, root, i
             if root is not None and several is None:
                 several = q, root, i
-    return None if any(_loops(left, unknowns)) else several
+    return None if in_loop else several
 
 
 def _of_loop(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:

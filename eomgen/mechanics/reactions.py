@@ -9,33 +9,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from random import Random
-from typing import Any
-
-import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import Balance, BodyEquation, balance_of
-from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.balance import Balance, balance_of
+from eomgen.mechanics.balance_solution import solution_of_balance
 from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.mechanics.statics.rest import at_rest
-from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced, with_unknowns
+from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.unheld import refuse_unheld
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.scaling import solved
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
-
-TRIES = 20
-RANK = 1e-7  # of the largest entry of J, below which a singular value is 0
 
 Combination = dict[int, Scalar]
 
@@ -88,8 +78,12 @@ class Reactions:
         """An unknown of the loads.
 
         Raises:
+            DerivationError: it stands in no load.
             Indeterminate: the balance at rest leaves it open.
         """
+        if name not in self.balance.names[len(self.components) :]:
+            raise DerivationError(f"the unknown '{name}' stands in no load and in no equation of [given]",
+                                  f"unknowns.{name}", "write it where it is meant")  # fmt: skip
         return self.combined({self.balance.names.index(name, len(self.components)): 1}, name)
 
     def value(self, j: int) -> Scalar:
@@ -285,8 +279,8 @@ def reactions_of(
     if balance.unknowns:
         return _at_rest(balance, at or {})
     if at:
-        return Reactions(balance, _solved(balance, at), at)
-    solution = _solved(balance, {}, sure=None if short else 1)
+        return Reactions(balance, solution_of_balance(balance, at), at)
+    solution = solution_of_balance(balance, {}, sure=None if short else 1)
     refuse_unheld(balance, solution)
     return Reactions(balance, solution, {})
 
@@ -299,75 +293,10 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar]) -> Reactions:
     """
     refuse_rubbing(balance)
     state = {**at, **still(balance.system)}
-    solution = _solved(balance, state)
+    solution = solution_of_balance(balance, state)
     if not is_balanced(balance, solution):
         state = {**at_rest(balance.system), **at}
-        solution = _solved(balance, state)
+        solution = solution_of_balance(balance, state)
         if not is_balanced(balance, solution):
             raise unbalanced(balance, solution)
     return Reactions(balance, solution, state)
-
-
-def _solved(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -> Solution:
-    coefficients, needed = with_unknowns(balance)
-    entries = [x for row in coefficients for x in row.values()]
-    pushes = [_pushes(balance, e) for e in balance.equations]
-    if at:
-        entries = list(readable_all(substituted(tuple(entries), at)))
-        needed = list(readable_all(substituted(tuple(needed), at)))
-        pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at)), strict=True)) for row in pushes]
-    flat = iter(entries)
-    rows = [{j: next(flat) for j in row} for row in coefficients]
-    parameters = frozenset(balance.system.symbols.parameters.values())
-
-    def simple(a: Scalar) -> int:
-        """Numbers, products of parameters, and what may vanish at some state or for some angle."""
-        return 0 if type(a) is not Node else 1 if _is_product(a, parameters) else 2
-
-    last = [j for j, c in enumerate(balance.components) if c.rubbing]
-    values = values_at_a_state(balance.system, entries)
-    return solved(rows, needed, len(balance.names), values, simple=simple, last=last, sure=sure,
-                  tests=pushes, sure_symbols=parameters)  # fmt: skip
-
-
-def _pushes(balance: Balance, equation: BodyEquation) -> Combination:
-    """The coefficients of the components that rub as they would be without friction."""
-    link = balance.system.motion.index[equation.body]
-    rubbing = [j for j in equation.coefficients if balance.components[j].rubbing]
-    return {j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
-            for j in rubbing}  # fmt: skip
-
-
-def _is_product(a: Node, parameters: frozenset[Node]) -> bool:
-    return all(x in parameters or x.op in ("mul", "div", "neg") for x in order((a,)))
-
-
-def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
-    """Values at the first generic state at which all entries have one."""
-    for seed in range(1, TRIES):
-        state = _generic_state(system, seed)
-        try:
-            evaluate(entries, state, fifty_digits())
-        except NoValue:
-            continue
-        return lambda scalars, state=state: evaluate(scalars, state, fifty_digits())
-    raise DerivationError(f"no state with values for the reactions was found in {TRIES} tries")
-
-
-def _generic_state(system: System, seed: int) -> dict[Node, Any]:
-    """A state off any special position, parameters off any special value unless the ties are redundant for these alone.
-
-    Two cranks are a parallelogram only where they have one length: then the values are the model's.
-    """
-    own = generic_state(system.ties, Random(seed))
-    try:
-        shaken = generic_state(system.ties, Random(seed), shaken=True)
-        return shaken if _rank(system, shaken) == _rank(system, own) else own
-    except (DerivationError, NoValue):
-        return own
-
-
-def _rank(system: System, state: Mapping[Node, Any]) -> int:
-    """How many rows of J are independent."""
-    J = [[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J]
-    return int(np.linalg.matrix_rank(np.array(J), tol=RANK * np.max(np.abs(J)))) if system.symbols.u and J else 0

@@ -15,10 +15,10 @@ from typing import Any
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
-EXACT, ROUNDED = 1e-25, 1e-9  # what counts as zero: of a number of 50 digits, of one that comes from doubles
+ROUNDED = 1e-9  # what counts as zero of a number that comes from doubles
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Worth:
     """
 
     scope: Scope
-    tolerance: float = EXACT
+    tolerance: float = ZERO_AT_50
 
     def of(self, scalars: Iterable[Scalar]) -> list[Any]:
         """The values, with 50 digits."""

@@ -140,7 +140,7 @@ def read_part(cls: Any, raw: Mapping, path: Path, found: list[Finding], known: t
     values = {}
     if inline is not None:
         rest = {key: value for key, value in raw.items() if key not in keys}
-        values[inline.name] = inline.rule.read(rest, path, found)
+        values[inline.name] = inline.rule.read(rest, path, found, beside=keys)
     else:
         unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)))
     for slot in own:
@@ -177,7 +177,8 @@ class SeamRule:
     what: str
     members: tuple[Any, ...]
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: Path, found: list[Finding], beside: tuple[str, ...] = ()) -> Any:
+        """A member of the seam; the keys `beside` its own are read already, and are known here."""
         if isinstance(raw, self.members):
             return raw
         if not isinstance(raw, Mapping):
@@ -193,7 +194,7 @@ class SeamRule:
             mend = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
             found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend, raw=raw))
             return None
-        return read_part(kinds[kind], raw, path, found, known=("kind",))
+        return read_part(kinds[kind], raw, path, found, known=("kind", *beside))
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)

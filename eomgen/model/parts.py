@@ -272,6 +272,12 @@ class Model(Part):
             names.append("center")
         return tuple(dict.fromkeys([*names, *part.points]))
 
+    @property
+    def named_points(self) -> tuple[str, ...]:
+        """Every point of the ground and of the bodies by its whole name: "O", "arm.end"."""
+        own = (f"{body}.{point}" for body in self.bodies for point in self.body_points(body))
+        return (*self.points, *own)
+
     def resolve_point(self, point: str) -> tuple[str | None, str]:
         """(body, its point) of "arm.end"; (None, point) of a point of the ground; (truss, node) of "T.n1".
 

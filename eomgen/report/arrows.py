@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.report.drawing import LOAD, REACTION, Place, Sketch
+from eomgen.report.drawing import LOAD, REACTION, Sketch
 from eomgen.report.figures import halo
+from eomgen.report.support_symbols import Place
 
 __all__ = ["LOAD", "REACTION", "arrow", "distributed", "is_freer_outward", "moment_arc"]
 

@@ -11,22 +11,25 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.kinematics import GROUND, Link
+from eomgen.mechanics.loads import SystemScene
 from eomgen.mechanics.system import System
 from eomgen.model.composite import pose_of
+from eomgen.model.constraints.base import Constraint
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.trusses import is_node
+from eomgen.report.coil import coil
+from eomgen.report.figures import halo
+from eomgen.report.support_symbols import GROUNDED, Place, clamp, hinge, pin, rail, roller, weld
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Matrix, Pose, Vector, apply
 
-BODY, GROUNDED, LOAD, REACTION = "#2f5d8a", "#5a5a5a", "#b03a2e", "#2e7d4f"
+BODY, LOAD, REACTION = "#2f5d8a", "#b03a2e", "#2e7d4f"
 FILL, PAPER = "#c9d8e8", "#ffffff"
 SYMBOL = 0.028  # size of hinges and supports, of the drawing's extent
 AWAY = 10  # from a line to its name [points]
 ARROW = 0.13  # length of the longest arrow, of the extent
-
-Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -119,17 +122,21 @@ class Sketch:
         return SYMBOL * self.extent
 
 
-def draw_model(panel: Any, sketch: Sketch, *, names: bool = True) -> None:
+def draw_model(
+    panel: Any, sketch: Sketch, *, names: bool = True, colors: Mapping[str, str] | None = None
+) -> None:
     """Bodies, wires, hinges and supports on matplotlib axes; the axes have equal scales and no frame.
 
     Args:
         names: bodies and points are named.
+        colors: of bodies, where they have one of their own.
     """
     panel.set_aspect("equal")
     panel.axis("off")
     for link in sketch.system.motion.links:
-        _body(panel, sketch, link, names)
+        _body(panel, sketch, link, names, (colors or {}).get(link.name, BODY))
     _members(panel, sketch)
+    _springs(panel, sketch)
     _joints(panel, sketch)
     if names:
         _points(panel, sketch)
@@ -139,19 +146,21 @@ def draw_model(panel: Any, sketch: Sketch, *, names: bool = True) -> None:
 # -- bodies ----------------------------------------------------------------------------------------
 
 
-def _body(panel: Any, sketch: Sketch, link: Link, named: bool) -> None:
+def _body(panel: Any, sketch: Sketch, link: Link, named: bool, color: str) -> None:
     lines = sketch.lines(link)
-    colors = [color for _, color in sketch.outlines(link)] or [FILL] * len(lines)
-    for line, color in zip(lines, colors, strict=True):
+    insides = [inside for _, inside in sketch.outlines(link)] or [FILL] * len(lines)
+    for line, inside in zip(lines, insides, strict=True):
         closed = _is_closed(line)
         if closed:
-            panel.fill(*line.T, color=color, alpha=0.6 if color == FILL else 1.0, linewidth=0)
-        panel.plot(*line.T, color=BODY, linewidth=1.4 if closed else 2.6, solid_capstyle="round", zorder=2)
+            panel.fill(*line.T, color=inside, alpha=0.6 if inside == FILL else 1.0, linewidth=0)
+        panel.plot(*line.T, color=color, linewidth=1.4 if closed else 2.6, solid_capstyle="round", zorder=2)
     if lines and named:
-        panel.annotate(_escaped(link.name), _middle(lines[0]), xytext=_beside(lines[0]), textcoords="offset points",
-                       color=BODY, fontsize=9, ha="center", va="center", zorder=6)  # fmt: skip
+        x, y = _beside(lines[0])
+        side = "right" if x < -AWAY / 2 else "left" if x > AWAY / 2 else "center"
+        panel.annotate(_escaped(link.name), _middle(lines[0]), xytext=(x, y), textcoords="offset points", color=color,
+                       fontsize=9, ha=side, va="center", zorder=6, path_effects=halo())  # fmt: skip
     if not lines and not is_node(link.name):
-        panel.plot(*sketch.place(link.pose.p), marker="o", markersize=6, color=BODY, zorder=3)
+        panel.plot(*sketch.place(link.pose.p), marker="o", markersize=6, color=color, zorder=3)
 
 
 def _is_closed(line: np.ndarray) -> bool:
@@ -159,30 +168,26 @@ def _is_closed(line: np.ndarray) -> bool:
 
 
 def _middle(line: np.ndarray) -> Place:
-    """Half-way along an open line, the middle of a closed one."""
-    if _is_closed(line):
-        x, y = line[:-1].mean(axis=0)
-        return float(x), float(y)
-    run = _run(line)
-    x, y = (float(np.interp(run[-1] / 2, run, column)) for column in line.T)
-    return x, y
+    """Half-way along the longest piece of an open line, the middle of a closed one."""
+    x, y = line[:-1].mean(axis=0) if _is_closed(line) else np.mean(_longest(line), axis=0)
+    return float(x), float(y)
 
 
 def _beside(line: np.ndarray) -> Place:
     """From the middle to the name [points]: above an open line, or left of it; nothing for a closed one."""
     if _is_closed(line):
         return (0.0, 0.0)
-    run = _run(line)
-    k = min(int(np.searchsorted(run, run[-1] / 2, side="right")), len(line) - 1)
-    x, y = line[k] - line[k - 1]
+    a, b = _longest(line)
+    x, y = b - a
     across = np.array([-y, x]) / (np.hypot(x, y) or 1.0)
     up = across if across[1] > 1e-9 or (abs(across[1]) <= 1e-9 and across[0] < 0) else -across
     return float(AWAY * up[0]), float(AWAY * up[1])
 
 
-def _run(line: np.ndarray) -> np.ndarray:
-    """How far along the line each of its points is."""
-    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+def _longest(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The ends of its longest piece, the first of several."""
+    k = int(np.argmax(np.linalg.norm(np.diff(line, axis=0), axis=1).round(9)))
+    return line[k], line[k + 1]
 
 
 def _straightened(points: np.ndarray) -> np.ndarray:
@@ -214,13 +219,48 @@ def _escaped(name: str) -> str:
 
 
 def _members(panel: Any, sketch: Sketch) -> None:
-    """Wires, links and members of trusses: lines between the places that they pull."""
+    """Strings, wires, links and members of trusses: lines between the places that they pull."""
+    model = sketch.system.scope.model
+    strings = [name for name, tie in model.constraints.items() if _string(panel, sketch, name, tie)]
     for row in sketch.system.ties.rows:
-        if row.component != "tension":
+        if row.component != "tension" or row.tie in strings:
             continue
         ends = [sketch.position(push.place) for push in row.pushes if isinstance(push, PointForce)]
         for a, b in zip(ends[::2], ends[1::2], strict=False):
             panel.plot(*zip(a, b, strict=True), color=GROUNDED, linewidth=1.6, zorder=1)
+
+
+def _springs(panel: Any, sketch: Sketch) -> None:
+    """Zigzags: springs between points, and joints that slide against a stiffness."""
+    motion = sketch.system.motion
+    for force in sketch.system.scope.model.forces.values():
+        if force.spring_ends:
+            _spring(panel, sketch, *(sketch.position(motion.place(point)) for point in force.spring_ends))
+    for link in motion.links:
+        efforts = () if link.joint is None else link.joint.efforts()
+        slides = all(is_zero(x) for w, _ in link.S for x in w)
+        if slides and any(effort is not None and effort.stiffness is not None for effort in efforts):
+            above = motion.links[link.parent].pose if link.parent != GROUND else Pose()
+            _spring(panel, sketch, sketch.place(above.point(link.before.p)), sketch.position((link.name, link.point)))
+
+
+def _spring(panel: Any, sketch: Sketch, a: Place, b: Place) -> None:
+    """A zigzag."""
+    panel.plot(*coil(a, b, sketch.symbol / 2).T, color=GROUNDED, linewidth=1.2, zorder=1)
+
+
+def _string(panel: Any, sketch: Sketch, name: str, tie: Constraint) -> bool:
+    """Its straight pieces, and the pegs that it lies on; False where it is no string."""
+    strands = tie.strands_at(SystemScene(sketch.system.motion, f"constraints.{name}"))
+    for strand in strands:
+        panel.plot(*np.transpose([sketch.place(end) for end in strand.ends]), color=GROUNDED, linewidth=1.6, zorder=1)
+    pegs = {id(stop): stop for strand in strands for stop in (strand.first, strand.second) if stop.body is None}
+    for peg in pegs.values():
+        (radius,) = sketch.numbers((peg.offset,))
+        turn = np.linspace(0, 2 * np.pi, 61)
+        x, y = sketch.place(peg.center)
+        panel.plot(x + radius * np.cos(turn), y + radius * np.sin(turn), color=GROUNDED, linewidth=1.0, zorder=1)
+    return bool(strands)
 
 
 def _joints(panel: Any, sketch: Sketch) -> None:
@@ -244,13 +284,13 @@ def _tie(panel: Any, sketch: Sketch, rows: Sequence[Any]) -> None:
     between = len({push.place[0] for push in pushes if push.place[0] is not None}) > 1
     held = any(isinstance(push, Couple) for row in rows for push in row.pushes)
     if {"x", "y"} <= parts:
-        (_clamp if held else _hinge if between else _pin)(panel, sketch, at)
+        (clamp if held else hinge if between else pin)(panel, sketch.symbol, at)
     elif "n" in parts and not between:
         (row,) = (row for row in rows if row.component == "n")
         x, y = sketch.numbers(row.pushes[0].force[:2])
-        _roller(panel, sketch, at, math.atan2(y, x) - math.pi / 2)
+        roller(panel, sketch.symbol, at, math.atan2(y, x) - math.pi / 2)
     else:
-        _hinge(panel, sketch, at)
+        hinge(panel, sketch.symbol, at)
 
 
 def _joint(panel: Any, sketch: Sketch, link: Link) -> None:
@@ -258,65 +298,11 @@ def _joint(panel: Any, sketch: Sketch, link: Link) -> None:
     turning = [w for w, v in link.S if not all(is_zero(x) for x in w)]
     sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]
     if link.parent != GROUND:
-        (_hinge if turning or sliding else _weld)(panel, sketch, at)
+        (hinge if turning or sliding else weld)(panel, sketch.symbol, at)
     elif turning and not sliding:
-        _pin(panel, sketch, at)
+        pin(panel, sketch.symbol, at)
     elif sliding and not turning:
         x, y = sketch.numbers(apply(link.pose.R, sliding[0])[:2])
-        _rail(panel, sketch, at, math.atan2(y, x))
+        rail(panel, sketch.symbol, at, math.atan2(y, x))
     elif not sliding:
-        _clamp(panel, sketch, at)
-
-
-def _turned(at: Place, turn: float, points: Iterable[Place]) -> np.ndarray:
-    c, s = math.cos(turn), math.sin(turn)
-    return np.array([(at[0] + c * x - s * y, at[1] + s * x + c * y) for x, y in points])
-
-
-def _hinge(panel: Any, sketch: Sketch, at: Place, turn: float = 0.0) -> None:
-    panel.plot(*at, marker="o", markersize=6, markerfacecolor="white", markeredgecolor=GROUNDED, zorder=5)
-
-
-def _weld(panel: Any, sketch: Sketch, at: Place) -> None:
-    panel.plot(*at, marker="s", markersize=5, color=GROUNDED, zorder=5)
-
-
-def _pin(panel: Any, sketch: Sketch, at: Place, turn: float = 0.0) -> None:
-    d = sketch.symbol
-    panel.fill(*_turned(at, turn, [(0, 0), (-d, -1.7 * d), (d, -1.7 * d)]).T, facecolor="white", edgecolor=GROUNDED,
-               zorder=4)  # fmt: skip
-    _ground(panel, sketch, at, turn, -1.7 * d)
-    _hinge(panel, sketch, at)
-
-
-def _roller(panel: Any, sketch: Sketch, at: Place, turn: float) -> None:
-    d = sketch.symbol
-    panel.fill(*_turned(at, turn, [(0, 0), (-d, -1.4 * d), (d, -1.4 * d)]).T, facecolor="white", edgecolor=GROUNDED,
-               zorder=4)  # fmt: skip
-    wheel = [(0.28 * d * math.cos(a), 0.28 * d * math.sin(a) - 1.7 * d) for a in np.linspace(0, 2 * math.pi, 25)]
-    for side in (-0.55 * d, 0.55 * d):
-        panel.plot(*_turned(at, turn, [(x + side, y) for x, y in wheel]).T, color=GROUNDED, linewidth=0.9, zorder=4)
-    _ground(panel, sketch, at, turn, -2.0 * d)
-    _hinge(panel, sketch, at)
-
-
-def _clamp(panel: Any, sketch: Sketch, at: Place) -> None:
-    d = sketch.symbol
-    panel.plot(*at, marker="s", markersize=7, color=GROUNDED, zorder=5)
-    _ground(panel, sketch, at, 0.0, -0.5 * d)
-
-
-def _rail(panel: Any, sketch: Sketch, at: Place, turn: float) -> None:
-    d = sketch.symbol
-    panel.plot(*_turned(at, turn, [(-3 * d, 0), (3 * d, 0)]).T, color=GROUNDED, linewidth=0.9, zorder=1)
-    panel.plot(*at, marker="s", markersize=7, markerfacecolor="white", markeredgecolor=GROUNDED, zorder=4)
-
-
-def _ground(panel: Any, sketch: Sketch, at: Place, turn: float, below: float) -> None:
-    """A line with hatching."""
-    d = sketch.symbol
-    panel.plot(*_turned(at, turn, [(-1.7 * d, below), (1.7 * d, below)]).T, color=GROUNDED, linewidth=1.2, zorder=4)
-    for k in range(6):
-        x = (-1.5 + 0.6 * k) * d
-        panel.plot(*_turned(at, turn, [(x, below), (x - 0.5 * d, below - 0.6 * d)]).T, color=GROUNDED, linewidth=0.7,
-                   zorder=4)  # fmt: skip
+        clamp(panel, sketch.symbol, at)

@@ -47,6 +47,9 @@ PREAMBLE = r"""\documentclass[fleqn]{article}
 \renewcommand{\arraystretch}{1.25}
 """
 WORDS = 60  # characters in a line of a column of words, and its width in mm
+NARROW = 45  # the same in a table of many columns
+LINE = 95  # characters of words in all columns of a table, in which a formula counts as SIDE
+SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
@@ -246,7 +249,10 @@ def _ruled(alignment: str, head: str, rows: list[str]) -> str:
 
 def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas; columns of long words are wrapped, units and numbers set as such."""
-    alignment = "".join(f"p{{{WORDS}mm}}" if _is_wordy(grid, k) else "l" for k in range(len(grid.head)))
+    longest = [max(len(cell) if isinstance(cell, str) else SIDE for cell in column)
+               for column in zip(grid.head, *grid.rows, strict=True)]  # fmt: skip
+    room = WORDS if sum(longest) <= LINE else NARROW
+    alignment = "".join(f"p{{{room}mm}}" if length > room else "l" for length in longest)
     units = [head == "unit" for head in grid.head]
     head = _cells(setter, grid.head, [True] * len(grid.head))
     return _ruled(alignment, head, [_cells(setter, row, units) for row in grid.rows])
@@ -257,7 +263,3 @@ def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:
     words = [unit_latex if unit else value_latex for unit in units]
     return " & ".join(set_(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$"
                       for set_, cell in zip(words, row, strict=True))  # fmt: skip
-
-
-def _is_wordy(grid: Grid, column: int) -> bool:
-    return any(isinstance(cell, str) and len(cell) > WORDS for cell in (row[column] for row in grid.rows))

@@ -16,6 +16,7 @@ from eomgen.symbolic.terms import Monomial, Terms, common_monomial, inverse, sca
 
 LARGEST_DEGREE = 24
 MOST_TERMS = 400
+PLACES = 10  # at which a polynomial is tried before its factors are lifted
 
 
 def factored(f: Terms) -> list[tuple[Terms, int]]:
@@ -35,8 +36,15 @@ def factored(f: Terms) -> list[tuple[Terms, int]]:
 
 @lru_cache(maxsize=2000)
 def irreducible(polynomial: Any) -> tuple[Any, tuple[tuple[Any, int], ...]]:
-    """(number, irreducible factors and their powers) of an element of sympy's ring; remembered, as formulas recur."""
-    number, parts = polynomial.factor_list()
+    """(number, irreducible factors and their powers) of an element of sympy's ring; remembered, as formulas recur.
+
+    Wang's algorithm factors at random places first. With three of them, sympy's own choice, one run in five takes a
+    thousand times as long as the others, where by chance a polynomial splits at all three and nowhere else.
+    """
+    from sympy.polys.polyconfig import using
+
+    with using(EEZ_NUMBER_OF_CONFIGS=PLACES):
+        number, parts = polynomial.factor_list()
     return number, tuple(parts)
 
 

@@ -226,6 +226,13 @@ def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = (), mos
     return rebuilt_as_written(min(forms, key=_length))
 
 
+def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Scalar:
+    """x at its simplest; as it came where that is more than `long` characters, and longer than it came."""
+    found = simplest(x, limit, positive)
+    size = text_size(found)
+    return x if size > long and text_size(x) < size else found
+
+
 def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
     """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
     above, below = _whole(writer, *reduced(expansion, terms))

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.functions import over, sqrt
+from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.linear import Solution, Values
 from eomgen.symbolic.linear import solved as solved_as_given
@@ -131,7 +131,8 @@ def _two_roots(x: Scalar) -> tuple[tuple[Scalar, int], ...]:
         return ()
     a, b = under.args
     n = next((part for part in (a, b) if type(part) is not Node), 0)
-    return ((sqrt(a), 1), (sqrt(b), 1 if under.op == "mul" else -1)) if n > 0 else ()
+    root = x.graph.sqrt
+    return ((root(a), 1), (root(b), 1 if under.op == "mul" else -1)) if n > 0 else ()
 
 
 def _taken(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.model.parts import Model
 from eomgen.report.inertia.result import inertia as found_in
-from eomgen.verbs.outcome import Outcome, prepared
+from eomgen.verbs.outcome import Outcome, told
 
 
 def inertia(
@@ -20,9 +20,4 @@ def inertia(
         about: a point about which they are taken too.
         axis: "A,B", or x, y, z through that point.
     """
-    found = found_in(model, bodies, about=about, axis=axis)
-    if plot is not None:
-        found.plot(prepared(plot))
-    if format == "json":
-        return Outcome("", found.as_dict())
-    return Outcome(found.render(format))
+    return told(found_in(model, bodies, about=about, axis=axis), format=format, plot=plot)

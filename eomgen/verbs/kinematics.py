@@ -8,7 +8,7 @@ from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
 from eomgen.velocities import kinematics as found_in
 from eomgen.verbs.given import nearest
-from eomgen.verbs.outcome import Outcome, prepared
+from eomgen.verbs.outcome import Outcome, told
 
 
 def kinematics(
@@ -35,13 +35,9 @@ def kinematics(
         if not given:
             raise
         raise UsageError(f"--given: {error.what}", mend=error.mend) from error
-    if plot is not None:
-        found.plot(prepared(plot))
     wrong = found.disagreement
     failed = f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
-    if format == "json":
-        return Outcome("", found.as_dict(), failed)
-    return Outcome(found.render(format), {}, failed)
+    return told(found, format=format, plot=plot, failed=failed)
 
 
 def _asked(at: str | None, given: Sequence[str]) -> str:
@@ -59,7 +55,6 @@ def _pair(model: Model, text: str) -> tuple[str, str]:
         raise UsageError(f'--relative "{text}" is no point in a body', mend='write --relative "bead.center in hoop"')
     if body not in model.bodies:
         raise UsageError(f"--relative: there is no body '{body}'", mend=nearest(body, model.bodies))
-    points = [*model.points, *(f"{name}.{own}" for name in model.bodies for own in model.body_points(name))]
-    if point not in points:
-        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest(point, points))
+    if point not in model.named_points:
+        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest(point, model.named_points))
     return point, body

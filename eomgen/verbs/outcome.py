@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from eomgen.errors import RunFailed
 
@@ -35,6 +35,25 @@ class Outcome:
     def json(self) -> str:
         return json.dumps({"schema_version": SCHEMA_VERSION, **self.payload}, ensure_ascii=False, indent=1,
                           allow_nan=False) + "\n"  # fmt: skip
+
+
+class Told(Protocol):
+    """A result that is written step by step, for machines, and drawn."""
+
+    def render(self, format: str) -> str: ...
+
+    def as_dict(self) -> dict[str, Any]: ...
+
+    def plot(self, path: str | Path) -> None: ...
+
+
+def told(found: Told, *, format: str, plot: str | None, failed: str = "") -> Outcome:
+    """A result in the format that is asked for, its picture in a file where one is."""
+    if plot is not None:
+        found.plot(prepared(plot))
+    if format == "json":
+        return Outcome("", found.as_dict(), failed)
+    return Outcome(found.render(format), {}, failed)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.model.parts import Model
 from eomgen.report.statics.result import statics as found_in
-from eomgen.verbs.outcome import Outcome, prepared
+from eomgen.verbs.outcome import Outcome, told
 
 
 def statics(
@@ -20,8 +20,4 @@ def statics(
         influence: of which the influence line is asked too.
     """
     found = found_in(model, reaction=reaction, influence=influence)
-    if plot is not None:
-        found.plot(prepared(plot))
-    if format == "json":
-        return Outcome("", found.as_dict(), found.failed)
-    return Outcome(found.render(format), {}, found.failed)
+    return told(found, format=format, plot=plot, failed=found.failed)

@@ -423,3 +423,57 @@ def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     assert outcome.payload["principal_axes"].keys() == {"plate", "O"}
     with pytest.raises(eomgen.RunFailed):
         inertia(eomgen.Model(**CUBE), plot=str(picture))
+
+
+# -- the report of what moves, and of what says nothing of its inertia ------------------------------
+
+
+def test_moving_bodies_together_have_their_numbers_at_the_start():
+    """J_O of two hinged rods at q1, q2 at the start: m l^2/3 + m (l^2/12 + d.d), d to the second mass centre."""
+    q1, q2 = 0.3, 1.1
+    rod = {"kind": "rod", "mass": "m", "length": "l"}
+    found = eomgen.inertia(eomgen.Model(
+        space="plane", parameters={"m": 2, "l": 3}, coordinates={"q1": q1, "q2": q2}, points={"O": [0, 0]},
+        bodies={"a": {"shape": rod, "joint": {"kind": "revolute", "angle": "q1"}},
+                "b": {"shape": rod, "joint": {"kind": "revolute", "on": "a.end", "angle": "q2"}}},
+    ), about="O")  # fmt: skip
+    x, y = (3 * f(q1) + 1.5 * f(q1 + q2) for f in (math.cos, math.sin))
+    assert found["J_P(O)"].value == pytest.approx(2 * 9 / 3 + 2 * (9 / 12 + x * x + y * y))
+    assert "Numbers at the start: q1 = 0.3, q2 = 1.1." in str(found)
+
+
+def test_a_mass_without_inertia_leaves_the_other_bodies_their_moments():
+    """A cart that only slides needs no inertia: m and the mass centre are known, of both too; a moment of it is not."""
+    model = eomgen.Model(
+        space="plane", parameters={}, coordinates={"x": 0}, points={"O": [0, 0]},
+        bodies={"cart": {"mass": 3, "joint": {"kind": "prismatic", "axis": [1, 0], "displacement": "x"}},
+                "disc": {"shape": {"kind": "disc", "mass": 1, "radius": 2}, "joint": {"kind": "fixed", "at": [4, 0]}}},
+    )  # fmt: skip
+    found = eomgen.inertia(model)
+    assert (found["I_zz(disc)"].exact, found["m"].exact) == ("2", "4")
+    assert found["x_C"].value == pytest.approx(1)
+    assert not {"I_zz(cart)", "I_zz"} & set(found.results)
+    assert "of the inertia of 'cart' the model says nothing" in str(found)
+    with pytest.raises(eomgen.ModelError, match="body 'cart' has a mass and no inertia"):
+        eomgen.inertia(model, about="O")
+
+
+def test_parts_turned_by_many_angles_stay_quick_and_right():
+    """Boxes turned by angles without a common measure: no search for a short form of what nobody can read.
+
+    tr(I_O)/2 = sum m (r.r + (a^2 + b^2 + c^2)/12) does not depend on how they are turned.
+    """
+    parts = [{"kind": "box", "size": [1, 2, 3], "mass": 1, "at": [k, 0, 1], "axis": [1, k, 2], "angle": f"{k + 1}/7"}
+             for k in range(8)]  # fmt: skip
+    bodies, outputs = {"b": {"parts": parts}}, {"J": "inertia_point(O)", "J_1": "principal_moment(O, 1)"}
+    found = eomgen.solve(eomgen.Model(space="space", points={"O": [0, 0, 0]}, bodies=bodies, outputs=outputs))
+    values = {name: answer.value for name, answer in found.items()}
+    assert values["J"] == pytest.approx(sum(k * k + 1 + 14 / 12 for k in range(8)))
+    assert 0 < values["J_1"] < values["J"]
+
+
+def test_a_misspelt_key_of_a_piece_is_offered_the_nearest():
+    """The keys of a piece and those of its shape stand in one table."""
+    with pytest.raises(eomgen.ModelError, match="(?s)unknown key 'att'.*did you mean 'at'"):
+        eomgen.loads('eomgen = 1\nspace = "plane"\n[bodies.b]\nmass = 1\n'
+                     'parts = [{ kind = "disc", radius = 1, att = [0, 1] }]')  # fmt: skip

@@ -137,3 +137,34 @@ def test_exact_answers_are_short(system, output):
     """No longer than a reader's own: at most three times the formula by hand, and 60 characters."""
     exact = answers(system)[output].exact
     assert len(exact) <= 3 * len(ANSWERS[system][output]) + 60, exact
+
+
+# -- the files in the other verbs -----------------------------------------------------------------------------------
+
+KINDS = {
+    "ch9_p1": {"wheel": "plane motion", "rod": "rectilinear translation"},
+    "ch9_p2": {"rod1": "rotation about a fixed axis", "plate": "circular translation"},
+    "ch9_p3": {"prism": "rectilinear translation"},
+    "ch9_s9_p1": {"disc": "rotation about a fixed axis"},
+    "ch9_p6": {"plate": "rotation about a fixed axis"},
+    "ch9_p7": {"plate": "rotation about a fixed axis"},
+    "ch9_p8": {"rod": "plane motion"},
+    "ch9_p10": {"circle": "rotation about a fixed axis", "rod": "plane motion"},
+    "ch10_p1": {"prism": "rectilinear translation"},
+    "ch10_p3": {"disc": "rectilinear translation", "P": "curvilinear translation"},
+    "ch10_p4": {"frame": "rotation about a fixed axis"},
+}
+"""Of the chapters' bodies, as the book names their motions."""
+
+
+@pytest.mark.parametrize("system", KINDS)
+def test_kinds_of_motion_are_recognised(system):
+    bodies = eomgen.kinematics(model_of(system)).as_dict()["bodies"]
+    assert {name: bodies[name]["kind"] for name in KINDS[system]} == KINDS[system]
+
+
+@pytest.mark.parametrize("system", [system for system in ANSWERS if system != "s1_rotating_frame"])
+def test_what_is_driven_has_no_freedom_left(system):
+    """By rank; the plate of ch9-p11 has three before velocities are given."""
+    model = model_of(system)
+    assert eomgen.kinematics(model).as_dict()["freedoms"]["by_rank"] == (3 if model.given else 0)

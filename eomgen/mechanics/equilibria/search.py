@@ -30,7 +30,7 @@ from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 State = Mapping[Node, Scalar]
 
@@ -95,11 +95,6 @@ class Equilibria:
             raise DerivationError("no place was found at which all forces balance" +
                                   (": there is none" if self.complete else ""))  # fmt: skip
         return self.found[0]
-
-
-def equilibria_of(system: System, guess: Mapping[str, float] | None = None) -> tuple[Equilibrium, ...]:
-    """Every place of rest that is found, the nearest to the start (or the guess) first."""
-    return all_equilibria(system, guess).found
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
@@ -195,6 +190,7 @@ class _Search:
         stability = stability_of(self.statics, {**exact, **({} if held is None else held.particular)}, numbers,
                                  self.values if self.valued else None)  # fmt: skip
         own = {q: located.value(x) for q, x in self._fixed.items()} | self._determined(z)
+        own |= {q: 0.0 for q in own if q in exact and is_zero(exact[q])}  # no 1e-51 for it
         return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
 
     def _determined(self, z: np.ndarray) -> dict[Node, float]:

@@ -19,12 +19,11 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.closure import State, generic_state, number
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import tangent
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import Vector, vector_of
 
 CORRECTIONS = 4  # each adds about 15 digits
-VANISHES = 1e-25  # of a number that would be of the order of 1
 SEEDS = (1, 2)
 
 
@@ -70,7 +69,7 @@ class Possible:
             values = evaluate(scalars, state, fifty_digits())
         except (NoValue, ZeroDivisionError):
             raise DerivationError("the motion is singular near the start") from None
-        return max(map(abs, values)) < VANISHES
+        return max(map(abs, values)) < ZERO_AT_50
 
     @cached_property
     def states(self) -> tuple[State, ...]:

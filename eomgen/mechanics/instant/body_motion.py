@@ -18,6 +18,7 @@ from eomgen.mechanics.fields.field import (
 from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
+from eomgen.model.trusses import is_node
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar
@@ -131,7 +132,7 @@ class BodyMotion:
 def body_motions(
     system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None, bodies: Sequence[str] = ()
 ) -> tuple[BodyMotion, ...]:
-    """The motion of the bodies, of all of them where none is named.
+    """The motion of the bodies, of all of them where none is named; nodes of trusses are none.
 
     Args:
         state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
@@ -141,7 +142,7 @@ def body_motions(
     return tuple(
         BodyMotion(body, readable.field(field_of(system.motion, body)), readable, _ends(system, readable, body), plane,
                    _kind(kinds, body))
-        for body in bodies or [link.name for link in system.motion.links]
+        for body in bodies or [link.name for link in system.motion.links if not is_node(link.name)]
     )  # fmt: skip
 
 

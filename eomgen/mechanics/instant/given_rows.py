@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from random import Random
 from typing import Any
 
@@ -14,19 +13,18 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.dense import independent_rows
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.statics.rest import values_for, values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
-from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import solved
 from eomgen.symbolic.normal_form import collected_in, readable_all
 
 WORK = 50_000  # products of terms for one entry
-TRIES = 20
 RANK = 1e-9  # of a row's distance from those before it, against its length
 EXACT = 1e-20  # of an entry, against the largest of its row
 OPEN = 1e-9  # of a gap, against the size of the mechanism
@@ -109,8 +107,8 @@ def _refuse_other_order(system: System, equation: Equation, gap: Scalar, order: 
         return
     if depends_on(gap, (*symbols.u, *symbols.q)):
         mend = "put it under `velocity`" if depends_on(gap, symbols.u) else "places are where points and starts are"
-        raise DerivationError(f"'{equation.text}' says nothing of {'velocities' if order == 'velocity' else 'accelerations'}",
-                              where, mend)  # fmt: skip
+        asked = "velocities" if order == "velocity" else "accelerations"
+        raise DerivationError(f"'{equation.text}' says nothing of {asked}", where, mend)
 
 
 def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> Line:
@@ -162,9 +160,10 @@ def solution_of(
         DerivationError: equations that contradict one another.
     """
     lines = [*ties, *given]
-    own, shaken = (_values(system, lines, near or {}, shaken=shaken) for shaken in (False, True))
+    scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
+    own, shaken = (values_for(system.scope, scalars, near, shaken=shaken) for shaken in (False, True))
     matrix = _matrix(lines, unknowns, own)
-    _refuse_contradiction(lines, matrix)
+    _refuse_contradiction(lines, matrix, len(ties))
     rank = _rank(matrix)
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
@@ -177,22 +176,6 @@ def solution_of(
         shares = [share * unknowns[f] for f, share in found.shares[j].items()]
         result[unknowns[j]] = constant - sum(shares, start=0)
     return result, (_rank(matrix[: len(ties)]), rank)
-
-
-def _values(system: System, lines: Sequence[Line], near: Mapping[Node, float], *, shaken: bool) -> Values:
-    """Values of every symbol in the equations: parameters, and what is free or unknown in them."""
-    scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
-    for seed in range(1, TRIES):
-        rng = Random(seed)
-        values = values_of_parameters(system.scope, rng, shaken=shaken)
-        values |= {node: fifty_digits().number(Fraction(x)) for node, x in near.items()}
-        values |= {x: fifty_digits().number(1) * rng.uniform(0.5, 2) for x in symbols_of(scalars) if x not in values}
-        try:
-            evaluate(scalars, values, fifty_digits())
-        except (NoValue, ZeroDivisionError):
-            continue
-        return values
-    raise DerivationError("the configuration has no value at these parameters")
 
 
 def _matrix(lines: Sequence[Line], unknowns: Sequence[Node], values: Values) -> np.ndarray:
@@ -214,9 +197,11 @@ def _rank(matrix: np.ndarray) -> int:
     return len(independent_rows(matrix[:, :-1], RANK))
 
 
-def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray) -> None:
+def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray, ties: int) -> None:
     """Refuse equations of which one contradicts others.
 
+    Args:
+        ties: how many of them are ties.
     Raises:
         DerivationError: all of them are named.
     """
@@ -232,4 +217,7 @@ def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray) -> None:
             others = dict.fromkeys(lines[kept[k]].said for k, share in zip(before, shares, strict=True)
                                    if abs(share) > RANK)  # fmt: skip
             against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
+            if i < ties:
+                raise DerivationError(f"no motion has these velocities: {line.said}{against}", "given",
+                                      "the bodies lock there, or their motion branches: give other velocities")
             raise DerivationError(f"{line.said}{against}", "given", "leave one of them out, or change its value")

@@ -13,9 +13,10 @@ from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
-from eomgen.mechanics.worth import EXACT, ROUNDED, Worth
+from eomgen.mechanics.worth import ROUNDED, Worth
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.evaluation import ZERO_AT_50
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
@@ -136,7 +137,7 @@ class KinematicState:
     @cached_property
     def worth(self) -> Worth:
         """What scalars are worth."""
-        return Worth(self.system.scope, EXACT if self.exact else ROUNDED)
+        return Worth(self.system.scope, ZERO_AT_50 if self.exact else ROUNDED)
 
     def number(self, x: Scalar) -> float | None:
         """What a scalar is worth at the model's parameters; None where some have no value."""

@@ -38,7 +38,7 @@ from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.expressions import Expression, parse
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.normal_form import legible
 from eomgen.symbolic.text import text_size
 
 WORK = 50_000  # products of terms for one value
@@ -60,13 +60,20 @@ class Known:
         values: of the velocities (or accelerations) and unknowns; those that stay free stand in them.
         free: what stays free.
         freedoms: how many freedoms the ties leave.
-        given: how many of them the given equations take.
+        unknowns: how many unknowns stand in the given equations.
+        given: how many of both the given equations take.
     """
 
     values: State
     free: tuple[Node, ...]
     freedoms: int
+    unknowns: int
     given: int
+
+    @property
+    def missing(self) -> int:
+        """How many equations would determine the rest."""
+        return self.freedoms + self.unknowns - self.given
 
 
 @dataclass(frozen=True)
@@ -118,9 +125,8 @@ class Snapshot:
             DerivationError: given accelerations that contradict one another or the ties.
         """
         symbols, state = self.system.symbols, self.moving
-        ties = tie_lines(self.system, state, accelerations=True)
         given = given_lines(self.system, state, self.acceleration, symbols.a, "acceleration")
-        return self._known(ties, given, symbols.a, state)
+        return self._known(self._bending, given, symbols.a, state)
 
     @cached_property
     def moving(self) -> State:
@@ -135,11 +141,15 @@ class Snapshot:
     def _known(self, ties: list[Line], given: list[Line], rates: Sequence[Node], state: State) -> Known:
         unknowns = [x for x in self.system.symbols.unknowns.values() if x not in state]
         standing = [x for x in unknowns if any(x in line.entries for line in given)]
-        near = None if self.exact and not self.located else self.located
-        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), near)
+        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), self._near)
         values = {node: self.simple(x) for node, x in solution.items()}
         free = tuple(node for node in (*rates, *standing) if node not in values)
-        return Known(values, free, len(rates) - ranks[0], ranks[1] - ranks[0])
+        return Known(values, free, len(rates) - ranks[0], len(standing), ranks[1] - ranks[0])
+
+    @property
+    def _near(self) -> Mapping[Node, float] | None:
+        """Where coordinates are that are known in numbers only; None where all are known exactly."""
+        return None if self.exact and not self.located else self.located
 
     # -- values ------------------------------------------------------------------------------------
 
@@ -152,6 +162,7 @@ class Snapshot:
         """
         scalar = self.raw(formula)
         self.refuse_open(scalar)
+        self.refuse_impossible()
         return scalar
 
     def raw(self, formula: Expression) -> Scalar:
@@ -167,8 +178,22 @@ class Snapshot:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it came where multiplying out made it longer still."""
-        found = simplest(x, WORK, positive_parameters(self.system.scope))
-        return x if text_size(x) < text_size(found) > LONG else found
+        return legible(x, WORK, positive_parameters(self.system.scope), LONG)
+
+    def refuse_impossible(self) -> None:
+        """Refuse velocities that redundant ties allow to first order, as at a change point, and no motion has.
+
+        Raises:
+            DerivationError: J a + gamma = 0 has no solution.
+        """
+        symbols, known = self.system.symbols, self.velocities
+        rank = len(symbols.u) - known.freedoms
+        if rank < len(self.system.ties.closing) and not known.free:
+            solution_of(self.system, self._bending, (), symbols.a, self._near)
+
+    @cached_property
+    def _bending(self) -> list[Line]:
+        return tie_lines(self.system, self.moving, accelerations=True)
 
     # -- what is left open ---------------------------------------------------------------------------
 
@@ -184,17 +209,23 @@ class Snapshot:
         if depends_on(scalar, symbols.a):
             raise self._open(self.accelerations, "acceleration", "acceleration")
         for name, node in symbols.unknowns.items():
+            if depends_on(scalar, (node,)) and node in self.velocities.free:
+                raise self._open(self.velocities, "velocity", "rate")
+            if depends_on(scalar, (node,)) and node in self.accelerations.free:
+                raise self._open(self.accelerations, "acceleration", "acceleration")
             if depends_on(scalar, (node,)):
                 raise Undetermined(f"the unknown '{name}' is not determined by what is given", f"unknowns.{name}",
                                    "let it stand in an equation of [given], or in a load")  # fmt: skip
 
     def _open(self, known: Known, order: str, noun: str) -> Undetermined:
-        missing = known.freedoms - known.given
-        many = "freedom" if known.freedoms == 1 else "freedoms"
+        many = "1 freedom" if known.freedoms == 1 else f"{known.freedoms} freedoms"
+        if known.unknowns:
+            many += f" and {known.unknowns} unknown{'s' if known.unknowns > 1 else ''}"
+            noun = "equation"
         rates = f"{known.given} {noun}{'s' if known.given != 1 else ''} given"
-        more = "one more" if known.given else "one" if missing == 1 else f"{missing}"
+        more = "one more" if known.given else "one" if known.missing == 1 else f"{known.missing}"
         offer = self._offered(known, order)
-        return Undetermined(f"it is not determined: {known.freedoms} {many}, {rates}", "given",
+        return Undetermined(f"it is not determined: {many}, {rates}", "given",
                             f"give {more} in [given]: {order} = [\"{offer} = ...\"]")  # fmt: skip
 
     def _offered(self, known: Known, order: str) -> str:
@@ -230,7 +261,7 @@ class Snapshot:
         Raises:
             Undetermined: says what to give.
         """
-        if self.velocities.freedoms - self.velocities.given > 1:
+        if self.velocities.missing > 1:
             raise self._open(self.velocities, "velocity", "rate")
 
 

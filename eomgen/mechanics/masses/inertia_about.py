@@ -55,19 +55,6 @@ def in_ground(motion: Motion, body: str) -> MassProperties:
     return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
 
 
-def whole_of(motion: Motion, bodies: Sequence[str]) -> MassProperties:
-    """Several bodies as one: mass, mass centre and inertia about it, ground axes (without mass, all 0)."""
-    parts = [in_ground(motion, body) for body in bodies]
-    m = sum(part.m for part in parts)
-    if is_zero(m):
-        return MassProperties(0, ZERO, (ZERO, ZERO, ZERO))
-    first: Vector = ZERO
-    for part in parts:
-        first = plus(first, times(part.m, part.com))
-    com = (over(first[0], m), over(first[1], m), over(first[2], m))
-    return MassProperties(m, com, tensor_about(motion, com, bodies))
-
-
 def tensor_about(motion: Motion, point: Vector, bodies: Sequence[str]) -> Matrix:
     """I_P of the bodies together, ground axes."""
     total: Matrix = (ZERO, ZERO, ZERO)

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.fields.field import Field
-from eomgen.mechanics.statics.velocity_plan import ZERO_AT_50, Center, Plan
+from eomgen.mechanics.statics.velocity_plan import Center, Plan
 from eomgen.mechanics.system import System
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.trusses import is_node
+from eomgen.symbolic.evaluation import ZERO_AT_50
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of

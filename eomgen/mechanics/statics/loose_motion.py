@@ -8,6 +8,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.statics.blocks import Block, blocks_of
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
+from eomgen.model.constraints.base import Constraint
 from eomgen.model.trusses import declared_at
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar
@@ -19,14 +20,14 @@ MOST_MOTIONS = 3  # that are told in words
 
 
 def refuse_loose(structure: Structure, freedoms: int = 0) -> None:
-    """Refuse bodies that can move although no coordinate describes it; a straight one may turn about its own line.
+    """Refuse bodies that can move although no coordinate describes it, and would.
 
     Args:
         freedoms: the motions that coordinates describe.
     Raises:
         DerivationError: which bodies can move, and how.
     """
-    if structure.mobility <= freedoms or structure.turns_idly:
+    if structure.mobility <= freedoms or stays(structure):
         return
     told = [motion_in_words(plan) for plan in structure.loose[:MOST_MOTIONS]]
     more = len(structure.loose) - len(told)
@@ -38,6 +39,31 @@ def refuse_loose(structure: Structure, freedoms: int = 0) -> None:
     if enough:
         what += f"; its {len(structure.rows)} reactions are not independent there"
     raise DerivationError(what, declared_at(_culprit(structure.loose[0])), _mend(structure, enough))
+
+
+def stays(structure: Structure) -> bool:
+    """Whether what nothing resists stays where it is all the same.
+
+    A straight body does not turn about its own line. Where the loads do no work what hangs on strings hangs still, and
+    so does a machine of which an unknown load is asked for.
+    """
+    if structure.turns_idly:
+        return True
+    kept = bool(structure.unknowns) or all(_hangs(structure, plan) for plan in structure.loose)
+    return kept and structure.is_in_balance
+
+
+def _hangs(structure: Structure, plan: Plan) -> bool:
+    """Whether a string pulls every body that moves."""
+    system = structure.system
+    ties = system.scope.model.constraints
+    ropes = [row for row in system.ties.rows if row.component == "tension" and _only_pulls(ties[row.tie])]
+    pulled = {body for row in ropes for body, _ in row.wrenches}
+    return set(plan.moving) <= pulled
+
+
+def _only_pulls(tie: Constraint) -> bool:
+    return bool(tie.strand_rows()) or bool(getattr(tie, "unilateral", False))
 
 
 def _culprit(plan: Plan) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from random import Random
 from typing import Any
 
@@ -16,9 +17,11 @@ from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.system import System
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
+
+TRIES = 20
 
 State = dict[Node, Scalar]
 
@@ -79,3 +82,28 @@ def values_of_parameters(scope: Scope, rng: Random | None, *, shaken: bool = Fal
         elif shaken:
             values[node] = value * rng.uniform(0.8, 1.2) if value else number(rng.uniform(0.05, 0.2))
     return values
+
+
+def values_for(
+    scope: Scope, scalars: Iterable[Scalar], near: Mapping[Node, float] | None = None, *, shaken: bool = False
+) -> dict[Node, Any]:
+    """Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them.
+
+    Args:
+        near: where symbols of the configuration are.
+        shaken: as of `values_of_parameters`.
+    Raises:
+        DerivationError: they have none.
+    """
+    wanted, arithmetic = tuple(scalars), fifty_digits()
+    for seed in range(1, TRIES):
+        rng = Random(seed)
+        values = values_of_parameters(scope, rng, shaken=shaken)
+        values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
+        values |= {x: number(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
+        try:
+            evaluate(wanted, values, arithmetic)
+        except (NoValue, ZeroDivisionError):
+            continue
+        return values
+    raise DerivationError("the configuration has no value at these parameters")

@@ -15,27 +15,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance import Balance, balance_of
 from eomgen.mechanics.components import Component
+from eomgen.mechanics.dense import sparse_rank
 from eomgen.mechanics.effects import Axes
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import State, at_rest, values_of_parameters
+from eomgen.mechanics.statics.rest import State, at_rest, values_for
 from eomgen.mechanics.statics.unknown_loads import slope
-from eomgen.mechanics.statics.velocity_plan import ZERO_AT_50, Plan
+from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import derivative, substituted, tangent
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution
 from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.scaling import solved
 
-TRIES = 20
 WORK = 50_000  # products of terms for one velocity
 
 Column = tuple[int, int]
@@ -196,7 +195,7 @@ class Structure:
     def _ranks(self) -> tuple[int, int]:
         """At the model's own parameters, and at others like these."""
         own, others = (self._numbers(self._parameters(shaken=shaken)) for shaken in (False, True))
-        return rank_of(own), rank_of(others)
+        return sparse_rank(own), sparse_rank(others)
 
     def _numbers(self, parameters: State) -> list[dict[int, Any]]:
         """The rows in numbers of 50 digits."""
@@ -219,15 +218,7 @@ class Structure:
 
     def _parameters(self, *, shaken: bool) -> State:
         """The model's own, or the first generic ones at which all entries have a value."""
-        entries = tuple(x for row in self.rows for x in row.values())
-        for seed in range(1, TRIES):
-            parameters = values_of_parameters(self.system.scope, Random(seed), shaken=shaken)
-            try:
-                evaluate(entries, parameters, fifty_digits())
-            except (NoValue, ZeroDivisionError):
-                continue
-            return parameters
-        raise DerivationError("the configuration has no value at these parameters")
+        return values_for(self.system.scope, [x for row in self.rows for x in row.values()], shaken=shaken)
 
 
 @dataclass(frozen=True)
@@ -290,23 +281,3 @@ def _is_point_that_turns(system: System, column: Column) -> bool:
     part = system.scope.model.bodies.get(system.motion.links[body].name)
     point = part is None or (part.shape is not None and part.shape.kind == "particle")
     return point and direction > 2
-
-
-def rank_of(rows: Sequence[Mapping[int, Any]]) -> int:
-    """How many rows of numbers with many digits are independent."""
-    left = [dict(row) for row in rows]
-    rank = 0
-    while left:
-        row = max(left, key=lambda line: max(map(abs, line.values()), default=0))
-        left.remove(row)
-        column = max(row, key=lambda k: abs(row[k]), default=None)
-        if column is None or abs(row[column]) < ZERO_AT_50:
-            break
-        rank += 1
-        for other in left:
-            if column in other:
-                factor = other.pop(column) / row[column]
-                for k, x in row.items():
-                    if k != column:
-                        other[k] = other.get(k, 0) - factor * x
-    return rank

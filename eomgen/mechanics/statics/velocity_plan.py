@@ -19,7 +19,7 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.evaluation import ZERO_AT_50, evaluate, fifty_digits
 from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import readable_all, simplest
@@ -27,7 +27,6 @@ from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, vector_of
 
 WORK = 20_000  # products of terms for one velocity
 SIXTH = Fraction(1, 6)
-ZERO_AT_50 = 1e-25  # of numbers of 50 digits
 
 
 @dataclass(frozen=True)

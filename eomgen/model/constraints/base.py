@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.strand import Strand
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
 
@@ -28,6 +29,10 @@ class Constraint(Part, ABC):
 
     def strand_rows(self) -> tuple[int, ...]:
         """Of each strand of a string the row that holds its tension, from 1; () where it is no string."""
+        return ()
+
+    def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
+        """The straight pieces of a string; () where it is no string."""
         return ()
 
     @abstractmethod

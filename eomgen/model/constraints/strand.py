@@ -11,7 +11,7 @@ from eomgen.model.constraints.plane import Push, angle_of, left
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
 from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.spatial import dot, minus, times
+from eomgen.symbolic.spatial import dot, minus, plus, times
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
 BACKWARDS = -1e-9  # a strand that is shorter runs against its direction [m]
@@ -44,6 +44,10 @@ class Stop:
         """a theta: what a turn of the body gives out at the strand's beginning [m]."""
         return 0 if _zero(self.offset) else self.offset * angle_of(self.scene, self.body)
 
+    def touched(self, d: Vector) -> Vector:
+        """Where a strand of direction d touches, ground axes."""
+        return plus(self.center, times(self.offset, left(d)))
+
     def pulled(self, d: Vector, sense: int) -> tuple[Push, ...]:
         """A force sense * d at centre + a left(d): at the centre, with the moment - a * sense."""
         force = PointForce(self.place, times(sense, d))
@@ -65,6 +69,11 @@ class Strand:
     second: Stop
     d: Vector
     length: Scalar | None
+
+    @property
+    def ends(self) -> tuple[Vector, Vector]:
+        """Where it leaves the one stop and reaches the other: centre + a left(d)."""
+        return self.first.touched(self.d), self.second.touched(self.d)
 
     @property
     def pulls(self) -> tuple[Push, ...]:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.constraints.strand import Stop, common_tangent, rope_row, side_row, strand_along
+from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_row, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.forces.load import Scene, Vector
@@ -67,19 +67,20 @@ class String(Constraint):
             numbers.append(numbers[-1] if passes else numbers[-1] + 1)
         return tuple(numbers)
 
+    def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
+        """From stop to stop, along given directions or common tangents."""
+        pairs = pairwise([_stop(scene, item) for item in self.path])
+        if self.strands is None:
+            return tuple(common_tangent(scene, *pair) for pair in pairs)
+        ways = [_direction(scene, way) for way in self.strands]
+        return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
+
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.
 
         A strand with travel direction d pulls + d on what it leaves and - d on what it reaches.
         """
-        stops = [_stop(scene, item) for item in self.path]
-        pairs = pairwise(stops)
-        if self.strands is None:
-            strands = [common_tangent(scene, *pair) for pair in pairs]
-        else:
-            ways = [_direction(scene, way) for way in self.strands]
-            strands = [strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True)]
-        numbers = self.strand_rows()
+        strands, numbers = self.strands_at(scene), self.strand_rows()
         ropes = [[s for s, k in zip(strands, numbers, strict=True) if k == row] for row in range(1, numbers[-1] + 1)]
         sides = [] if self.strands is None else [side for s in strands if (side := side_row(scene, s)) is not None]
         return (*(rope_row(scene, rope) for rope in ropes), *sides)

@@ -20,6 +20,11 @@ class Force(Part):
     by_mass: ClassVar[bool] = False
     placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
 
+    @property
+    def spring_ends(self) -> tuple[str, ...]:
+        """The two points between which a spring is drawn; () for what is none."""
+        return ()
+
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """Forces and couples on bodies, and forces along coordinates."""
         return ()

@@ -27,6 +27,10 @@ class Spring(Force):
     length: NaturalLength
     along: Direction | None = None
 
+    @property
+    def spring_ends(self) -> tuple[str, ...]:
+        return self.points
+
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull k (l - l0)."""
         line = reach(scene, self.points, self.along)

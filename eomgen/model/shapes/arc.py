@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length, Opening
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, circle, diagonal, more_than_a_turn
 from eomgen.symbolic.functions import over, sin
-from eomgen.symbolic.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +20,6 @@ class Arc(Shape):
     dimension: ClassVar[int] = 1
     radius: Length
     opening: Opening
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         half = value(self.opening) / 2

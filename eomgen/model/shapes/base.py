@@ -9,12 +9,11 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Mass
 from eomgen.model.part import Part
 from eomgen.symbolic.expressions import Expression, parse
-from eomgen.symbolic.spatial import Matrix, Vector, matrix_of
+from eomgen.symbolic.spatial import ZERO, Matrix, Vector, matrix_of
 
 Line = tuple[tuple[float, float], ...]
 Value = Callable[[Expression], Any]
 """What an expression is worth: the arithmetic in which a law runs."""
-PI = parse("pi")
 PI = parse("pi")
 
 
@@ -35,9 +34,9 @@ class Shape(Part, ABC):
     dimension: ClassVar[int]  # what its mass is spread over: 0 a point, 1 a line, 2 a surface, 3 a volume
     mass: Mass | None = None
 
-    @abstractmethod
     def points(self, value: Value) -> dict[str, Vector]:
-        """The named points of the shape, body axes [m]: `origin`, `center`, and its own."""
+        """The named points of the shape, body axes [m]: `origin`, `center`, the mass centre, and its own."""
+        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     @abstractmethod
     def measure(self, value: Value) -> Any:

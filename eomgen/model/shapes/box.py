@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,9 +16,6 @@ class Box(Shape):
     kind: ClassVar[str] = "box"
     dimension: ClassVar[int] = 3
     size: Size
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         width, height, _ = self.size

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,9 +20,6 @@ class Cone(Shape):
     dimension: ClassVar[int] = 3
     radius: Length
     height: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def measure(self, value: Value) -> Any:
         return Fraction(1, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.height)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
 from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +21,6 @@ class ConicalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
     height: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def measure(self, value: Value) -> Any:
         r, h = value(self.radius), value(self.height)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,9 +16,6 @@ class Disc(Shape):
     kind: ClassVar[str] = "disc"
     dimension: ClassVar[int] = 2
     radius: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         r = value(self.radius)

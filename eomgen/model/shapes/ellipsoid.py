@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,9 +16,6 @@ class Ellipsoid(Shape):
     kind: ClassVar[str] = "ellipsoid"
     dimension: ClassVar[int] = 3
     semiaxes: Size
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def measure(self, value: Value) -> Any:
         a, b, c = map(value, self.semiaxes)

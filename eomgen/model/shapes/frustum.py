@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
 from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,9 +22,6 @@ class Frustum(Shape):
     radius: Length
     top: Length
     height: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.top)

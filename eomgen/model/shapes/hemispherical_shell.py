@@ -6,7 +6,6 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,9 +18,6 @@ class HemisphericalShell(Shape):
     kind: ClassVar[str] = "hemispherical_shell"
     dimension: ClassVar[int] = 2
     radius: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)

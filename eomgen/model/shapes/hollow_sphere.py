@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
 from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +21,6 @@ class HollowSphere(Shape):
     dimension: ClassVar[int] = 3
     radius: Length
     inner: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return circle(value(self.radius)), circle(value(self.inner))

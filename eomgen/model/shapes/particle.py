@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,9 +13,6 @@ class Particle(Shape):
 
     kind: ClassVar[str] = "particle"
     dimension: ClassVar[int] = 0
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def measure(self, value: Value) -> Any:
         return 0

@@ -9,7 +9,6 @@ from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import function, over
-from eomgen.symbolic.spatial import ZERO, Vector
 
 Vertices = Annotated[
     tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=2), least=3)
@@ -27,9 +26,6 @@ class Polygon(Shape):
     kind: ClassVar[str] = "polygon"
     dimension: ClassVar[int] = 2
     vertices: Vertices
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         corners = tuple((value(x), value(y)) for x, y in self.vertices)

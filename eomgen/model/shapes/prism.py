@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, diagonal
 from eomgen.model.shapes.polygon import Polygon, Vertices
-from eomgen.symbolic.spatial import ZERO, Vector, added
+from eomgen.symbolic.spatial import added
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,9 +25,6 @@ class Prism(Shape):
     @property
     def section(self) -> Polygon:
         return Polygon(vertices=self.vertices)
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return self.section.outline(value)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +21,6 @@ class Pyramid(Shape):
     width: Length
     depth: Length
     height: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": ZERO}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (box_around(value(self.width), value(self.depth)),)

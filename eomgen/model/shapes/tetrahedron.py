@@ -9,7 +9,7 @@ from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.shapes.base import MassProperties, Shape, Value, tensor
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import function
-from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, vector_of
+from eomgen.symbolic.spatial import Vector, cross, dot, minus, vector_of
 
 Corners = Annotated[
     tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=3), least=4, most=4)
@@ -27,9 +27,6 @@ class Tetrahedron(Shape):
     kind: ClassVar[str] = "tetrahedron"
     dimension: ClassVar[int] = 3
     vertices: Corners
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
     def impossible(self, value: Value) -> str:
         return "" if self.measure(value) else "its four vertices lie in one plane"

@@ -6,7 +6,6 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
-from eomgen.symbolic.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,10 +19,6 @@ class Triangle(Shape):
     dimension: ClassVar[int] = 2
     width: Length
     height: Length
-
-    def points(self, value: Value) -> dict[str, Vector]:
-        third = Fraction(1, 3)
-        return {"origin": ZERO, "center": (third * value(self.width), third * value(self.height), 0)}
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         w, h = value(self.width), value(self.height)

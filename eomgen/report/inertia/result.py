@@ -253,16 +253,10 @@ class _Report:
 
     def _place(self, name: str) -> Vector:
         """Where a named point is, ground axes."""
-        known = points_of(self.system)
+        known = self.system.scope.model.named_points
         if name not in known:
             raise UsageError(f"there is no point '{name}'", mend=nearest(name, known))
         return self.system.motion.position(self.system.motion.place(name))
-
-
-def points_of(system: System) -> list[str]:
-    """Every point that may be named."""
-    model = system.scope.model
-    return [*model.points, *(f"{body}.{point}" for body in model.bodies for point in model.body_points(body))]
 
 
 def together_mass(system: System, body: str) -> Any:

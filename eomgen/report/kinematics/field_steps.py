@@ -82,16 +82,16 @@ def _sentence(motion: BodyMotion, particle: bool) -> Iterator[Piece]:
     if kind is None:
         yield f"{now} at this instant."
         return
-    yield from _of_particle(kind) if particle else _of_kind(kind)
+    yield from _of_particle(kind) if particle else _of_kind(kind, 2 if motion.plane else 3)
     yield "." if particle or kind.name.endswith(now) or kind.name.startswith(now) else f"; {now} at this instant."
 
 
-def _of_kind(kind: Kind) -> Iterator[Piece]:
+def _of_kind(kind: Kind, axes: int) -> Iterator[Piece]:
     yield kind.name
     if kind.point:
         yield f", {kind.point}"
     if kind.at is not None:
-        yield from (" at ", *_place(kind.at))
+        yield from (" at ", *_place(kind.at, axes))
     if kind.axis is not None and not (is_zero(kind.axis[0]) and is_zero(kind.axis[1])):
         yield from (", across " if kind.name == "plane motion" else ", along ", *_place(kind.axis, 3))
     if kind.name == HELICAL and kind.pitch is not None:

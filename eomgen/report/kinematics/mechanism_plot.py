@@ -18,8 +18,9 @@ from eomgen.errors import MissingValues, RunFailed
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism
 from eomgen.report.arrows import arrow
-from eomgen.report.drawing import ARROW, REACTION, Place, Sketch, draw_model
+from eomgen.report.drawing import ARROW, REACTION, Sketch, draw_model
 from eomgen.report.figures import Picture
+from eomgen.report.support_symbols import Place
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar
 
@@ -71,7 +72,7 @@ class _Panels:
         rooms, ratios = [["mechanism", "x"], ["y", "words"]], (2.2, 1)
         panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
         main = panels["mechanism"]
-        draw_model(main, self.sketch)
+        draw_model(main, self.sketch, colors={body: color for color, _, bodies in self._blocks() for body in bodies})
         main.set_adjustable("datalim")  # the projections stand exactly below and beside it
         self._velocities(main)
         far = self._centers(main)

@@ -107,7 +107,7 @@ def cell(state: KinematicState, x: Scalar) -> Cell:
         return x
     number = state.number(x)
     if number is None:
-        return x if text_size(x) <= LONGEST else Omitted(operations((x,)).total)
+        return x if text_size(x) <= 2 * LONGEST else Omitted(operations((x,)).total)
     return f"{0.0 if not state.exact and abs(number) < ROUNDED else number:.{DIGITS}g}"
 
 
@@ -142,7 +142,7 @@ def how_found(state: KinematicState, found: Found) -> str:
     """Why the centre is there."""
     if found.same:
         return " and ".join(map(_pair, found.same)) + " are at one point"
-    if found.hinge:
+    if found.hinge and not is_zero(found.point[2]):
         return f"{_called(state, found.hinge)} holds the point"
     owners = [line.owner for line in found.lines]
     if owners[0] and owners[0] == owners[1]:

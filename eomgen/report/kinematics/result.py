@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,8 @@ from eomgen.report.kinematics.mechanism_plot import mechanism_picture
 from eomgen.report.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.setting_steps import data_step
-from eomgen.report.statements import Cell, Derivation, Law, Step
-from eomgen.symbolic.graph import Scalar
+from eomgen.report.statements import Cell, Derivation, Law, Piece, Prose, Step
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import Vector
 from eomgen.symbolic.text import text_size, to_text
 
@@ -53,7 +53,8 @@ class Kinematics:
         """Step by step."""
         model, system = self.state.system.scope.model, self.state.system
         data = (data_step(system),) if system.symbols.parameters else ()
-        more = (*self._kinds(), *self._seen())
+        kinds = self._kinds() if self.state.fields else ()
+        more = (*kinds, *self._seen())
         more = more if self.state.exact else tuple(in_numbers(self.state, step) for step in more)
         steps = (*data, *mechanism_steps(self.state), *more)
         return Derivation(model.name, model.about or "", model.source or "", model.space, "kinematics", steps)
@@ -62,8 +63,24 @@ class Kinematics:
         """Kinds of motion; spins, poles and centrodes where the accelerations are known exactly."""
         system, state = self.state.system, self.state.state
         if self.state.accelerated and self.state.is_short:
-            return field_steps(system, state, self.kinds, self._shown)
-        return (kinds_step(body_motions(system, self.state.moving, self.kinds), particles_of(system)),)
+            kinds, *fields = field_steps(system, state, self.kinds, self._shown)
+            return (self._within_lines(kinds), *fields)
+        motions = body_motions(system, self.state.moving, self.kinds)
+        return (self._within_lines(kinds_step(motions, particles_of(system))),)
+
+    def _within_lines(self, step: Step) -> Step:
+        """The sentences with numbers in place of formulas that are longer than a line."""
+        statements = tuple(
+            Prose(tuple(self._within_line(piece) for piece in each.pieces)) if isinstance(each, Prose) else each
+            for each in step.statements
+        )  # fmt: skip
+        return replace(step, statements=statements)
+
+    def _within_line(self, piece: Piece) -> Piece:
+        if not isinstance(piece, Node) or text_size(piece) <= LINE:
+            return piece
+        number = self.state.number(piece)
+        return "..." if number is None else f"{number:.6g}"
 
     def _shown(self, x: Scalar) -> Cell:
         """A value of the fields: a number where its formula is longer than a line."""

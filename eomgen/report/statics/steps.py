@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.statics.loose_motion import motion_in_words
 from eomgen.mechanics.statics.rest_contacts import Condition
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
@@ -95,11 +96,15 @@ def structure_step(statics: StaticReactions) -> Step:
 
 
 def _free(structure: Structure) -> str:
-    """What can move: nothing, or straight bodies about their own lines."""
+    """What can move: nothing, straight bodies about their own lines, or what no load moves."""
     idle = dict.fromkeys(body for plan in structure.loose for body in plan.moving)
     if not idle:
         return "Nothing can move"
-    return f"Nothing can move but {', '.join(idle)} about its own line, on which nothing acts"
+    if structure.turns_idly:
+        return f"Nothing can move but {', '.join(idle)} about its own line, on which nothing acts"
+    told = "; ".join(motion_in_words(plan) for plan in structure.loose)
+    why = "nothing resists it, but no load does any work in it"
+    return f"{told[0].upper()}{told[1:]}: {why}. Else nothing can move"
 
 
 def _law(formula: str) -> Law:

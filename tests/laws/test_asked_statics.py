@@ -1,0 +1,131 @@
+"""What `statics` is asked and cannot give is said with the culprit; what it can, in whatever way it is asked."""
+
+from __future__ import annotations
+
+import pytest
+
+import eomgen
+from eomgen.errors import EomgenError
+
+HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
+
+BEAM = HEAD + """
+[parameters]
+P = 10
+[bodies.b]
+points = { A = [0, 0], C = [2, 0], B = [4, 0] }
+[constraints]
+A = { kind = "pin", points = ["b.A"] }
+B = { kind = "support", point = "b.B", normal = [0, 1] }
+[forces.P]
+kind = "force"
+point = "b.C"
+force = [1, "-P"]
+"""
+LEVER = HEAD + """
+[unknowns]
+F = "what holds it"
+[bodies.b]
+points = { A = [0, 0], B = [4, 0] }
+[constraints]
+A = { kind = "pin", points = ["b.A"] }
+[forces.F]
+kind = "force"
+point = "b.B"
+force = LOAD
+"""
+TRUSS = HEAD + """
+[trusses.T]
+nodes = { A = [0, 0], B = [2, 0], C = [1, 1] }
+members = ["A-B", "A-C", "B-C"]
+[constraints]
+A = { kind = "pin", points = ["T.A"] }
+B = { kind = "support", point = "T.B", normal = [0, 1] }
+[forces.P]
+kind = "force"
+point = "T.C"
+force = [0, -1]
+"""
+BARROW = HEAD + """
+[parameters]
+W = 600
+r = 0.2
+[unknowns]
+F = "at the handles"
+[bodies.barrow]
+points = { axle = [0, 0.2], G = [0.5, 0.5], handle = [1.5, 0.6] }
+[bodies.wheel]
+shape = { kind = "disc", radius = "r", mass = 0 }
+joint = { kind = "placed", at = [0, "r"] }
+[constraints]
+axle = { kind = "pin", points = ["barrow.axle", "wheel.center"] }
+ground = { kind = "rolling", body = "wheel", line = { at = [0, 0], normal = [0, 1] } }
+stone = { kind = "support", point = "barrow.axle", normal = [1, 0] }
+[forces]
+W = { kind = "force", point = "barrow.G", force = [0, "-W"] }
+F = { kind = "force", point = "barrow.handle", force = [0, "F"] }
+"""
+SPRUNG = HEAD + """
+[parameters]
+R = 1
+k = 15
+[points]
+top = [0, 1]
+[coordinates]
+theta = 0.5
+[bodies.arm]
+shape = { kind = "rod", length = "R", mass = 1 }
+joint = { kind = "revolute", angle = "theta - pi/2" }
+[forces]
+g = { kind = "gravity", acceleration = [0, -9.81] }
+s = { kind = "spring", points = ["arm.end", "top"], stiffness = "k", length = 1 }
+"""
+
+SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nintensity = [0, -1]\n'
+
+
+@pytest.mark.parametrize(("text", "asked", "told"), [
+    (BEAM, {"reaction": "nonsense"}, "there is no reaction 'nonsense'"),
+    (BEAM, {"reaction": "nonsense"}, "there are reaction_x(A), reaction_y(A), reaction_n(B)"),
+    (BEAM, {"reaction": ""}, "there is no reaction ''"),
+    (BEAM, {"influence": "bending_moment(b)"}, "a body and a place along it are asked for"),
+    (BEAM + SHORT, {}, "'A' and 'A' are at one place: a load along a line needs a length"),
+    (HEAD, {}, "the model has no body"),
+    (LEVER.replace("LOAD", '[0, "F^2 - 3"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
+    (LEVER.replace("LOAD", '["cos(F)", "sin(F)"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
+    (TRUSS.replace('"T.C"', '"T.K"'), {}, "its nodes are A, B, C"),
+    (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
+    (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
+])  # fmt: skip
+def test_it_is_said_what_is_wrong(text, asked, told):
+    with pytest.raises(EomgenError) as error:
+        eomgen.statics(eomgen.loads(text), **asked)
+    assert told in str(error.value)
+
+
+def test_a_member_is_named_from_either_end():
+    """tension(T, n1-n2) = tension(T, n2-n1), spaces or not."""
+    for asked in ("tension(T, B-C)", "tension(T,C-B)", "tension(T, C, B)"):
+        found = eomgen.statics(eomgen.loads(TRUSS), reaction=asked).found
+        assert [r.name for r in found.reactions if r.work is not None] == ["tension(T, B-C)"]
+
+
+def test_points_meet_that_do_so_at_the_models_values():
+    """The axle at 0.2 and the wheel's centre at r with r = 0.2: F (1.5) = W (0.5)."""
+    found = eomgen.statics(eomgen.loads(BARROW))
+    assert found.ok and found.values["F"] == pytest.approx(200) and found.values["reaction_n(ground)"] == 400
+
+
+def test_an_indeterminate_structure_is_a_failure_that_names_what_stays_open():
+    """A third support: A_x is still given, and the rest is said to be open."""
+    found = eomgen.statics(eomgen.loads(BEAM + '[constraints.C]\nkind = "support"\npoint = "b.C"\nnormal = [0, 1]\n'))
+    assert found.exact["reaction_x(A)"] == "-1"
+    assert "to the degree 1" in found.failed
+    assert "reaction_y(A), reaction_n(B), reaction_n(C) open" in found.failed
+    assert eomgen.statics(eomgen.loads(BEAM)).failed == ""
+
+
+def test_the_length_of_a_spring_has_a_name_in_the_equations_at_rest():
+    """No symbol of our own making is printed: r1 = sqrt(...)."""
+    text = eomgen.statics(eomgen.loads(SPRUNG)).render("text")
+    assert "r1 = sqrt(" in text and "(root" not in text
