@@ -1,9 +1,9 @@
 """Structures and composite bodies: all reactions and moments of inertia, side by side with sympy in one run.
 
-    python benchmarks/instants.py [-o section.md]
+    python benchmarks/instants.py [-o benchmarks/instants.md]
 
 The clock starts at the frozen Model here, at the made object there; dimensions and loads are symbols on both sides.
-The table stands in benchmarks/results.md under its own heading.
+The table stands in benchmarks/instants.md.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="write the section there instead of to stdout")
     arguments = parser.parse_args()
     page = "\n".join((
-        "## Structures and composites, side by side with sympy",
+        "# Structures and composites, side by side with sympy",
         "",
         f"Made by `python benchmarks/instants.py` on Python {platform.python_version()}, sympy {sympy.__version__}, "
         f"{platform.machine()}.",

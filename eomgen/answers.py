@@ -27,6 +27,7 @@ from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.outputs import asks_motion, later
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
+from eomgen.mechanics.worth import known_parameters
 from eomgen.model.fields import AtRest, Equation
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
@@ -279,8 +280,7 @@ class _Solver:
         if not moment.numbers:
             raise RunFailed("the instant has no closed form, and without values of all parameters no number")
         situation = moment.situation
-        known = {situation.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(self.model).items()}
-        value = situation.number(output.value, {**known, **moment.numbers})
+        value = situation.number(output.value, {**known_parameters(situation.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 

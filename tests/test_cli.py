@@ -470,6 +470,22 @@ def test_a_run_says_once_where_a_reaction_has_no_value(tmp_path):
     assert path.read_text().splitlines()[1].split(",")[4] == "nan"
 
 
+@pytest.mark.parametrize(
+    ("model", "more", "line"),
+    [
+        ("gerber_beam", "", "stable, statically determinate"),
+        ("gerber_beam", 'F = { kind = "support", point = "CD.C", normal = [0, 1] }',
+         "stable, statically indeterminate: 1 reaction more than independent ones"),
+        ("bolt_cutter", "", "stable, statically determinate, held by P too"),
+        ("seeds/ch11_p4", "", "a mechanism, it can move"),
+    ],
+)  # fmt: skip
+def test_check_says_how_a_structure_stands(model, more, line):
+    """Mobility = velocities - rank, indeterminacy = reactions - rank; unknown loads hold too."""
+    text = (MODELS / f"{model}.toml").read_text().replace("[constraints]", f"[constraints]\n{more}")
+    assert f"structure: {line}\n" in run("check", "-", text=text).stdout
+
+
 def test_the_schema_fits_the_models():
     """What `eomgen schema` prints is a JSON Schema that every model of models/ fits."""
     jsonschema = pytest.importorskip("jsonschema")

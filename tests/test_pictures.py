@@ -9,6 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.report.arrows import is_freer_outward
+from eomgen.report.coil import coil
 from eomgen.report.quantities import figures, scale_of
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -50,6 +51,15 @@ def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():
     assert not is_freer_outward(lines, (0.0, 0.0), (1.0, 0.0))
     assert not is_freer_outward([CHORD], (2.0, 0.0), (0.0, -1.0))  # a free beam carries its load on top
     assert is_freer_outward([CHORD, UPPER], (2.0, 0.0), (0.0, -1.0))  # else it would cross the upper chord
+
+
+def test_a_spring_is_a_zigzag_from_end_to_end():
+    """It begins and ends at its points, and swings by its width to both sides of the line between them."""
+    line = coil((1.0, 1.0), (4.0, 5.0), 0.3)
+    away = (line - line[0]) @ np.array([-0.8, 0.6])
+    assert np.allclose(line[[0, -1]], [[1, 1], [4, 5]])
+    assert np.allclose([away.min(), away.max()], [-0.3, 0.3])
+    assert np.all(np.diff(line @ np.array([0.6, 0.8])) > 0)
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ from eomgen.symbolic.text import text_size
 
 AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable
-PAGE = 1000  # characters of a root
+PAGE = 1000  # characters of a root, and of an equation of a loop that is solved for one
 SHORT = 40  # characters of a root that is put into other equations first
 
 
@@ -122,13 +122,13 @@ def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located
 def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
     """An equation solved for one of its unknowns; the one in which it has a single root first.
 
-    Where there is a loop only such a one; a cos q + b sin q + r has two.
+    Where there is a loop only such a one, of an equation of less than a page; a cos q + b sin q + r has two roots.
     """
     several: Step | None = None
     in_loop = any(True for _ in _loops(left, unknowns))
     for i, equation in enumerate(left):
         for q in _held(equation, unknowns):
-            if in_loop and _waves(equation, q) is not None:
+            if in_loop and (text_size(equation) > PAGE or _waves(equation, q) is not None):
                 continue
             candidates = roots(equation, q, located.positive, LIMIT)
             root = located.chosen(candidates, q, equation)

@@ -5,7 +5,7 @@ Parameters without a value, and symbols that were left free, are something at ra
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -14,11 +14,25 @@ from typing import Any
 
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import FLOAT, ZERO_AT_50, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
 ROUNDED = 1e-9  # what counts as zero of a number that comes from doubles
+
+
+def known_parameters(scope: Scope) -> dict[Node, float]:
+    """The parameters that have values."""
+    return {scope.symbols.parameters[name]: float(x) for name, x in exact_parameters(scope.model).items()}
+
+
+def numbers_of(scalars: Sequence[Scalar | None], values: Mapping[Node, float]) -> list[float | None]:
+    """The scalars as numbers, None where one has none."""
+    ready = [x is not None and set(symbols_of((x,))) <= values.keys() for x in scalars]
+    kept = [x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None]
+    found = iter(evaluate(kept, values, FLOAT))
+    return [float(next(found)) + 0.0 if is_ready else None for is_ready in ready]
 
 
 @dataclass(frozen=True)

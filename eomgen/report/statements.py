@@ -5,6 +5,7 @@ Plain strings are plain text in every format: each format escapes them in its ow
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eomgen.symbolic.graph import Node, Scalar
@@ -137,6 +138,13 @@ class Grid:
 
     head: tuple[Cell, ...]
     rows: tuple[tuple[Cell, ...], ...]
+
+
+def narrow_grid(head: Sequence[Cell], rows: Sequence[tuple[Cell, ...]], kept: Sequence[int] | None = None) -> Grid:
+    """The table with these of its columns; None: with those in which something stands."""
+    if kept is None:
+        kept = [k for k in range(len(head)) if any(row[k] != "" for row in rows)]
+    return Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
 
 
 Statement = Prose | Formula | Table | Grid

@@ -81,6 +81,49 @@ g = { kind = "gravity", acceleration = [0, -9.81] }
 s = { kind = "spring", points = ["arm.end", "top"], stiffness = "k", length = 1 }
 """
 
+HOIST = HEAD + """
+[parameters]
+W = 500
+r = 0.2
+[points]
+wall = [0, "r"]
+foot = [0, -1.5]
+[bodies.beam]
+points = { A = [0, 0], C = [1.5, 0], B = [3, 0] }
+[bodies.pulley]
+shape = { kind = "disc", mass = 0, radius = "r" }
+joint = { kind = "placed", at = [3, 0] }
+[bodies.load]
+shape = { kind = "particle", mass = 0 }
+joint = { kind = "placed", at = ["3 + r", -1] }
+[constraints]
+A = { kind = "pin", points = ["beam.A"] }
+B = { kind = "pin", points = ["beam.B", "pulley.center"] }
+strut = { kind = "link", points = ["beam.C", "foot"] }
+[constraints.rope]
+kind = "string"
+path = ["wall", { body = "pulley", turn = "cw" }, "load.center"]
+[forces]
+W = { kind = "force", point = "load.center", force = [SIDE, "-W"] }
+"""
+FOUR_BAR = HEAD + """
+[bodies.a]
+points = { A = [0, 0], B = [0, 1] }
+[bodies.c]
+points = { B = [0, 1], C = [1, 1] }
+[bodies.d]
+points = { C = [1, 1], D = [1, 0] }
+[constraints]
+A = { kind = "pin", points = ["a.A"] }
+B = { kind = "pin", points = ["a.B", "c.B"] }
+C = { kind = "pin", points = ["c.C", "d.C"] }
+D = { kind = "pin", points = ["d.D"] }
+[forces.down]
+kind = "force"
+point = "a.B"
+force = [0, -3]
+"""
+
 SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nintensity = [0, -1]\n'
 
 
@@ -95,6 +138,8 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
     (LEVER.replace("LOAD", '["cos(F)", "sin(F)"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
     (TRUSS.replace('"T.C"', '"T.K"'), {}, "its nodes are A, B, C"),
     (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
+    (HOIST.replace("SIDE", "1"), {}, "body 'load' can slide along x"),
+    (FOUR_BAR, {}, "body 'a' can turn about (0, 0)"),
     (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
 ])  # fmt: skip
 def test_it_is_said_what_is_wrong(text, asked, told):
@@ -114,6 +159,22 @@ def test_points_meet_that_do_so_at_the_models_values():
     """The axle at 0.2 and the wheel's centre at r with r = 0.2: F (1.5) = W (0.5)."""
     found = eomgen.statics(eomgen.loads(BARROW))
     assert found.ok and found.values["F"] == pytest.approx(200) and found.values["reaction_n(ground)"] == 400
+
+
+def test_what_hangs_on_a_rope_hangs_still():
+    """Nothing holds the load sideways, and nothing pushes it there: strut -2 sqrt(2) W; pushed it is refused."""
+    found = eomgen.statics(eomgen.loads(HOIST.replace("SIDE", "0")))
+    assert found.exact["tension(strut)"] == "-2*sqrt(2)*W" and found.exact["tension(rope, 2)"] == "W" and found.ok
+    assert "Body 'load' can slide along x: nothing resists it, but no load does any work" in " ".join(
+        found.render("text").split()
+    )
+
+
+def test_a_machine_rolls_freely_where_nothing_pushes_it():
+    """The wheelbarrow without the stone: the hands still carry W/3."""
+    text = "\n".join(line for line in BARROW.splitlines() if not line.startswith("stone"))
+    found = eomgen.statics(eomgen.loads(text))
+    assert found.exact["F"] == "1/3*W" and found.found.structure.mobility == 1 and found.ok
 
 
 def test_an_indeterminate_structure_is_a_failure_that_names_what_stays_open():

@@ -395,3 +395,69 @@ def test_a_spool_is_wound_along_by_its_own_thread():
     assert {name: answer.exact for name, answer in answers.items()} == {
         "v": "R*v/(R - r)", "omega": "v/(r - R)", "c_y": "0",
     }  # fmt: skip
+
+
+def test_velocities_need_no_mass_and_accelerations_say_that_they_do():
+    """A crank with a speed that nothing drives: omega_rod/omega_crank = -r cos(theta)/(l cos(phi)); x'' is open."""
+    text = HEAD + ENGINE.replace('rate = "w"', 'speed = "w"').partition("[outputs]")[0]
+    answers = eomgen.solve(eomgen.loads(text + '[outputs]\nratio = "omega(rod)/omega(crank)"\na = "x\'\'"\n'))
+    assert answers["ratio"].exact == "-r*cos(theta)/(l*cos(phi))"
+    assert answers["a"].exact is None and "'theta' moves no mass" in answers["a"].message
+    with pytest.raises(eomgen.ModelError, match="moves no mass"):
+        eomgen.solve(eomgen.loads(text + '[outputs]\na = "x\'\'"\n'))
+
+
+def test_parallel_cranks_hand_on_the_angle_itself():
+    """A coupler between equal parallel cranks translates: exactly, with every length and angle a symbol."""
+    text = HEAD + """
+    parameters = { r = 0.3, l = 0.8, w = 2, t1 = 0.4, a0 = 0.6 }
+    coordinates = { a = { start = "a0", rate = "w" }, b = { dependent = true }, c = { dependent = true, near = 1 } }
+    bodies.crank = { points = { E = ["r", 0] }, joint = { kind = "revolute", angle = "a" } }
+    bodies.bar = { points = { F = ["l", 0] }, joint = { kind = "revolute", on = "crank.E", angle = "b - a" } }
+    bodies.rocker = { points = { F = ["r", 0] }, joint = { kind = "revolute", at = ["l", 0], angle = "c" } }
+    constraints.F = { kind = "pin", points = ["bar.F", "rocker.F"] }
+    outputs.turn = { value = "angle(bar)", at = "t = t1" }
+    outputs.c = { value = "c", at = "t = t1" }
+    outputs.v_x = { value = "vx(bar.F)", at = "t = t1" }
+    outputs.a = { value = "acceleration(bar.F)", at = "t = t1" }
+    """
+    answers = eomgen.solve(eomgen.loads(text))
+    assert {name: answer.exact for name, answer in answers.items()} == {
+        "turn": "0", "c": "a0 + w*t1", "v_x": "-r*w*sin(a0 + w*t1)", "a": "r*w^2",
+    }  # fmt: skip
+
+
+def test_a_four_bar_linkage_is_placed_in_closed_form():
+    """Each angle by the loop without the other, so that neither formula holds the other's; against a float solve."""
+    text = HEAD + """
+    parameters = { a = 0.4, b = 1.0, c = 0.8, d = 1.1, w = 2, t1 = 0.3 }
+    [coordinates]
+    alpha = { start = 1.0, rate = "w" }
+    beta = { dependent = true, near = 0.5 }
+    gamma = { dependent = true, near = 1.5 }
+    [bodies]
+    crank = { points = { E = ["a", 0] }, joint = { kind = "revolute", angle = "alpha" } }
+    coupler = { points = { E = ["b", 0] }, joint = { kind = "revolute", on = "crank.E", angle = "beta - alpha" } }
+    rocker = { points = { E = ["c", 0] }, joint = { kind = "revolute", at = ["d", 0], angle = "gamma" } }
+    [constraints]
+    B = { kind = "pin", points = ["coupler.E", "rocker.E"] }
+    [outputs]
+    beta = { value = "beta", at = "t = t1" }
+    gamma = { value = "gamma", at = "t = t1" }
+    omega = { value = "omega(rocker)", at = "t = t1" }
+    """
+    with mpmath.workdps(DIGITS):
+        a, b, c, d = numbers("0.4 1 0.8 1.1")
+
+        def angles(t: Any) -> Any:
+            x, y = a * cos(1 + 2 * t), a * sin(1 + 2 * t)
+            gaps = (lambda p, q: x + b * cos(p) - c * cos(q) - d, lambda p, q: y + b * sin(p) - c * sin(q))
+            return mpmath.findroot(lambda p, q: [gap(p, q) for gap in gaps], (0.5, 1.5))
+
+        now = mpf("0.3")
+        step = mpf(10) ** -12
+        slope = (angles(now + step)[1] - angles(now - step)[1]) / (2 * step)
+        expected = {"beta": angles(now)[0], "gamma": angles(now)[1], "omega": slope}
+    answers = eomgen.solve(eomgen.loads(text))
+    close(answers, expected)
+    assert all(answers[name].exact and len(answers[name].exact) < 400 for name in ("beta", "gamma"))

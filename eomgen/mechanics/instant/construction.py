@@ -17,6 +17,7 @@ from eomgen.mechanics.components import Component, components_of
 from eomgen.mechanics.effects import Axes
 from eomgen.mechanics.freedom import is_particle
 from eomgen.mechanics.instant.mechanism import Mechanism
+from eomgen.model.part import leaves_of
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import Vector, cross, plus, vector_of
@@ -134,7 +135,7 @@ class _Search:
         found: dict[Pair, list[LineOf]] = {}
         axes = Axes(self.mechanism.system.motion)
         for component in components_of(self.mechanism.system, axes):
-            if component.kind == "drive":
+            if component.kind == "drive" or self._wanders(component):
                 continue
             pair, line = self._line(axes, component)
             if pair is not None:
@@ -143,6 +144,19 @@ class _Search:
             if self._is_point(name):
                 found.setdefault(("0", name), []).append(LineOf((0, 0, 1), name, POINT))
         return found
+
+    def _wanders(self, component: Component) -> bool:
+        """Whether the seat of a joint, or a point that a tie names, moves in its body as the model says.
+
+        There no point of the body is held, and the line of the push says nothing of velocities.
+        """
+        motion = self.mechanism.system.motion
+        if component.kind == "joint":
+            link = motion.link(component.owner)
+            return motion.moves((*link.before.p, *link.point))
+        tie = motion.scope.model.constraints[component.owner]
+        points = (leaf.value for leaf in leaves_of(tie, ()) if getattr(leaf.rule, "of", "") == "point")
+        return any(motion.moves(motion.place(point)[1]) for point in points)
 
     def _is_point(self, block: str) -> bool:
         """Whether it is a point mass, whatever its velocity: as a body it translates."""

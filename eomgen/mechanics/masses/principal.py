@@ -18,7 +18,7 @@ from functools import cached_property, cmp_to_key
 
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.worth import known_parameters
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.functions import cos, function, over, sqrt
@@ -305,6 +305,5 @@ def values_of(
         state: values of other symbols than parameters (None: those have none).
     """
     symbols, known = symbols_of(tuple(scalars)), dict(state or {})
-    values: Mapping[str, float] = {name: float(x) for name, x in exact_parameters(scope.model).items()}
-    known |= {node: values[name] for name, node in scope.symbols.parameters.items() if name in values}
+    known |= known_parameters(scope)
     return None if any(symbol not in known for symbol in symbols) else list(evaluate(tuple(scalars), known, FLOAT))

@@ -8,9 +8,9 @@ from typing import Any
 
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.worth import known_parameters
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
-from eomgen.report.statics.equilibrium_steps import values_of
 
 MOST = 6  # places that are drawn
 SIDE = 3.4  # of one panel [inches]
@@ -44,7 +44,7 @@ def resting_picture(places: Sequence[Equilibrium]) -> Picture:
 
 def _sketch(place: Equilibrium) -> Sketch:
     symbols = place.statics.system.symbols
-    plain = Sketch(place.statics.system, values_of(place))
+    plain = Sketch(place.statics.system, known_parameters(place.statics.system.scope))
     inputs = {node: plain.numbers((place.statics.given[node],))[0] for node in symbols.inputs.values()}
     still = dict.fromkeys((symbols.t, *symbols.u), 0.0)
     return Sketch(place.statics.system, {**plain.values, **inputs, **still, **place.numbers})

@@ -13,6 +13,7 @@ from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
+from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.model.parts import Model
 from eomgen.report import rendered
 from eomgen.report.figures import Picture
@@ -20,7 +21,7 @@ from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.setting_steps import data_step
 from eomgen.report.statements import Derivation
 from eomgen.report.statics.equilibrium_picture import resting_picture
-from eomgen.report.statics.equilibrium_steps import equilibrium_steps, numbers_of, values_of
+from eomgen.report.statics.equilibrium_steps import equilibrium_steps
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.text import to_text
@@ -123,7 +124,7 @@ def _place(place: Equilibrium) -> dict[str, Any]:
 def _reactions(place: Equilibrium) -> dict[str, Any]:
     """Those at the first place."""
     _, reactions, why = reactions_or_why(place)
-    numbers = numbers_of([each.value for each in reactions], values_of(place))
+    numbers = numbers_of([each.value for each in reactions], known_parameters(place.statics.system.scope))
     return {
         "reactions": {
             each.named.name: {

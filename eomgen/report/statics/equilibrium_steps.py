@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from eomgen.mechanics.equilibria.resting_reactions import RestingReaction, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.reactions import Reactions
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.report.bounded import page
 from eomgen.report.naming import Written, with_roots_named
 from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count, listed
-from eomgen.report.statements import Cell, Entry, Formula, Grid, Law, Name, Piece, Prose, Statement, Step
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.graph import Node, Scalar
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
@@ -78,9 +76,7 @@ def _places(found: Equilibria) -> Step:
         statements.append(Prose((_how_many(found),)))
         return Step("places", "Places of rest", tuple(statements))
     rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
-    kept = [k for k in range(5) if any(row[k] != "" for row in rows)]
-    head = ("place", "coordinate", "exact", "value", "stability")
-    grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    grid = narrow_grid(("place", "coordinate", "exact", "value", "stability"), rows)
     return Step("places", "Places of rest", (*statements, Prose((_how_many(found),)), grid))
 
 
@@ -152,11 +148,9 @@ def _reactions(place: Equilibrium) -> tuple[Step, ...]:
         return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)
     if not found:
         return ()
-    numbers = numbers_of([each.value for each in found], values_of(place))
+    numbers = numbers_of([each.value for each in found], known_parameters(place.statics.system.scope))
     rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
-    kept = [k for k in range(5) if any(row[k] != "" for row in rows)]
-    head = ("reaction", "meaning", "exact", "value", "unit")
-    grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
     pulls = [Prose((f"But '{name}' would have to pull there: it does not hold.",)) for name in place.pulling]
     return (Step("reactions", title, (Prose(("By the balance of every body:",)), grid, *pulls)),)
 
@@ -168,16 +162,3 @@ def _reaction_row(
     exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
     return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit
 
-
-def values_of(place: Equilibrium) -> dict[Node, float]:
-    """The parameters that have values."""
-    system = place.statics.system
-    return {system.symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
-
-
-def numbers_of(scalars: Sequence[Scalar | None], values: Mapping[Node, float]) -> list[float | None]:
-    """The scalars as numbers, None where one has none."""
-    ready = [x is not None and set(symbols_of((x,))) <= values.keys() for x in scalars]
-    found = iter(evaluate([x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None],
-                          values, FLOAT))  # fmt: skip
-    return [float(next(found)) + 0.0 if is_ready else None for is_ready in ready]

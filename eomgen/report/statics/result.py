@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,8 +14,8 @@ from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, mod
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import WorkEquation
 from eomgen.mechanics.system import system_of
+from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
 from eomgen.report import rendered
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
@@ -31,8 +31,6 @@ from eomgen.report.statics.section_steps import (
     sections_of,
 )
 from eomgen.report.statics.steps import contacts_step, statics_derivation
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import to_text
 
@@ -102,14 +100,11 @@ class Statics:
         """{reaction: its number} [N, N m], of those that have one."""
         return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None])
 
-    def _numbers(self, pairs: Iterable[tuple[str, Scalar]]) -> dict[str, float]:
+    def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
         """The scalars in numbers, those whose parameters have values."""
-        known = exact_parameters(self.model)
-        table = self.found.system.symbols.parameters
-        numbers = {node: float(known[name]) for name, node in table.items() if name in known}
-        ready = [(name, value) for name, value in pairs if set(symbols_of((value,))) <= numbers.keys()]
-        found = evaluate([value for _, value in ready], numbers, FLOAT)
-        return {name: float(x) + 0.0 for (name, _), x in zip(ready, found, strict=True)}
+        names, scalars = zip(*pairs, strict=True) if pairs else ((), ())
+        found = numbers_of(scalars, known_parameters(self.found.system.scope))
+        return {name: x for name, x in zip(names, found, strict=True) if x is not None}
 
     @cached_property
     def derivation(self) -> Derivation:

@@ -12,7 +12,7 @@ from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.trusses import is_node
 from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step
-from eomgen.report.statements import Cell, Derivation, Formula, Grid, Law, Prose, Statement, Step
+from eomgen.report.statements import Cell, Derivation, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
 from eomgen.report.statics.work_steps import work_step
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
@@ -152,9 +152,7 @@ def reactions_step(statics: StaticReactions, symbols: Symbols, values: Mapping[s
     if not rows:
         return Step("reactions", "Reactions", (Prose(("Nothing reacts.",)),))
     head = ("reaction", "meaning", "exact", "value", "unit", "sense")
-    kept = [k for k in range(6) if any(row[k] != "" for row in rows)]
-    grid = Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
-    return Step("reactions", "Reactions", (grid,))
+    return Step("reactions", "Reactions", (narrow_grid(head, rows),))
 
 
 SENSES = {

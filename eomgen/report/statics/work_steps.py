@@ -13,7 +13,7 @@ from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.statics.virtual_work import Acting, Term, WorkEquation
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
-from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step
+from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, plus, times, vector_of
 
@@ -204,7 +204,7 @@ def _narrow(head: Sequence[str], rows: Sequence[tuple[Cell, ...]]) -> Grid:
     """The table without columns in which nothing stands, or only zeros; centres keep both coordinates."""
     kept = [k for k in range(len(head))
             if any(not _is_nothing(row[k]) for row in rows) or head[k].startswith("centre")]  # fmt: skip
-    return Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+    return narrow_grid(head, rows, kept)
 
 
 def _is_nothing(cell: Cell) -> bool:
