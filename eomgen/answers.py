@@ -32,6 +32,7 @@ from eomgen.model.fields import AtRest, Equation
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
 from eomgen.moments import Moment, resting
+from eomgen.report.statics.result import why_not_at_rest
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
@@ -164,7 +165,7 @@ class _Solver:
         texts = [side for equations in (given.velocity, given.acceleration) for equation in equations or ()
                  for side in (equation.left, equation.right)]  # fmt: skip
         unknown = self.model.unknowns.keys() & {name for text in texts for name in text.names}
-        return asks_motion(formula) or not unknown.isdisjoint(formula.names)
+        return asks_motion(formula) or not {*unknown, *self.model.speeds}.isdisjoint(formula.names)
 
     @cached_property
     def snapshot(self) -> Snapshot:
@@ -184,11 +185,18 @@ class _Solver:
         situation = self.situation
         scalar = situation.of_state(output.value)
         method = situation.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
+        if self._not_at_rest:
+            raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
         answer = self._started(situation.simple(self._in_unit(scalar, output)), method)
         failure = self.journeys[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         return answer
+
+    @cached_property
+    def _not_at_rest(self) -> str:
+        """What contacts of bodies without coordinates cannot do; "" where they can."""
+        return why_not_at_rest(self.model, self.situation.system)
 
     def _of_configuration(self, output: Output) -> Answer:
         """A function of the coordinates, rates eliminated by the energy theorem."""

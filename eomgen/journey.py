@@ -18,6 +18,7 @@ from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located
 from eomgen.mechanics.start import start_state
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
@@ -78,7 +79,9 @@ class Journey:
 
     @cached_property
     def situation(self) -> Situation:
-        """The first phase: contacts as they are at the start."""
+        """The first phase: contacts as they are at the start; bodies without coordinates rest on theirs."""
+        if not self.model.coordinates:
+            return situation_of(self.model, modes_at_rest(self.model))
         if self.course is None:
             return situation_of(self.model)
         return Situation(self.course.stages.of(self._first.configuration).system)
@@ -86,7 +89,7 @@ class Journey:
     @property
     def failure(self) -> str:
         """Why no phase begins at the start; "" where one does."""
-        return "" if self.course is None else self._first.failure
+        return "" if self.course is None or not self.model.coordinates else self._first.failure
 
     @cached_property
     def numbers(self) -> dict[Node, float]:

@@ -20,6 +20,7 @@ from eomgen.mechanics.balance_solution import values_at_a_state
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.outputs import Quantities
@@ -28,6 +29,7 @@ from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.start import fixed_by_position
 from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
@@ -106,9 +108,22 @@ class Situation:
     def eliminated(self, scalar: Scalar) -> Scalar:
         """A scalar with accelerations and multipliers replaced by the equations of motion, unknowns by the balance."""
         scalar = self._known(scalar, self._quantities)
+        if self._stands_still:
+            (scalar,) = substituted((scalar,), still(self.system))
         if not depends_on(scalar, (*self.system.symbols.a, *self.system.symbols.lam)):
             return scalar
         return substituted((scalar,), self.unknowns)[0]
+
+    @cached_property
+    def _stands_still(self) -> bool:
+        """Whether the ties hold every coordinate where it is: J u = 0 with as many independent rows as speeds."""
+        ties = self.system.ties
+        if not ties.closing or not all(holds_identically(x) for x in ties.sigma):
+            return False
+        try:
+            return freedoms(ties) == 0
+        except MissingValues:
+            return False
 
     def _known(self, scalar: Scalar, quantities: Quantities) -> Scalar:
         """A scalar with the unknowns of loads replaced by what they are at rest."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.dense import independent, scaled_condition, solution
+from eomgen.symbolic.dense import independent, scaled_condition, solution
 from eomgen.symbolic.evaluation import NoValue
 
 SMALLEST = 1e-11

@@ -154,6 +154,9 @@ def test_each_operation_is_set_by_its_own_rule(make, expected):
         ("x_1_2", "x_{1,2}"),
         ("θ2'", r"\dot{\theta}_{2}"),
         ("_", r"\mathrm{\_}"),
+        ("δθ", r"\delta \theta"),
+        ("δs", r"\delta s"),
+        ("δ", r"\delta"),
     ],
 )
 def test_names_are_set_with_greek_letters_subscripts_and_dots(name, expected):

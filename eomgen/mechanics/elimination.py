@@ -16,10 +16,10 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.closure import generic_state, scattered_state
-from eomgen.mechanics.dense import independent
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.ties import Ties, holds_identically
 from eomgen.symbolic import cramer
+from eomgen.symbolic.dense import independent
 from eomgen.symbolic.derivative import depends_on, symbols_of
 from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations
 from eomgen.symbolic.functions import over, sqrt

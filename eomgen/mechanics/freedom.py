@@ -14,13 +14,13 @@ import numpy as np
 from eomgen.errors import EomgenError, NotYet
 from eomgen.mechanics.closure import State, generic_state
 from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.dense import independent_rows
 from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.symbolic.dense import independent_rows
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import is_zero
 

@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.armature import armature_bias, armature_mass
-from eomgen.mechanics.dense import independent, solution
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import joint_forces, placeless_forces
+from eomgen.symbolic.dense import independent, solution
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar

@@ -83,8 +83,8 @@ OF_MOTION = frozenset((
 
 
 def asks_motion(formula: Expression) -> bool:
-    """Whether velocities or accelerations stand in a formula, by the functions that it calls."""
-    return any(call.name in OF_MOTION for call in formula.calls)
+    """Whether velocities or accelerations stand in a formula: functions of them, or rates of coordinates."""
+    return any(call.name in OF_MOTION for call in formula.calls) or any(name.endswith("'") for name in formula.names)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.dense import independent, scaled_condition, solution
 from eomgen.mechanics.equilibrium import imbalance
 from eomgen.mechanics.friction import frictions
 from eomgen.mechanics.kinematics import spin_between
@@ -21,6 +20,7 @@ from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.proof.check import Check
+from eomgen.symbolic.dense import independent, scaled_condition, solution
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node
 from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of

@@ -106,4 +106,6 @@ def _letters(letters: str) -> str:
         return GREEK[letters]
     if letters in LETTERS:
         return LETTERS[letters]
+    if letters[0] == "δ":  # a virtual displacement
+        return rf"\delta {_letters(letters[1:])}"
     return letters if len(letters) == 1 and letters.isascii() and letters.isalpha() else upright(letters)

@@ -15,6 +15,7 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.start import start_state
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
@@ -180,10 +181,13 @@ def _jammed(standing: Configuration) -> str:
 def modes_at_start(model: Model) -> dict[str, Mode]:
     """The contacts that the start values leave open, their gaps not 0, and those that push against their normals there.
 
-    What the coordinates satisfy by themselves is closed, whatever its force. {} where nothing can be told.
+    What the coordinates satisfy by themselves is closed, whatever its force; without coordinates what is rough sticks.
+    {} where nothing can be told.
     """
     if not contacts_of(model):
         return {}
+    if not model.coordinates:
+        return dict(modes_at_rest(model))
     try:
         p = parameter_vector(model)
         course = course_of(model, p, "numpy")

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
@@ -26,7 +27,6 @@ NOTHING = 1e-40  # of the scaled equations: what is left is rounding of 50 digit
 TOGETHER = 1e-6  # distance of two results of floats that become one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
 RANK = 1e-12  # of the largest singular value
-SWEEPS = 8  # of scaling
 
 _ON_ARRAYS: dict[str, Callable[..., Any]] = {
     "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": np.true_divide,
@@ -128,12 +128,7 @@ class Descent:
         with np.errstate(all="ignore"):
             A = np.abs(self._at(self._slopes, places)).reshape(-1, *self._shape)
             A = np.sqrt(np.nanmean(np.where(np.isfinite(A), A, np.nan) ** 2, axis=0))
-        rows, columns = np.ones(self._shape[0]), np.ones(self._shape[1])
-        for _ in range(SWEEPS):
-            scaled = np.where(np.isfinite(A), A, 1.0) * rows[:, None] * columns
-            rows = rows / _roots(scaled.max(axis=1, initial=0))
-            columns = columns / _roots(scaled.max(axis=0, initial=0))
-        return rows, columns
+        return balanced(np.where(np.isfinite(A), A, 1.0))[1:]
 
     @property
     def _rows(self) -> np.ndarray:
@@ -181,7 +176,3 @@ def _apart(x: np.ndarray) -> list[np.ndarray]:
 
 def _size(f: np.ndarray) -> np.ndarray:
     return np.sqrt(np.sum(f * f, axis=1))
-
-
-def _roots(sizes: np.ndarray) -> np.ndarray:
-    return np.sqrt(np.where(sizes > 0, sizes, 1))

@@ -27,6 +27,7 @@ from eomgen.model.unknowns import in_loads
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
+from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expressions import Expression, parse, parse_equation
 from eomgen.verbs.given import assignments, nearest
@@ -56,12 +57,13 @@ def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...]
         found = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
+    broken = why_not_at_rest(model, system)
     space = null_space(system, equations.graph) if open_ and equations is not None else []
     payload = {"name": model.name, "reactions": {name: answer.as_dict() for name, answer in found.items()},
                **({"null_space": space} if space else {})}  # fmt: skip
     notes = () if found else ("nothing reacts: no body is held by joints or ties",)
     return Outcome(_text(system, asked, found, bool(space)) + _open_text(space), payload,
-                   f"not answered: {listed(failed)}" if failed else "", notes)  # fmt: skip
+                   f"not answered: {listed(failed)}" if failed else broken, notes)  # fmt: skip
 
 
 def _function(name: str) -> str:

@@ -190,3 +190,68 @@ def test_the_length_of_a_spring_has_a_name_in_the_equations_at_rest():
     """No symbol of our own making is printed: r1 = sqrt(...)."""
     text = eomgen.statics(eomgen.loads(SPRUNG)).render("text")
     assert "r1 = sqrt(" in text and "(root" not in text
+
+
+LADDER = HEAD + """
+[parameters]
+m = 10
+mu = MU
+L = 5
+[bodies.ladder]
+shape = { kind = "rod", mass = "m", length = "L" }
+joint = { kind = "placed", at = [0, 0], angle = "atan2(4, 3)" }
+[constraints]
+floor = { kind = "support", point = "ladder.start", normal = [0, 1], friction = "mu", unilateral = true }
+wall = { kind = "support", point = "ladder.end", normal = [-1, 0], unilateral = true }
+[forces.g]
+kind = "gravity"
+acceleration = [0, -10]
+[outputs]
+wall = "reaction_n(wall)"
+floor = "reaction_t(floor)"
+"""
+
+
+def test_outputs_of_a_structure_know_that_it_rests_on_friction_or_slides():
+    """m g 3/8 at the wall while that is at most mu m g; below that, or where a contact would pull, no answer."""
+    rests = eomgen.solve(eomgen.loads(LADDER.replace("MU", "0.5")))
+    assert rests["wall"].value == pytest.approx(37.5) and rests["floor"].value == pytest.approx(37.5)
+    slides = eomgen.solve(eomgen.loads(LADDER.replace("MU", "0.3")))["wall"]
+    assert not slides.answered and "contact 'floor' slides" in slides.message
+    pulls = 'B = { kind = "support", point = "b.B", normal = [0, -1], unilateral = true }'
+    text = BEAM.replace('B = { kind = "support", point = "b.B", normal = [0, 1] }', pulls)
+    held = eomgen.solve(eomgen.loads(text + '[outputs]\nB = "reaction_n(B)"\n'))["B"]
+    assert not held.answered and "contact 'B' would have to pull" in held.message
+
+
+BOOM = HEAD + """
+[parameters]
+m = 50
+g = 9.81
+L = 4
+[points]
+K = [0, 3]
+[coordinates]
+theta = 0.5
+[bodies.boom]
+shape = { kind = "rod", mass = "m", length = "L" }
+joint = { kind = "revolute", angle = "theta" }
+[constraints.cable]
+kind = "link"
+points = ["boom.end", "K"]
+[forces.g]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+x = "reaction_x(boom)"
+cable = "tension(cable)"
+"""
+
+
+def test_what_the_ties_hold_has_no_rate():
+    """A boom whose angle the cable holds: no theta' in its reactions, 3 X = L/2 cos(theta) m g."""
+    found = eomgen.solve(eomgen.loads(BOOM))
+    assert found["x"].exact == "1/6*m*g*L*cos(theta)"
+    assert "theta'" not in found["cable"].exact
+    values = eomgen.statics(eomgen.loads(BOOM)).values
+    assert found["cable"].value == pytest.approx(values["tension(cable)"], rel=1e-12)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -68,10 +68,10 @@ class _Search:
     statics: StaticEquations
     values: Mapping[Node, Any]
     guess: np.ndarray
-    floats: dict[Node, float] = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "floats", {node: float(x) for node, x in self.values.items()})
+    @cached_property
+    def floats(self) -> dict[Node, float]:
+        return {node: float(x) for node, x in self.values.items()}
 
     def places(self) -> Places:
         statics = self.statics

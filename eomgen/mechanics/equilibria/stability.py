@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dense import balanced
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic import cramer, linear
+from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.derivative import jacobian, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero

@@ -17,7 +17,6 @@ import numpy as np
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.closed_instant import position_equations
-from eomgen.mechanics.dense import balanced
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System, system_of
@@ -25,6 +24,7 @@ from eomgen.mechanics.work import generalized_forces, powered_forces
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.table import Table
+from eomgen.symbolic import dense
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.expressions import as_expression
@@ -117,7 +117,7 @@ class StaticEquations:
 
 def rank(rows: np.ndarray) -> int:
     """How many of the rows are independent."""
-    return int(np.linalg.matrix_rank(balanced(rows)[0], tol=RANK)) if rows.size else 0
+    return dense.rank(rows, smallest=RANK)
 
 
 def static_equations(system: System) -> StaticEquations:

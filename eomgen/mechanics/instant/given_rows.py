@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dense import independent_rows
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_for, values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
+from eomgen.symbolic.dense import independent_rows
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.expressions import Expression

@@ -20,7 +20,6 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance import Balance, balance_of
 from eomgen.mechanics.components import Component
-from eomgen.mechanics.dense import sparse_rank
 from eomgen.mechanics.effects import Axes
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import State, at_rest, values_for
@@ -28,6 +27,7 @@ from eomgen.mechanics.statics.unknown_loads import slope
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
+from eomgen.symbolic.dense import sparse_rank
 from eomgen.symbolic.derivative import derivative, substituted, tangent
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero

@@ -13,8 +13,9 @@ from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import WorkEquation
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.worth import known_parameters, numbers_of
+from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.report import rendered
 from eomgen.report.figures import Picture
@@ -167,6 +168,17 @@ class Statics:
 
     def _repr_markdown_(self) -> str:
         return self.render("markdown")
+
+
+def why_not_at_rest(model: Model, system: System) -> str:
+    """What contacts of bodies without coordinates would have to do and cannot; "" where they rest.
+
+    Raises:
+        DerivationError: bodies can move.
+    """
+    if model.coordinates or not contacts_of(model):
+        return ""
+    return "; ".join(Statics(model, static_reactions_of(system)).broken)
 
 
 def _text(value: Scalar | None) -> str | None:

@@ -44,7 +44,7 @@ def work_step(reaction: StaticReaction, symbol: Node) -> Step:
 
 def _scale(blocks: Sequence[Block], symbol: Node) -> Node:
     """The angle where a block turns by 1, else a length."""
-    turns = any(type(w) is int and w == 1 for block in blocks for w in block.spin)
+    turns = any(not isinstance(w, Node) and w == 1 for block in blocks for w in block.spin)
     return symbol.graph.symbol(TURN if turns else SHIFT)
 
 

@@ -32,7 +32,12 @@ def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float
 
 def independent(J: np.ndarray, *, smallest: float) -> bool:
     """Whether no row of J follows from the others."""
-    return len(J) == 0 or int(np.linalg.matrix_rank(balanced(J)[0], tol=smallest)) == len(J)
+    return rank(J, smallest=smallest) == len(J)
+
+
+def rank(A: np.ndarray, *, smallest: float) -> int:
+    """How many singular values of the scaled A are more than `smallest`."""
+    return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 
 
 def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
