@@ -60,10 +60,11 @@ def _of_snapshot(model: Model) -> KinematicState:
     if rate:
         symbol = _symbol(snapshot, rate)
         snapshot = snapshot.assuming(rate, symbol)
-    velocity = () if model.given is None else model.given.velocity or ()
+    own = model.given
+    given = () if own is None else (*(own.velocity or ()), *(own.acceleration or ()))
     found = KinematicState(
         snapshot.system, snapshot.moving, {} if rate else _accelerated(snapshot), known.freedoms,
-        counted(snapshot.system.ties), "in this configuration", tuple(equation.text for equation in velocity), rate,
+        counted(snapshot.system.ties), "in this configuration", tuple(equation.text for equation in given), rate,
         symbol, snapshot.exact,
     )  # fmt: skip
     if known.freedoms == 0 and _rests(found):

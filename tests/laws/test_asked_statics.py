@@ -140,6 +140,8 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
     (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
     (HOIST.replace("SIDE", "1"), {}, "body 'load' can slide along x"),
     (FOUR_BAR, {}, "body 'a' can turn about (0, 0)"),
+    (FOUR_BAR + '[forces.s]\nkind = "spring"\npoints = ["a.B", "d.D"]\nstiffness = 1\nlength = 1\n', {},
+     "a spring holds only what a coordinate moves"),
     (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
 ])  # fmt: skip
 def test_it_is_said_what_is_wrong(text, asked, told):

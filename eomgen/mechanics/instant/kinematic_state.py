@@ -40,7 +40,7 @@ class KinematicState:
         freedoms: how many there are by rank.
         formula: the same by counting, a number and its text.
         when: the instant in words.
-        given: what is given of the velocities, as it was written.
+        given: what is given of velocities and accelerations, as it was written.
         rate: the velocity that is left as a symbol, by which all others are expressed; "" where all are known.
         symbol: of it.
         exact: whether the state is known in closed form.

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from pathlib import Path
 from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
@@ -15,7 +14,6 @@ from eomgen.mechanics.masses.principal import values_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
-from eomgen.report import rendered
 from eomgen.report.figures import Picture
 from eomgen.report.inertia.picture import inertia_picture, values_at_start
 from eomgen.report.inertia.rows import State, Sum, own_sum, together
@@ -36,6 +34,7 @@ from eomgen.report.inertia.steps import (
 )
 from eomgen.report.json_form import steps
 from eomgen.report.setting_steps import setting_steps
+from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
 from eomgen.symbolic.derivative import symbols_of
 from eomgen.symbolic.graph import is_zero
@@ -59,7 +58,7 @@ class Value:
 
 
 @dataclass(frozen=True)
-class Inertia:
+class Inertia(Shown):
     """What is asked of the inertia of a model's bodies.
 
     Args:
@@ -77,16 +76,6 @@ class Inertia:
     def __getitem__(self, name: str) -> Value:
         return self.results[name]
 
-    def __str__(self) -> str:
-        return self.render("text")
-
-    def render(self, format: str = "text") -> str:
-        """In one of the formats text, latex, markdown, json."""
-        return rendered(self.derivation, format)
-
-    def latex(self) -> str:
-        return self.render("latex")
-
     @property
     def picture(self) -> Picture:
         """The bodies with mass centres and principal axes.
@@ -96,13 +85,6 @@ class Inertia:
             MissingValues: parameters without a value.
         """
         return inertia_picture(self.system, self.axes)
-
-    def plot(self, path: str | Path) -> None:
-        """Draw it as .png, .svg or .pdf."""
-        self.picture.save(path)
-
-    def _repr_markdown_(self) -> str:
-        return self.render("markdown")
 
     def as_dict(self) -> dict[str, Any]:
         """For `--json`."""

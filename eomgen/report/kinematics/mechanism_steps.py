@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from eomgen.mechanics.instant.construction import POINT, Found, LineOf, Pair
@@ -34,7 +35,7 @@ def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
         steps.append(_centers(state, state.mechanism))
     steps.append(_velocities(state))
     if state.accelerated:
-        steps.append(_accelerations(state))
+        steps.append(_accelerations(replace(state, exact=state.exact and not state.rounded)))
     return tuple(steps)
 
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Center
-from eomgen.report import rendered
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
@@ -20,6 +18,7 @@ from eomgen.report.kinematics.mechanism_plot import mechanism_picture
 from eomgen.report.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.setting_steps import data_step
+from eomgen.report.shown import Shown
 from eomgen.report.statements import Cell, Derivation, Law, Piece, Prose, Step
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import Vector
@@ -30,7 +29,7 @@ LONGEST = 20_000  # characters of an exact value
 
 
 @dataclass(frozen=True)
-class Kinematics:
+class Kinematics(Shown):
     """Velocities, accelerations and centres of rotation at one instant.
 
     Args:
@@ -91,10 +90,6 @@ class Kinematics:
         return tuple(step for point, body in self.relative
                      for step in relative_steps(self.state.system, point, body, self.state.state))  # fmt: skip
 
-    def render(self, format: str = "text") -> str:
-        """In one of the formats text, latex, markdown, json."""
-        return rendered(self.derivation, format)
-
     @property
     def picture(self) -> Picture:
         """The mechanism with its centres and velocities.
@@ -104,16 +99,6 @@ class Kinematics:
             MissingValues: parameters without a value.
         """
         return mechanism_picture(self.state)
-
-    def plot(self, path: str | Path) -> None:
-        """Draw it as .png, .svg or .pdf."""
-        self.picture.save(path)
-
-    def _repr_markdown_(self) -> str:
-        return self.render("markdown")
-
-    def __str__(self) -> str:
-        return self.render("text")
 
     # -- for machines --------------------------------------------------------------------------------
 
@@ -145,9 +130,10 @@ class Kinematics:
     def _accelerations(self) -> Mapping[str, Any]:
         if not self.state.accelerated:
             return {"angular_accelerations": None, "accelerations": None}
+        exact = not self.state.rounded
         return {
-            "angular_accelerations": {name: self._turn(field.e) for name, field in self.state.turning.items()},
-            "accelerations": {names: self._vector(a) for names, _, _, a in self.state.points if a is not None},
+            "angular_accelerations": {name: self._turn(field.e, exact) for name, field in self.state.turning.items()},
+            "accelerations": {names: self._vector(a, exact) for names, _, _, a in self.state.points if a is not None},
         }
 
     def _center(self, center: Center) -> dict[str, Any]:
@@ -162,15 +148,15 @@ class Kinematics:
             "found": None if found is None else how_found(self.state, found),
         }
 
-    def _turn(self, w: Vector) -> Any:
-        return self._value(w[2]) if self.state.plane else self._vector(w)
+    def _turn(self, w: Vector, exact: bool = True) -> Any:
+        return self._value(w[2], exact) if self.state.plane else self._vector(w, exact)
 
-    def _vector(self, v: Vector) -> dict[str, Any]:
+    def _vector(self, v: Vector, exact: bool = True) -> dict[str, Any]:
         axes = "xy" if self.state.plane else "xyz"
-        parts = {axis: self._value(x) for axis, x in zip(axes, v, strict=False)}
-        return {**parts, "magnitude": self._value(self.state.size(v))}
+        parts = {axis: self._value(x, exact) for axis, x in zip(axes, v, strict=False)}
+        return {**parts, "magnitude": self._value(self.state.size(v), exact)}
 
-    def _value(self, x: Scalar) -> dict[str, Any]:
+    def _value(self, x: Scalar, exact: bool = True) -> dict[str, Any]:
         shown = self.state.put((x, 0, 0))[0]
-        exact = to_text(shown) if self.state.exact and text_size(shown) <= LONGEST else None
-        return {"exact": exact, "value": self.state.number(shown)}
+        written = to_text(shown) if exact and self.state.exact and text_size(shown) <= LONGEST else None
+        return {"exact": written, "value": self.state.number(shown)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from eomgen.mechanics.equilibria.resting_reactions import reactions_or_why
@@ -15,10 +14,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.model.parts import Model
-from eomgen.report import rendered
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.setting_steps import data_step
+from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
 from eomgen.report.statics.equilibrium_picture import resting_picture
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps
@@ -30,7 +29,7 @@ METHOD = "equilibrium"
 
 
 @dataclass(frozen=True)
-class Resting:
+class Resting(Shown):
     """The places of rest of a system with freedoms.
 
     Args:
@@ -57,10 +56,6 @@ class Resting:
         steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found))
         return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
 
-    def render(self, format: str = "text") -> str:
-        """In one of the formats text, latex, markdown, json."""
-        return rendered(self.derivation, format)
-
     def as_dict(self) -> dict[str, Any]:
         """For machines."""
         return {
@@ -82,16 +77,6 @@ class Resting:
             RunFailed: there is none; the system is in space; parameters have no values.
         """
         return resting_picture(self.places)
-
-    def plot(self, path: str | Path) -> None:
-        """Draw it as .png, .svg or .pdf."""
-        self.picture.save(path)
-
-    def __str__(self) -> str:
-        return self.render("text")
-
-    def _repr_markdown_(self) -> str:
-        return self.render("markdown")
 
 
 def has_freedoms(system: System) -> bool:

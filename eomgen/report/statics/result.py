@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from eomgen.errors import UsageError
@@ -17,9 +16,9 @@ from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
-from eomgen.report import rendered
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
 from eomgen.report.statics.equilibrium_result import Resting, has_freedoms, resting_places
 from eomgen.report.statics.picture import statics_picture
@@ -39,7 +38,7 @@ ROUNDING = 1e-9  # of a force that is 0 but for rounding
 
 
 @dataclass(frozen=True)
-class Statics:
+class Statics(Shown):
     """A structure at rest: every reaction by virtual work and by equilibrium.
 
     Args:
@@ -114,10 +113,6 @@ class Statics:
         influence = () if self.influence is None else (influence_step(self.influence),)
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 
-    def render(self, format: str = "text") -> str:
-        """In one of the formats text, latex, markdown, json."""
-        return rendered(self.derivation, format)
-
     def as_dict(self) -> dict[str, Any]:
         """For machines."""
         structure = self.found.structure
@@ -158,16 +153,6 @@ class Statics:
             RunFailed: it is in space.
         """
         return statics_picture(self.found, self.sections, self.influence)
-
-    def plot(self, path: str | Path) -> None:
-        """Draw it as .png, .svg or .pdf."""
-        self.picture.save(path)
-
-    def __str__(self) -> str:
-        return self.render("text")
-
-    def _repr_markdown_(self) -> str:
-        return self.render("markdown")
 
 
 def why_not_at_rest(model: Model, system: System) -> str:
