@@ -139,6 +139,7 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
     (TRUSS.replace('"T.C"', '"T.K"'), {}, "its nodes are A, B, C"),
     (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
     (HOIST.replace("SIDE", "1"), {}, "body 'load' can slide along x"),
+    (LEVER.replace("LOAD", '["F", "-3"]'), {}, "body 'b' can turn about (0, 0)"),
     (FOUR_BAR, {}, "body 'a' can turn about (0, 0)"),
     (FOUR_BAR + '[forces.s]\nkind = "spring"\npoints = ["a.B", "d.D"]\nstiffness = 1\nlength = 1\n', {},
      "a spring holds only what a coordinate moves"),

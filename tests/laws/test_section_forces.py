@@ -16,7 +16,7 @@ import eomgen
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import system_of
-from eomgen.symbolic.derivative import derivative
+from eomgen.symbolic.derivative import derivative, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.solving import vanishes
 from eomgen.symbolic.text import to_text
@@ -81,6 +81,24 @@ def test_the_greatest_moment_lies_where_the_shear_force_vanishes():
     text += 'body = "beam"\nbetween = ["A", "B"]\nintensity = [0, "-p"]\n'
     (extreme,) = along(text, "beam").extremes
     assert (to_text(extreme.x), to_text(extreme.M)) == ("1/2*l", "1/8*p*l^2")
+
+
+@pytest.mark.parametrize(("first", "last", "extremes"), [(0, 0, 0), (6, 6, 1), (0, 6, 1), (6, -6, 2)])
+def test_a_line_load_may_be_constant_or_nothing_at_the_values_of_its_parameters(first, last, extremes):
+    """V = R - q1 x - (q2 - q1) x^2/(2 L): of the second degree, of the first, or 0, as the values have it."""
+    text = HEAD + f"[parameters]\nq1 = {first}\nq2 = {last}\n[bodies.b]\npoints = {{ A = [0, 0], B = [6, 0] }}\n"
+    text += '[constraints]\nA = { kind = "pin", points = ["b.A"] }\n'
+    text += 'B = { kind = "support", point = "b.B", normal = [0, 1] }\n[forces.q]\nkind = "distributed"\n'
+    text += 'body = "b"\nbetween = ["A", "B"]\nintensities = [[0, "-q1"], [0, "-q2"]]\n'
+    found = along(text, "b").extremes
+    values = {x.name: x for e in found for x in symbols_of((e.x, e.M))}
+    numbers = {values[name]: float(q) for name, q in (("q1", first), ("q2", last)) if name in values}
+    assert len(found) == extremes
+    for each in found:
+        x, M = (float(v) for v in evaluate((each.x, each.M), numbers, FLOAT))
+        R = first * 2 + last
+        assert R - first * x - (last - first) * x**2 / 12 == pytest.approx(0, abs=1e-12) and 0 < x < 6
+        assert M == pytest.approx(R * x - first * x**2 / 2 - (last - first) * x**3 / 36, rel=1e-12)
 
 
 def test_a_falling_rod_bends_most_at_a_third_of_its_length():

@@ -130,10 +130,12 @@ def test_what_no_balance_gives_is_said(old, new, told):
 
 
 def test_friction_leaves_a_range_and_is_refused():
-    """A rough support holds by anything up to mu N: the contact is named."""
+    """A rough support sticks beside the hinge, by anything up to mu N: what leaves P open is named."""
     text = LEVER.replace("[forces]", 'R = { kind = "support", point = "lever.A", normal = [0, 1], '
                                      'friction = { coulomb = 0.3 } }\n[forces]')  # fmt: skip
-    assert "'R' rubs" in solved(text)["P"].message
+    answer = solved(text)["P"]
+    assert not answer.answered and "P is statically indeterminate" in answer.message
+    assert "reaction_n(R)" in answer.message
 
 
 def test_a_motion_does_not_follow_from_an_unknown_force():

@@ -202,6 +202,23 @@ def test_no_number_is_shown_as_a_fraction_and_no_formula_is_longer_than_a_line()
     assert max(len(block) for block in text.split("\n\n")) < 1500
 
 
+def test_where_all_is_at_rest_no_table_is_empty():
+    """Nothing that rests has a centre or a pole."""
+    rod = PLANE + """
+[coordinates]
+a = "pi/4"
+b = 0.1
+[bodies.l1]
+shape = { kind = "rod", mass = 1, length = 2 }
+joint = { kind = "revolute", angle = "a" }
+[bodies.l2]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", on = "l1.end", angle = "b" }
+"""
+    text = eomgen.kinematics(eomgen.loads(rod)).render("text")
+    assert "rest at this instant" in text and "poles" not in text
+
+
 def test_nodes_of_a_truss_have_no_kind_of_motion():
     """A point does not translate, it moves."""
     truss = PLANE + """

@@ -246,10 +246,10 @@ def _leg(axis: MemberAxis, start: Scalar, end: Scalar) -> Leg:
 
 
 def _roots(V: tuple[Scalar, ...], sizes: Sizes) -> list[Scalar]:
-    """Zeros of c0 + c1 s + c2 s^2."""
+    """Zeros of c0 + c1 s + c2 s^2, as far as its coefficients are not 0 at the model's values."""
     c0, c1, c2 = V
-    if vanishes(c2):
-        return [] if vanishes(c1) else [sizes.simple(over(-c0, c1))]
+    if _is_nothing(c2, sizes):
+        return [] if _is_nothing(c1, sizes) else [sizes.simple(over(-c0, c1))]
     square = sizes.simple(c1 * c1 - 4 * c0 * c2)
     try:
         if sizes.sign(square) < 0:
@@ -257,3 +257,11 @@ def _roots(V: tuple[Scalar, ...], sizes: Sizes) -> list[Scalar]:
     except DerivationError:
         return []
     return [sizes.simple(over(-c1 + k * sqrt(square), 2 * c2)) for k in (1, -1)]
+
+
+def _is_nothing(x: Scalar, sizes: Sizes) -> bool:
+    """Whether it vanishes, identically or at the model's values."""
+    try:
+        return vanishes(x) or sizes.sign(x) == 0
+    except DerivationError:  # it has no value
+        return False

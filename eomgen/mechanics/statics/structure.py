@@ -128,9 +128,10 @@ class Structure:
         return plan.vanishes((*moved, self._work(plan)))
 
     def _work(self, plan: Plan) -> Scalar:
-        """Of all loads, as the bodies' equations hold them."""
+        """Of all loads, as the bodies' equations hold them; unknown ones do none in a motion that nothing resists."""
         applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
-        loads = substituted(tuple(applied.get(column, 0) for column in self.columns), self.at)
+        given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
+        loads = substituted(tuple(applied.get(column, 0) for column in self.columns), given)
         works = zip(loads, (plan.velocities[body][direction] for body, direction in self.columns), strict=True)
         return sum((f * v for f, v in works), start=0)
 

@@ -52,8 +52,7 @@ def field_steps(
     """
     motions, particles = body_motions(system, state, kinds), particles_of(system)
     bodies = [motion for motion in motions if motion.body not in particles]
-    fields = fields_step(bodies, shown, plane=system.scope.model.space == "plane")
-    steps = (kinds_step(motions, particles), fields)
+    steps = (kinds_step(motions, particles), *fields_step(bodies, shown, plane=system.scope.model.space == "plane"))
     return steps if kinds is None else (*steps, *centrodes_step(all_centrodes(kinds), kinds.constants.positive))
 
 
@@ -131,8 +130,8 @@ def _place(place: Vector, least: int = 2) -> tuple[Piece, ...]:
     return (*pieces, ")")
 
 
-def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> Step:
-    """Spins, centres and poles of the bodies that move, and the slowest points of bars."""
+def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> tuple[Step, ...]:
+    """Spins, centres and poles of the bodies that move, and the slowest points of bars; () where all rest."""
     moving = [m for m in motions if not all(is_zero(x) for x in (*m.field.w, *m.field.v, *m.field.a, *m.field.e))]
     statements: tuple[Statement, ...] = (
         Prose(("Every body has one field of velocities and accelerations, ", VELOCITIES, ".")),
@@ -142,7 +141,7 @@ def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> 
     if bars:
         words = "Of a bar the slowest point is the foot of the perpendicular from the centre of rotation, or an end:"
         statements += (Prose((words,)), *tabled(("bar", "least speed"), bars))
-    return Step("fields", "Angular velocities, centres, poles", statements)
+    return (Step("fields", "Angular velocities, centres, poles", statements),) if moving else ()
 
 
 def _in_plane(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:

@@ -13,7 +13,7 @@ from eomgen.mechanics.worth import ROUNDED
 from eomgen.report.latex_names import lettered
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
-from eomgen.symbolic.evaluation import operations
+from eomgen.symbolic.evaluation import ZERO_AT_50, operations
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector
 from eomgen.symbolic.text import text_size, to_text
@@ -109,7 +109,7 @@ def cell(state: KinematicState, x: Scalar) -> Cell:
     number = state.number(x)
     if number is None:
         return x if text_size(x) <= 2 * LONGEST else Omitted(operations((x,)).total)
-    return f"{0.0 if not state.exact and abs(number) < ROUNDED else number:.{DIGITS}g}"
+    return f"{0.0 if abs(number) < (ZERO_AT_50 if state.exact else ROUNDED) else number:.{DIGITS}g}"
 
 
 def in_numbers(state: KinematicState, step: Step) -> Step:
