@@ -23,6 +23,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
@@ -184,11 +185,13 @@ class Situation:
         return {**state, **self._unknowns_at(state)}
 
     def method_for(self, formula: Expression) -> str:
-        """What eliminates reactions and accelerations from the formula; "" where it holds none."""
+        """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
         if unknown or any(call.name in ASKING_REACTIONS for call in formula.calls):
             return "balance of the bodies"
-        return "equations of motion" if self.needs_equations(formula) else ""
+        if self.needs_equations(formula):
+            return "equations of motion"
+        return "distribution of mass" if any(call.name in OF_MASSES for call in formula.calls) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
         """Whether accelerations, multipliers or reactions stand in the formula."""

@@ -87,3 +87,26 @@ def test_the_python_name_gives_places_of_rest_where_the_verb_does():
     assert len(eomgen.statics(pendulum).places) == 2
     with pytest.raises(eomgen.UsageError, match="free to move"):
         eomgen.statics(pendulum, reaction="reaction_y(bar)")
+
+
+def test_the_centrodes_of_a_ladder_are_drawn_as_cardan_circles():
+    """The fixed one about the corner with the ladder's length as radius, the moving one half as large."""
+    from matplotlib.figure import Figure
+
+    text = """eomgen = 1
+space = "plane"
+[parameters]
+l = 2.0
+[coordinates]
+phi = { start = 0.6, speed = 1.0 }
+[bodies.ladder]
+shape = { kind = "rod", mass = 1, length = "l" }
+joint = { kind = "placed", at = ["l*sin(phi)", 0], angle = "pi/2 + phi" }
+"""
+    figure = Figure(layout="constrained")
+    eomgen.kinematics(eomgen.loads(text)).picture.fill(figure)
+    (panel,) = (axes for part in figure.subfigs for axes in part.axes if axes.get_title() == "centrodes of ladder")
+    fixed, moving = (np.array(line.get_data()).T for line in panel.lines[:2])
+    assert np.allclose(np.linalg.norm(fixed, axis=1), 2.0)
+    middle = np.array([np.sin(0.6), np.cos(0.6)])
+    assert np.allclose(np.linalg.norm(moving - middle, axis=1), 1.0)

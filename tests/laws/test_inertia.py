@@ -474,6 +474,6 @@ def test_parts_turned_by_many_angles_stay_quick_and_right():
 
 def test_a_misspelt_key_of_a_piece_is_offered_the_nearest():
     """The keys of a piece and those of its shape stand in one table."""
-    with pytest.raises(eomgen.ModelError, match="(?s)unknown key 'att'.*did you mean 'at'"):
+    with pytest.raises(eomgen.ModelError, match=r"(?s)unknown key 'att'.*did you mean 'at'"):
         eomgen.loads('eomgen = 1\nspace = "plane"\n[bodies.b]\nmass = 1\n'
                      'parts = [{ kind = "disc", radius = 1, att = [0, 1] }]')  # fmt: skip

@@ -15,38 +15,45 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import MissingValues, RunFailed
+from eomgen.mechanics.fields.centrodes import Centrodes
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism
 from eomgen.report.arrows import arrow
 from eomgen.report.drawing import ARROW, REACTION, Sketch, draw_model
 from eomgen.report.figures import Picture
+from eomgen.report.kinematics.centrode_plot import centrode_panel
 from eomgen.report.support_symbols import Place
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.graph import Node, Scalar
 
-SIZE = (11.0, 8.0)
+SIZE, BELOW = (11.0, 8.0), 4.5  # of the mechanism, and the height of a row of centrodes below it [inches]
+MOST_CENTRODES = 6
 COLORS = ("#2f5d8a", "#b03a2e", "#2e7d4f", "#8e5ea2", "#c77c11", "#3b8ea5", "#7a5c3e", "#5a5a5a")
 CENTER = "#8e44ad"
 FAR = 1.6  # how far outside the mechanism a centre is still drawn, of its extent
 
 
-def mechanism_picture(state: KinematicState) -> Picture:
+def mechanism_picture(state: KinematicState, centrodes: Sequence[Centrodes] = ()) -> Picture:
     """A plane mechanism; a rate that was left as a symbol is 1 there.
 
+    Args:
+        centrodes: drawn below it, a panel each.
     Raises:
         RunFailed: it is in space.
         MissingValues: parameters without a value.
     """
     if state.mechanism is None:
         raise RunFailed("only plane mechanisms are drawn")
-    return Picture(SIZE, _Panels(state, state.mechanism).fill, state.system.scope.model.name)
+    shown = tuple(centrodes[:MOST_CENTRODES])
+    size = (SIZE[0], SIZE[1] + BELOW * ((len(shown) + 1) // 2))
+    return Picture(size, _Panels(state, state.mechanism, shown).fill, state.system.scope.model.name)
 
 
 class _Panels:
     """The numbers of a picture, and its panels."""
 
-    def __init__(self, state: KinematicState, mechanism: Mechanism) -> None:
-        self.state, self.mechanism = state, mechanism
+    def __init__(self, state: KinematicState, mechanism: Mechanism, centrodes: Sequence[Centrodes]) -> None:
+        self.state, self.mechanism, self.centrodes = state, mechanism, centrodes
         self.one: Mapping[Node, Scalar] = {} if state.symbol is None else {state.symbol: 1}
         symbols = state.system.symbols
         places = {node: self.number(state.moving.get(node, 0)) for node in (*symbols.q, symbols.t)}
@@ -70,16 +77,29 @@ class _Panels:
 
     def fill(self, figure: Any) -> None:
         rooms, ratios = [["mechanism", "x"], ["y", "words"]], (2.2, 1)
+        if self.centrodes:
+            figure, below = figure.subfigures(2, 1, height_ratios=(SIZE[1], BELOW * ((len(self.centrodes) + 1) // 2)))
+            self._centrodes(below)
         panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
         main = panels["mechanism"]
         draw_model(main, self.sketch, colors={body: color for color, _, bodies in self._blocks() for body in bodies})
         main.set_adjustable("datalim")  # the projections stand exactly below and beside it
         self._velocities(main)
         far = self._centers(main)
-        main.figure.canvas.draw()
+        figure.canvas.draw()
         self._along_x(panels["y"], main.get_xlim())
         self._along_y(panels["x"], main.get_ylim())
         self._words(panels["words"], far)
+
+    def _centrodes(self, figure: Any) -> None:
+        """The curves of the centres of rotation, two in a row."""
+        system, symbols = self.state.system, self.state.system.symbols
+        speeds = {node: self.number(self.state.moving.get(node, 0)) for node in symbols.u}
+        panels = list(figure.subplots((len(self.centrodes) + 1) // 2, 2, squeeze=False).flat)
+        for panel, centrodes in zip(panels, self.centrodes, strict=False):
+            centrode_panel(panel, system, centrodes, {**self.sketch.values, **speeds})
+        for panel in panels[len(self.centrodes) :]:
+            panel.axis("off")
 
     def _velocities(self, panel: Any) -> None:
         fastest = max((float(np.hypot(*v)) for _, _, v in self.points), default=0.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
@@ -98,7 +99,7 @@ class Kinematics(Shown):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        return mechanism_picture(self.state)
+        return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
 
     # -- for machines --------------------------------------------------------------------------------
 
