@@ -108,13 +108,13 @@ def _displacements(model: Model, body: str) -> tuple[tuple[str, ...], tuple[str,
 def _stands(model: Model, joint: Any) -> bool:
     if joint is None:
         return True
-    if not isinstance(joint, Placed) or joint.orientation == "quaternion":
+    if joint.carries_reaction or not joint.works_in(model.space):
         return False
     constants = {"pi", *model.parameters}
     return all(e.names <= constants for e in joint.variables(model.space))
 
 
 def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> Displaced:
-    placed = joint if isinstance(joint, Placed) else made(Placed, {})
+    placed: Joint = made(Placed, {}) if joint is None else joint
     kept = {"on": placed.on, "point": placed.point, "turned": placed.turned}
     return made(Displaced, {**kept, "placed": placed, "along": along, "about": about})
