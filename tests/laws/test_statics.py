@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from random import Random
 
 import numpy as np
@@ -17,6 +18,8 @@ from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_wo
 from eomgen.mechanics.system import system_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.text import to_text
+
+MODELS = Path(__file__).parent.parent.parent / "models"
 
 DEPENDENT = 1e-9  # of the largest singular value
 
@@ -273,3 +276,11 @@ gravity = { kind = "gravity", acceleration = [0, -10] }
     standing = eomgen.statics(eomgen.loads(text))
     assert standing.values["reaction_t(floor)"] == pytest.approx(200 * 3**0.5 / 6) and not standing.broken
     assert eomgen.statics(eomgen.loads(text.replace("mu = 0.3", "mu = 0.28"))).broken
+
+
+def test_the_released_mechanism_stands_in_the_answer_for_machines():
+    """ch21-p1 without its clamp's couple: CD turns about (10 a, 0) by 1, DE about E by -3/2."""
+    found = eomgen.statics(eomgen.load(MODELS / "gerber_beam.toml"), reaction="reaction_couple(E)")
+    first, second = found.as_dict()["reactions"]["reaction_couple(E)"]["work"]["mechanism"]
+    assert (first["parts"], first["center"], first["rotation"]) == (["CD"], ["10*a", "0"], ["0", "0", "1"])
+    assert (second["parts"], second["center"], second["rotation"]) == (["DE"], ["20*a", "0"], ["0", "0", "-3/2"])

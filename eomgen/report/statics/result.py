@@ -8,9 +8,11 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import UsageError
+from eomgen.mechanics.statics.blocks import Block, blocks_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
+from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.statics.virtual_work import WorkEquation
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.worth import known_parameters, numbers_of
@@ -171,12 +173,27 @@ def _text(value: Scalar | None) -> str | None:
 
 
 def _work(equation: WorkEquation) -> dict[str, Any]:
-    """The equation of virtual work: along * R + sum of terms = 0."""
+    """The released mechanism, per unit of its scale, and the equation of virtual work: along * R + sum of terms = 0."""
     return {
+        "mechanism": [_block(equation.plan, block) for block in blocks_of(equation.plan)],
         "along": to_text(equation.along),
         "terms": [{"load": term.acting.name, "work": to_text(term.work)} for term in equation.terms],
         "value": to_text(equation.value),
     }
+
+
+def _block(plan: Plan, block: Block) -> dict[str, Any]:
+    """What moves as one: its parts, spin, the velocity of its point at the origin; in the plane its centre too."""
+    moved = {
+        "parts": list(block.parts),
+        "rotation": [to_text(x) for x in block.spin],
+        "shift_at_origin": [to_text(plan.simple(x)) for x in block.velocity],
+    }
+    if plan.system.scope.model.space != "plane":
+        return moved
+    center = block.center(plan)
+    place, direction = ([to_text(plan.simple(x)) for x in v[:2]] if v else None for v in (center.place, center.direction))
+    return {**moved, "center": place, "direction": direction}
 
 
 def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
