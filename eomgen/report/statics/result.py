@@ -192,8 +192,8 @@ def _block(plan: Plan, block: Block) -> dict[str, Any]:
     if plan.system.scope.model.space != "plane":
         return moved
     center = block.center(plan)
-    place, direction = ([to_text(plan.simple(x)) for x in v[:2]] if v else None for v in (center.place, center.direction))
-    return {**moved, "center": place, "direction": direction}
+    found = {"center": center.place, "direction": center.direction}
+    return {**moved, **{key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}}
 
 
 def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
