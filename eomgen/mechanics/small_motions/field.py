@@ -1,0 +1,131 @@
+"""Graph scalars at one state, exact or as numbers, and the little algebra of matrices that holds for both.
+
+The laws of small motions are written once, over entries that are either exact scalars of the parameters or floats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.functions import inner, over
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.solving import vanishes
+
+WORK = 20_000  # products of terms for one entry
+
+Entry = Any  # an exact scalar, or a float
+Matrix = list[list[Entry]]
+
+
+class Field(Protocol):
+    """Where entries come from."""
+
+    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+        """The scalars at the state."""
+
+    def tidy(self, x: Entry) -> Entry:
+        """An entry in the form in which it is used further; 0 where it vanishes."""
+
+    def size(self, x: Entry) -> float:
+        """|x|, by which a pivot is chosen."""
+
+    def with_values(self, more: Mapping[Node, Entry]) -> Field:
+        """The same with more symbols known."""
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Floats.
+
+    Args:
+        state: values of all symbols, with 50 digits.
+    """
+
+    state: Mapping[Node, Any]
+
+    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+        return [float(x) for x in evaluate(tuple(scalars), self.state, fifty_digits())]
+
+    def tidy(self, x: Entry) -> Entry:
+        return x
+
+    def size(self, x: Entry) -> float:
+        return abs(x)
+
+    def with_values(self, more: Mapping[Node, Entry]) -> Numbers:
+        number = fifty_digits().number
+        return Numbers({**self.state, **{node: number(1) * x for node, x in more.items()}})
+
+
+@dataclass(frozen=True)
+class Exact:
+    """Scalars of the parameters.
+
+    Args:
+        state: everything but the parameters, as scalars of them.
+        positive: parameters that are positive numbers.
+        trial: values of the parameters, with 50 digits, by which pivots are chosen.
+    """
+
+    state: Mapping[Node, Scalar]
+    positive: Collection[Node]
+    trial: Mapping[Node, Any]
+
+    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+        return [self.tidy(x) for x in substituted(tuple(scalars), self.state)]
+
+    def tidy(self, x: Entry) -> Entry:
+        found = simplest(x, WORK, self.positive)
+        return 0 if is_zero(found) or vanishes(found) else found
+
+    def size(self, x: Entry) -> float:
+        return abs(float(evaluate((x,), self.trial, fifty_digits())[0]))
+
+    def with_values(self, more: Mapping[Node, Entry]) -> Exact:
+        return replace(self, state={**self.state, **more})
+
+
+def at(field: Field, rows: Sequence[Sequence[Scalar]]) -> Matrix:
+    """A matrix of graph scalars at the state."""
+    flat = iter(field.of([x for row in rows for x in row]))
+    return [[next(flat) for _ in row] for row in rows]
+
+
+def product(field: Field, A: Matrix, B: Matrix) -> Matrix:
+    """A B."""
+    columns = list(zip(*B, strict=True))
+    return [[field.tidy(inner(row, column)) for column in columns] for row in A]
+
+
+def total(field: Field, *matrices: Matrix) -> Matrix:
+    """A + B + ..."""
+    rows = zip(*matrices, strict=True)
+    return [[field.tidy(sum(x, start=0)) for x in zip(*row, strict=True)] for row in rows]
+
+
+def negative(A: Matrix) -> Matrix:
+    return [[-x for x in row] for row in A]
+
+
+def turned(A: Matrix, columns: int) -> Matrix:
+    """A transposed; `columns` of A, where it may have no rows."""
+    return [[row[j] for row in A] for j in range(columns)]
+
+
+def solved(field: Field, A: Matrix, B: Matrix) -> Matrix:
+    """X of A X = B. A has full column rank; rows beyond that follow from the others, and are not looked at."""
+    rows = [[*a, *b] for a, b in zip(A, B, strict=True)]
+    unknowns = len(A[0]) if A else 0
+    for k in range(unknowns):
+        pivot = max(range(k, len(rows)), key=lambda i: (field.size(rows[i][k]), -i))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        rows[k] = [field.tidy(over(x, rows[k][k])) for x in rows[k]]
+        for i, row in enumerate(rows):
+            if i != k and not is_zero(row[k]):
+                rows[i] = [field.tidy(x - row[k] * y) for x, y in zip(row, rows[k], strict=True)]
+    return [row[unknowns:] for row in rows[:unknowns]]

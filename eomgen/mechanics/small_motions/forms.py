@@ -1,0 +1,167 @@
+"""LinearEquations -> the same over fewer coordinates: as many as speeds where that can be, and those that are asked.
+
+Of second order are equations with q_i' = u_i. Coordinates on which nothing depends and that have no speed of their own
+(the track of a wheel) are left out. Where the user asks for some coordinates alone, the others go by what they keep:
+nothing of them acts on those asked, or their momenta stay (Routh):
+
+    M_oo u_o + M_oc u_c + C_oc q_c = 0
+    M = M_cc - M_co M_oo^-1 M_oc,  C = C_cc - M_co M_oo^-1 C_oc - C_co M_oo^-1 M_oc,  K = K_cc - C_co M_oo^-1 C_oc
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.small_motions.field import Field, Matrix, negative, product, solved, total, turned
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+
+NOTHING = 1e-9  # of a coefficient, against the largest of its matrix and 1e-3 of it
+REGULAR = 1e-9  # of the rates as functions of the speeds
+
+Indices = Sequence[int]
+
+
+def floats(A: Matrix) -> np.ndarray:
+    return np.array(A, dtype=float).reshape(len(A), -1)
+
+
+# -- which coordinates carry the motion ----------------------------------------------------------------------
+
+
+def carrying(equations: LinearEquations, wanted: Sequence[str]) -> tuple[int, ...]:
+    """The coordinates that stay beside the speeds, as many as these where that can be; decided by numbers."""
+    kept = list(range(len(equations.coordinates)))
+    K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
+    K, F = _without_noise(K), _without_noise(F)
+    while len(kept) > len(equations.speeds):
+        idle = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])
+                or not np.any(E[j]) and not np.any(F[j, kept])]  # fmt: skip
+        if not idle:
+            break
+        kept.remove(max(idle, key=lambda j: (equations.coordinates[j].name not in wanted, not _is_own(E[j]), j)))
+    return tuple(kept)
+
+
+def _without_noise(A: np.ndarray) -> np.ndarray:
+    return np.where(abs(A) > NOTHING * abs(A).max(initial=0), A, 0)
+
+
+def _is_own(row: np.ndarray) -> bool:
+    return bool(np.count_nonzero(row) == 1 and row.max() == 1)
+
+
+def over_coordinates(field: Field, equations: LinearEquations, kept: Indices) -> LinearEquations:
+    """The equations over these of the coordinates; of second order where they are as many as the speeds."""
+    chosen = replace(
+        equations,
+        coordinates=tuple(equations.coordinates[j] for j in kept),
+        K=_columns(equations.K, kept), P=_columns(equations.P, kept),
+        F=[[equations.F[i][j] for j in kept] for i in kept], E=[equations.E[i] for i in kept],
+    )  # fmt: skip
+    return _second_order(field, chosen) if _can_be_of_second_order(field, chosen) else chosen
+
+
+def _can_be_of_second_order(field: Field, equations: LinearEquations) -> bool:
+    n = len(equations.speeds)
+    if len(equations.coordinates) != n:
+        return False
+    E = np.array([[field.size(x) for x in row] for row in equations.E])
+    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=REGULAR) == n))
+
+
+def is_second_order(equations: LinearEquations) -> bool:
+    """Whether q_i' = u_i."""
+    n = len(equations.speeds)
+    return len(equations.coordinates) == n and all(
+        x == int(i == j) for i, row in enumerate(equations.E) for j, x in enumerate(row)
+    ) and all(x == 0 for row in equations.F for x in row)  # fmt: skip
+
+
+def _second_order(field: Field, e: LinearEquations) -> LinearEquations:
+    """With u_i = E^-1 (q_i' - F q_i), and E^-T in front."""
+    if is_second_order(e):
+        return e
+    n = len(e.speeds)
+    one = [[int(i == j) for j in range(n)] for i in range(n)]
+    inverse = solved(field, e.E, one)
+    front = turned(inverse, n)
+    M, C = product(field, e.M, inverse), product(field, e.C, inverse)
+    K = total(field, e.K, negative(product(field, C, e.F)))
+    C = total(field, C, negative(product(field, M, e.F)))
+    M, C, K, B = (product(field, front, x) for x in (M, C, K, e.B))
+    return replace(e, M=M, C=C, K=K, B=B, E=one, F=[[0] * n for _ in range(n)])
+
+
+# -- only those that are asked ---------------------------------------------------------------------------------
+
+
+def restricted(field: Field, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
+               ) -> LinearEquations:  # fmt: skip
+    """The equations of the coordinates that are asked, alone.
+
+    Args:
+        decided: the same equations in numbers, by which it is seen what acts on what.
+    Raises:
+        DerivationError: the others act on them, and keep no momenta.
+    """
+    names = [q.name for q in equations.coordinates]
+    if not wanted or list(wanted) == names:
+        return equations
+    if not is_second_order(equations) or set(wanted) - set(names):
+        strange = [name for name in wanted if name not in names]
+        what = f"'{strange[0]}' is not free to move by itself" if strange else "some coordinates have no speed of their own"
+        raise DerivationError(f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates")
+    c = [names.index(name) for name in wanted]
+    o = [j for j in range(len(names)) if j not in c]
+    if not o:
+        return _taken(equations, c)
+    M, C, K = (_without_noise(floats(x)) for x in (decided.M, decided.C, decided.K))
+    if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
+        return _taken(equations, c)
+    if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):
+        what = f"{', '.join(wanted)} do not move by themselves: {', '.join(names[j] for j in o)} act on them"
+        raise DerivationError(what, "linearize.coordinates", "name these coordinates too")
+    return _with_momenta_kept(field, equations, c, o)
+
+
+def _drives(decided: LinearEquations, C: np.ndarray, c: Indices, o: Indices) -> bool:
+    """Whether inputs change momenta that act on the coordinates asked through their rates."""
+    B = floats(decided.B)
+    return bool(B.size and np.any(B[o]) and np.any(C[np.ix_(c, o)]))
+
+
+def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
+    def part(A: Matrix) -> Matrix:
+        return _columns([A[i] for i in c], c)
+
+    return replace(
+        e, coordinates=tuple(e.coordinates[j] for j in c), speeds=tuple(e.speeds[j] for j in c),
+        M=part(e.M), C=part(e.C), K=part(e.K), E=part(e.E), F=part(e.F), B=[e.B[i] for i in c], P=_columns(e.P, c),
+    )  # fmt: skip
+
+
+def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices) -> LinearEquations:
+    """Routh's reduction."""
+    M_oo, M_co = (_columns([e.M[i] for i in rows], o) for rows in (o, c))
+    C_co = _columns([e.C[i] for i in c], o)
+    M_oc, C_oc = (_columns([A[i] for i in o], c) for A in (e.M, e.C))
+    by_rates, by_places = solved(field, M_oo, M_oc), solved(field, M_oo, C_oc)
+    by_inputs = solved(field, M_oo, [e.B[i] for i in o])
+    whole = _taken(e, c)
+
+    def less(A: Matrix, *parts: tuple[Matrix, Matrix]) -> Matrix:
+        return total(field, A, *(negative(product(field, X, Y)) for X, Y in parts))
+
+    return replace(
+        whole,
+        M=less(whole.M, (M_co, by_rates)), C=less(whole.C, (M_co, by_places), (C_co, by_rates)),
+        K=less(whole.K, (C_co, by_places)), B=less(whole.B, (M_co, by_inputs)),
+    )  # fmt: skip
+
+
+def _columns(A: Matrix, columns: Indices) -> Matrix:
+    return [[row[j] for j in columns] for row in A]

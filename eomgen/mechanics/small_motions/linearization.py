@@ -1,0 +1,219 @@
+"""System -> Linearization: the equations of small motions, exact where they can be, and in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError, NotYet
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.small_motions.field import Exact, Field, Matrix, Numbers
+from eomgen.mechanics.small_motions.forms import (
+    NOTHING,
+    carrying,
+    floats,
+    is_second_order,
+    over_coordinates,
+    restricted,
+)
+from eomgen.mechanics.small_motions.reduction import (
+    REST,
+    Choice,
+    FirstOrder,
+    LinearEquations,
+    Reducing,
+    choice_of,
+    first_order_of,
+)
+from eomgen.mechanics.small_motions.reference import START, Reference, at_the_start, place_of_rest
+from eomgen.mechanics.system import System
+from eomgen.model.unknowns import refuse_motion
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+
+MOST_EXACT = 16  # speeds of equations that are written exactly
+MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
+TIMES = (0.37, 1.19)  # later states of a steady motion, at which it must look the same [of the time of one unit]
+
+
+@dataclass(frozen=True)
+class SmallMotions:
+    """The equations of small motions about a reference.
+
+    Args:
+        reference: the place of rest or the steady motion.
+        numbers: the equations in floats; where parameters have no values, at values to try.
+        exact: the same as scalars of the parameters; None where the reference is not known so, or it is too much work.
+        left_out: coordinates on which nothing depends, and which have no speed of their own.
+    """
+
+    reference: Reference
+    numbers: LinearEquations
+    exact: LinearEquations | None
+    left_out: tuple[Node, ...]
+
+    @property
+    def is_second_order(self) -> bool:
+        """Whether they are M q'' + C q' + K q = B w."""
+        return is_second_order(self.numbers)
+
+    @cached_property
+    def state_matrix(self) -> np.ndarray:
+        """A of x' = A x + B w, x = (q_i, u_i)."""
+        e = self.numbers
+        M = floats(e.M)
+        return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, floats(e.K)), -np.linalg.solve(M, floats(e.C))]])
+
+    @cached_property
+    def input_matrix(self) -> np.ndarray:
+        """B of x' = A x + B w."""
+        e = self.numbers
+        n, w = len(e.coordinates), len(e.inputs)
+        below = np.linalg.solve(floats(e.M), np.array(e.B, dtype=float).reshape(len(e.speeds), w))
+        return np.vstack([np.zeros((n, w)), below])
+
+
+def small_motions_of(
+    system: System, about: str, wanted: Sequence[str] = (), guess: Mapping[str, float] | None = None
+) -> SmallMotions:
+    """The equations of small motions of a system.
+
+    Args:
+        about: "equilibrium" or "start".
+        wanted: the coordinates in which they are asked; () for all.
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        DerivationError: no place of rest; the start is no steady motion; nothing can move; the coordinates asked do not
+            move by themselves.
+    """
+    refuse_motion(system.scope.model)
+    reference, first = _balanced(system, about, guess)
+    if not first.system.symbols.u:
+        raise DerivationError("nothing is free to move: there are no small motions")
+    choice = choice_of(first, reference, wanted)
+    if not choice.u:
+        raise DerivationError("the ties leave no freedom: there are no small motions")
+    raw = Reducing(first, choice, Numbers(reference.numbers)).equations()
+    kept = carrying(raw, wanted)
+    _refuse_unsteady(first, choice, reference, raw, kept)
+    decided = over_coordinates(Numbers(reference.numbers), raw, kept)
+    numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
+    field = _exact_field(reference, choice)
+    exact = None
+    if field is not None:
+        whole = over_coordinates(field, Reducing(first, choice, field).equations(), kept)
+        exact = restricted(field, whole, wanted, decided)
+    left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
+    return SmallMotions(reference, numbers, exact, left)
+
+
+def _exact_field(reference: Reference, choice: Choice) -> Exact | None:
+    """Exact entries, where the reference is known so and the work is bounded; None elsewhere."""
+    small = len(choice.u) <= MOST_EXACT and max(len(choice.dq), len(choice.du)) <= MOST_FOLLOWING
+    if not reference.is_exact or not small:
+        return None
+    return Exact(reference.exact, positive_parameters(reference.system.scope), reference.trial)
+
+
+# -- whether it is a reference ---------------------------------------------------------------------------------
+
+
+def _balanced(system: System, about: str, guess: Mapping[str, float] | None) -> tuple[Reference, FirstOrder]:
+    """The reference, at which forces and inertia balance, and the equations of its system.
+
+    Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
+    """
+    if about == START:
+        reference = at_the_start(system, at_rest=False)
+        first = first_order_of(system)
+        if wrong := _accelerated(first, reference):
+            raise DerivationError(f"the start is no steady motion: '{wrong}' is accelerated there", "linearize.about",
+                                  'start from a steady motion, or linearize about = "equilibrium"')  # fmt: skip
+        return reference, first
+    try:
+        reference = place_of_rest(system, guess)
+        return reference, first_order_of(reference.system)
+    except (DerivationError, NotYet) as error:
+        return _rest_at_start(system, error)
+
+
+def _rest_at_start(system: System, why: EomgenError) -> tuple[Reference, FirstOrder]:
+    try:
+        reference, first = at_the_start(system, at_rest=True), first_order_of(system)
+        if not _accelerated(first, reference) and not _moving(first, reference):
+            return reference, first
+    except EomgenError:
+        pass
+    raise why
+
+
+def _accelerated(first: FirstOrder, reference: Reference) -> str:
+    """The speed that does not stay as it is; "" where all do."""
+    choice = choice_of(first, reference, ())
+    reducing = Reducing(first, choice, Numbers(reference.numbers))
+    scale = max(map(abs, (*Numbers(reference.numbers).of(first.assembly.forcing), *reducing.forces)), default=0)
+    wrong = [first.system.symbols.u[k].name for k, x in zip(choice.u, reducing.unbalanced, strict=True)
+             if abs(x) > max(REST * scale, 1e-12)]  # fmt: skip
+    return wrong[0] if wrong else ""
+
+
+def _moving(first: FirstOrder, reference: Reference) -> dict[Node, Any]:
+    """The coordinates that move in the reference, and their rates."""
+    rates = evaluate(first.system.scope.rates, reference.numbers, fifty_digits())
+    return {q: rate for q, rate in zip(first.system.symbols.q, rates, strict=True) if abs(rate) > 1e-12}
+
+
+def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
+                     kept: Sequence[int]) -> None:  # fmt: skip
+    """A reference that changes with time where it matters.
+
+    Raises:
+        DerivationError: the coordinate that moves is named.
+    """
+    moving = _moving(first, reference)
+    t = first.system.symbols.t
+    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
+    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in TIMES]
+    changes = _changed(first, choice, reference, raw, kept)
+    if not any(map(changes, shifts)):
+        return
+    culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
+    if culprit is t:
+        raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
+                              "let nothing but inputs depend on t")  # fmt: skip
+    raise DerivationError(f"no steady motion: '{culprit.name}' moves, and the equations depend on it",
+                          f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")  # fmt: skip
+
+
+def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+             ) -> Callable[[Mapping[Node, Any]], bool]:  # fmt: skip
+    """Whether the equations are others at a shifted state."""
+    here = list(_compared(raw, kept))
+
+    def changes(shift: Mapping[Node, Any]) -> bool:
+        shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
+        reducing = Reducing(first, choice, Numbers(shifted))
+        try:
+            there = list(_compared(reducing.equations(), kept))
+            forces = [*reducing.forces, *Numbers(shifted).of(first.assembly.forcing)]
+        except (NoValue, ZeroDivisionError):
+            return True
+        scale = max(map(abs, forces), default=0)
+        pairs = zip(here, there, strict=True)
+        return any(abs(x) > max(REST * scale, 1e-12) for x in reducing.unbalanced) or any(
+            np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs
+        )
+
+    return changes
+
+
+def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:
+    yield floats(equations.M)
+    yield floats(equations.C)
+    yield floats(equations.K)[:, kept]
+    yield floats(equations.F)[np.ix_(kept, kept)]
+    yield floats(equations.E)[kept]

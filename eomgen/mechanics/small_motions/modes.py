@@ -1,0 +1,149 @@
+"""Small motions -> what is asked of them: frequencies in their order, exact where they are known so, entries by name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.small_motions.field import Entry
+from eomgen.mechanics.small_motions.linearization import SmallMotions
+from eomgen.mechanics.small_motions.polynomial import (
+    Polynomial,
+    TransferFunction,
+    characteristic_polynomial,
+    closed_frequencies,
+    hurwitz_conditions,
+    laplace_variable,
+    transfer_functions,
+)
+from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+
+SAME = 1e-9  # of an exact frequency against the number
+MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
+
+
+@dataclass(frozen=True)
+class Frequency:
+    """One frequency: the mode in numbers, and in closed form where it has one."""
+
+    mode: Mode
+    exact: Scalar | None
+
+
+@dataclass(frozen=True)
+class Modes:
+    """What follows from the equations of small motions.
+
+    Args:
+        small: the equations.
+    """
+
+    small: SmallMotions
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        return positive_parameters(self.small.reference.system.scope)
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        return spectrum_of(self.small)
+
+    @cached_property
+    def polynomial(self) -> Polynomial | None:
+        """det(s^2 M + s C + K); None where it is not written exactly."""
+        exact = self.small.exact
+        return None if exact is None else characteristic_polynomial(exact, self.positive)
+
+    @cached_property
+    def conditions(self) -> tuple[Scalar, ...]:
+        """Routh and Hurwitz: what must be positive."""
+        return () if self.polynomial is None else hurwitz_conditions(self.polynomial, self.positive)
+
+    @cached_property
+    def transfers(self) -> tuple[TransferFunction, ...]:
+        return () if self.small.exact is None else transfer_functions(self.small.exact, self.positive)
+
+    @cached_property
+    def frequencies(self) -> tuple[Frequency, ...]:
+        """The frequencies of the oscillating modes, the lowest first."""
+        candidates = self._closed
+        return tuple(Frequency(mode, self._exact(mode, candidates)) for mode in self.spectrum.oscillating)
+
+    @cached_property
+    def _closed(self) -> list[tuple[float, Scalar]]:
+        """(number at the parameters, exact frequency)"""
+        if self.polynomial is None or self.small.exact is None:
+            return []
+        exact = closed_frequencies(self.polynomial, laplace_variable(self.small.exact), self.positive)
+        found = []
+        for w in exact:
+            try:
+                found.append((float(evaluate((w,), self.small.reference.trial, fifty_digits())[0]), w))
+            except (NoValue, ZeroDivisionError, TypeError):  # it does not oscillate
+                continue
+        return found
+
+    def _exact(self, mode: Mode, candidates: list[tuple[float, Scalar]]) -> Scalar | None:
+        assert mode.frequency is not None
+        if mode.frequency == 0:
+            return 0
+        near = [w for value, w in candidates if abs(value - mode.frequency) <= SAME * mode.frequency]
+        return near[0] if near else None
+
+    # -- by name -----------------------------------------------------------------------------------------------
+
+    def entry(self, function: str, *names: str) -> tuple[Entry, bool]:
+        """(an entry of M, C or K, whether it is exact).
+
+        Raises:
+            DerivationError: a coordinate that is none of the linearized system.
+        """
+        equations = self.small.exact or self.small.numbers
+        rows = {u.name.removesuffix("'"): k for k, u in enumerate(equations.speeds)}
+        columns = rows if function != "stiffness" else {q.name: k for k, q in enumerate(equations.coordinates)}
+        for name, known in zip(names, (rows, columns), strict=True):
+            if name not in known:
+                what = f"{function}({', '.join(names)}): '{name}' is no coordinate of the linearized system"
+                raise DerivationError(what, mend=f"one of {', '.join(known)}")
+        matrix = getattr(equations, MATRICES[function])
+        return matrix[rows[names[0]]][columns[names[1]]], self.small.exact is not None
+
+    def frequency(self, k: int) -> Frequency:
+        """The k-th frequency, from 1.
+
+        Raises:
+            DerivationError: there are not so many.
+        """
+        found = self.frequencies
+        if not 1 <= k <= len(found):
+            n = len(found)
+            have = "no small motion oscillates" if not n else f"{n} small motion{'s' * (n > 1)} oscillate{'s' * (n == 1)}"
+            raise DerivationError(f"frequency({k}): {have}")
+        return found[k - 1]
+
+    @property
+    def symmetric_parts(self) -> dict[str, list[list[Entry]]]:
+        """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
+        equations = self.small.exact or self.small.numbers
+        return {name: part for letter, names in (("C", "DG"), ("K", "SH"))
+                for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)}  # fmt: skip
+
+    def tidy(self, x: Entry) -> Entry:
+        from eomgen.symbolic.normal_form import simplest
+
+        return x if isinstance(x, float) else simplest(x, 20_000, self.positive)
+
+
+def _parted(A: list[list[Entry]]) -> tuple[list[list[Entry]], list[list[Entry]]]:
+    """(A + A^T)/2 and (A - A^T)/2."""
+    from fractions import Fraction
+
+    half = 0.5 if any(isinstance(x, float) for row in A for x in row) else Fraction(1, 2)
+    n = range(len(A))
+    return ([[half * (A[i][j] + A[j][i]) for j in n] for i in n], [[half * (A[i][j] - A[j][i]) for j in n] for i in n])

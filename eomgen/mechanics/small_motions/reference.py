@@ -1,0 +1,131 @@
+"""System -> Reference: the place of rest, or the steady motion, about which small motions are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.start import fixed_by_position, start_state
+from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import Row
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.derivative import depends_on, substituted
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar
+
+EQUILIBRIUM, START = "equilibrium", "start"
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The state about which the equations are linearized.
+
+    Args:
+        system: of the model; about a place of rest its drives are held.
+        about: EQUILIBRIUM or START.
+        exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
+        numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
+        place: the place of rest, where it was sought.
+    """
+
+    system: System
+    about: str
+    exact: Mapping[Node, Scalar]
+    numbers: Mapping[Node, Any]
+    place: Equilibrium | None = None
+
+    @cached_property
+    def is_exact(self) -> bool:
+        """Whether everything is known in closed form."""
+        symbols = self.system.symbols
+        return all(x in self.exact for x in (*symbols.q, *symbols.u))
+
+    @cached_property
+    def valued(self) -> bool:
+        """Whether all parameters have values."""
+        return not self.system.symbols.parameters.keys() - exact_parameters(self.system.scope.model).keys()
+
+    @property
+    def trial(self) -> dict[Node, Any]:
+        """The values of the parameters."""
+        return {x: self.numbers[x] for x in self.system.symbols.parameters.values()}
+
+
+def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> Reference:
+    """The place of rest nearest to the guess.
+
+    Args:
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        DerivationError: none was found, or rest is possible in many places.
+        NotYet: speeds that are not rates.
+    """
+    return _place(all_equilibria(system, guess).nearest(guess))
+
+
+def _place(place: Equilibrium) -> Reference:
+    system = place.statics.system
+    symbols = system.symbols
+    still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
+    exact = {q: place.exact[q] for q in symbols.q if q in place.exact} | still
+    trial = values_of_parameters(system.scope, Random(3))
+    numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
+    for q in symbols.q:
+        numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(1) * place.numbers[q]
+    return _with_inputs(Reference(system, EQUILIBRIUM, exact, numbers, place))
+
+
+def at_the_start(system: System, *, at_rest: bool) -> Reference:
+    """The start of the model, without its speeds where it is to be a place of rest.
+
+    Raises:
+        DerivationError: a tie that does not hold there.
+    """
+    symbols, scope, model = system.symbols, system.scope, system.scope.model
+    trial = values_of_parameters(scope, Random(3))
+    parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
+    state = start_state(system, parameters)
+    numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
+    sought = fixed_by_position(system)
+    exact: dict[Node, Scalar] = {symbols.t: 0}
+    exact |= {q: start_value(scope, model.coordinates[q.name]) for q in symbols.q if q not in sought}
+    for u in symbols.u:
+        speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
+        exact[u] = 0 if at_rest else scope.value(speed)
+    located = Located({**{x: float(v) for x, v in numbers.items()}, **{
+        x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)
+    }}, positive_parameters(scope))  # fmt: skip
+    gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
+    exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
+    exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
+    for x in (*symbols.q, *symbols.u):
+        numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
+    return _with_inputs(Reference(system, EQUILIBRIUM if at_rest else START, exact, numbers))
+
+
+def _gap(row: Row) -> Scalar | None:
+    return None if row.identical else row.gap
+
+
+def _with_inputs(reference: Reference) -> Reference:
+    """Inputs as they are at t = 0."""
+    system = reference.system
+    given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
+    exact = dict(zip(given, substituted(tuple(given.values()), reference.exact), strict=True))
+    exact = {x: value for x, value in exact.items() if not depends_on(value, (*system.symbols.q, *system.symbols.u))}
+    numbers = dict(reference.numbers)
+    for node, value in given.items():
+        numbers[node] = evaluate((value,), numbers, fifty_digits())[0]
+    return Reference(system, reference.about, {**reference.exact, **exact}, numbers, reference.place)
+
+
+def _numbers(state: Mapping[Node, Scalar], trial: Mapping[Node, Any]) -> dict[Node, Any]:
+    return dict(zip(state, evaluate(tuple(state.values()), trial, fifty_digits()), strict=True))
