@@ -9,6 +9,7 @@
     eomgen.statics(model)                     # Statics: reactions by virtual work and by equilibrium, diagrams
     eomgen.kinematics(model, at="t = 2")      # Kinematics: centres of rotation, velocities, accelerations, plot
     eomgen.inertia(model, about="O")          # Inertia: masses, mass centres, tensors, principal moments and axes
+    eomgen.linearize(model)                   # Linearization: M, C, K, state matrix, modes, stability
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
@@ -39,6 +40,7 @@ _HOMES = {
     "equations": ("Equations",),
     "pipeline": ("derive", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
+    "report.linearize.result": ("Linearization", "linearize"),
     "report.statics.result": ("Statics", "statics"),
     "simulation.trajectory": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),

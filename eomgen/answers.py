@@ -8,7 +8,6 @@ instant it is exact where the motion can be followed in closed form, else a numb
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,19 +18,19 @@ from eomgen.errors import (
     ExpressionError,
     MissingValues,
     ModelError,
-    NotYet,
     RunFailed,
 )
 from eomgen.journey import Journey
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
-from eomgen.mechanics.outputs import asks_motion, later
+from eomgen.mechanics.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.worth import known_parameters
-from eomgen.model.fields import AtRest, Equation
+from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
 from eomgen.moments import Moment, resting
+from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.situation import Situation
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
@@ -39,6 +38,7 @@ from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.transplant import transplanted
 
 LONGEST = 20_000  # characters of an exact answer
 
@@ -138,12 +138,13 @@ class _Solver:
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
         try:
-            _refuse_later(output)
             return replace(self._answer(output), unit=_unit(output))
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
             return _unanswered(output, error)
 
     def _answer(self, output: Output) -> Answer:
+        if any(call.name in LINEARIZED for call in output.value.calls):
+            return self._of_small_motions(output)
         if output.at is not None:
             return self._at(output)
         if output.from_ is not None:
@@ -177,6 +178,32 @@ class _Solver:
             scalar = output.unit.from_si(scalar, self.snapshot.system.scope.graph.pi)
         found = self._started(self.snapshot.simple(scalar), "velocities under the ties")
         return found if self.snapshot.exact else replace(found, exact=None)
+
+    # -- of the linearized system ------------------------------------------------------------------
+
+    @cached_property
+    def _linearization(self) -> Linearization:
+        return linearize(self.model)
+
+    def _of_small_motions(self, output: Output) -> Answer:
+        """A formula of the matrices and frequencies of the linearized system; exact where all of them are."""
+        if output.from_ or output.side or (output.at is not None and not isinstance(output.at, AtRest)):
+            raise DerivationError("small motions have the state of [linearize]", mend="leave out `at`, `from`, `side`")
+        scope = self.situation.system.scope
+        exact = True
+
+        def value(call: Call) -> Scalar:
+            nonlocal exact
+            if call.name not in LINEARIZED:
+                raise DerivationError(f"'{call}' is a function of the state, and stands beside the linearized system",
+                                      mend="ask it in an output of its own")  # fmt: skip
+            found, is_exact = self._linearization.value(call)
+            exact = exact and is_exact
+            return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
+
+        scalar = output.value.evaluate(scope.names, value)
+        found = self._started(self.situation.simple(self._in_unit(scalar, output)), "small motions")
+        return found if exact else replace(found, exact=None)
 
     # -- functions of the state, and of the configuration ---------------------------------------
 
@@ -304,25 +331,3 @@ def _valued(answer: Answer, value: float, where: str) -> Answer:
     if math.isfinite(value):
         return replace(answer, value=float(value) + 0.0)  # -0 is 0
     return replace(answer, message=f"it has no finite value {where}")
-
-
-# -- what an output asks ---------------------------------------------------------------------------
-
-
-def _refuse_later(output: Output) -> None:
-    """Outputs that this version cannot answer.
-
-    Raises:
-        NotYet: one of their functions comes later.
-    """
-    sides = [output.at.left, output.at.right] if isinstance(output.at, Equation) else []
-    for call in _calls((output.value, *sides)):
-        if waits := later(call.name):
-            raise NotYet(waits)
-
-
-def _calls(expressions: tuple[Expression, ...]) -> Iterator[Call]:
-    for expression in expressions:
-        for call in expression.calls:
-            yield call
-            yield from _calls(tuple(a for a in call.args if isinstance(a, Expression)))

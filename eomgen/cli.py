@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = 1
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
-LATER = ("linearize", "verify", "sweep")
+LATER = ("verify", "sweep")
 FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
 
 
@@ -316,6 +316,26 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
     tensor (minus) and of the textbook (plus).
     """
     from eomgen.verbs.inertia import inertia as found
+
+    form = _form(wants_json, format_, output)
+    with _reading(model) as declared:
+        outcome = found(declared, format=form, plot=plot, **options)
+    return _deliver(outcome, form == "json", output)
+
+
+@main.command()
+@_written
+@click.option("--about", type=click.Choice(["equilibrium", "start"]),
+              help="The place of rest nearest to the start, or the start, a steady motion.  [default: as the model says]")  # fmt: skip
+@click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
+def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
+              **options: Any) -> int:  # fmt: skip
+    """Give the small motions about a place of rest or a steady motion.
+
+    M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
+    modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
+    """
+    from eomgen.verbs.linearize import linearize as found
 
     form = _form(wants_json, format_, output)
     with _reading(model) as declared:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError
 from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
 from eomgen.mechanics.fields.field import (
     Field,
@@ -59,18 +59,8 @@ MAGNITUDES = {"speed": 1, "acceleration": 2}
 TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)) for axis, i in _AXES.items()}
 """Functions of a body: (time derivatives, component)."""
 
-LATER = {
-    "linearization": ("mass", "damping", "stiffness", "frequency"),
-}
-"""What later versions bring: the names of its functions."""
-
-
-def later(function: str) -> str:
-    """What a function of the outputs waits for, in words; "" where it works."""
-    for what, names in LATER.items():
-        if function in names:
-            return f"{what} come with a later version" if what.endswith("s") else f"{what} comes with a later version"
-    return ""
+LINEARIZED = frozenset(("mass", "damping", "stiffness", "frequency"))
+"""Functions of the linearized system, which is none of a state."""
 
 
 OF_MOTION = frozenset((
@@ -108,11 +98,10 @@ class Quantities:
         """One function at its arguments, in q, u, a, t and the parameters.
 
         Raises:
-            NotYet: a function that comes later.
             DerivationError: it has no meaning here.
         """
-        if waits := later(call.name):
-            raise NotYet(f"'{call}': {waits}")
+        if call.name in LINEARIZED:
+            raise DerivationError(f"'{call}' is of the linearized system, not of a state", mend="ask it by itself")
         if call.name in ASKING_REACTIONS:
             return self._asked.value(call)
         if call.name in MOMENTS_OF_INERTIA:

@@ -1,0 +1,1 @@
+"""Small motions as a user gets them."""

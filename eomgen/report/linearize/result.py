@@ -1,0 +1,253 @@
+"""Model -> Linearization: its small motions as a user gets them: step by step, for machines, drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.reaction_outputs import name_of
+from eomgen.mechanics.small_motions.field import Entry, Matrix
+from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
+from eomgen.mechanics.small_motions.modes import Frequency, Modes
+from eomgen.mechanics.small_motions.polynomial import Polynomial
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
+from eomgen.mechanics.system import system_of
+from eomgen.model.parts import Model
+from eomgen.report.figures import Picture
+from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.linearize.picture import modes_picture
+from eomgen.report.linearize.steps import linearization_steps
+from eomgen.report.setting_steps import data_step
+from eomgen.report.shown import Shown
+from eomgen.report.statements import Derivation
+from eomgen.simulation.course import modes_at_start
+from eomgen.symbolic.expressions import Call, Expression
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.text import to_text
+
+METHOD = "linearization"
+
+
+@dataclass(frozen=True)
+class Linearization(Shown):
+    """Small motions about a place of rest or a steady motion.
+
+    Args:
+        model: the system.
+        modes: what follows from its equations to first order.
+    """
+
+    model: Model
+    modes: Modes
+
+    @property
+    def small(self) -> SmallMotions:
+        """The equations."""
+        return self.modes.small
+
+    @property
+    def equations(self) -> LinearEquations:
+        """M, C, K, B, F, E: exact where they are known so, else floats."""
+        return self.small.exact or self.small.numbers
+
+    @property
+    def is_exact(self) -> bool:
+        return self.small.exact is not None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        return tuple(q.name for q in self.equations.coordinates)
+
+    @property
+    def speeds(self) -> tuple[str, ...]:
+        return tuple(u.name for u in self.equations.speeds)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return tuple(w.name for w in self.equations.inputs)
+
+    M = cached_property(lambda self: self._numbers("M"))
+    C = cached_property(lambda self: self._numbers("C"))
+    K = cached_property(lambda self: self._numbers("K"))
+    D = cached_property(lambda self: (self.C + self.C.T) / 2)
+    G = cached_property(lambda self: (self.C - self.C.T) / 2)
+
+    @property
+    def A(self) -> np.ndarray:
+        """The state matrix, x = (coordinates, speeds)."""
+        self._refuse_unvalued()
+        return self.small.state_matrix
+
+    @property
+    def B(self) -> np.ndarray:
+        """The input matrix of x' = A x + B w."""
+        self._refuse_unvalued()
+        return self.small.input_matrix
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Modes, eigenvalues, stability."""
+        self._refuse_unvalued()
+        return self.modes.spectrum
+
+    @property
+    def frequencies(self) -> tuple[Frequency, ...]:
+        """Of the motions that oscillate, the lowest first."""
+        return self.modes.frequencies
+
+    def _numbers(self, letter: str) -> np.ndarray:
+        self._refuse_unvalued()
+        return np.array(getattr(self.small.numbers, letter), dtype=float)
+
+    @property
+    def valued(self) -> bool:
+        return self.small.reference.valued
+
+    def _refuse_unvalued(self) -> None:
+        """Numbers need values.
+
+        Raises:
+            DerivationError: parameters have none.
+        """
+        if not self.valued:
+            raise DerivationError("numbers of small motions need values of all parameters", "parameters")
+
+    # -- as outputs ask ------------------------------------------------------------------------------------
+
+    def value(self, call: Call) -> tuple[Scalar, bool]:
+        """(one of the functions mass, damping, stiffness, frequency, whether it is exact).
+
+        Raises:
+            DerivationError: no such coordinate or frequency; without values of all parameters there is no number.
+        """
+        if call.name == "frequency":
+            return self._frequency(call)
+        found, exact = self.modes.entry(call.name, *(name_of(call, argument) for argument in call.args))
+        return found if exact else self._rounded(found), exact
+
+    def _frequency(self, call: Call) -> tuple[Scalar, bool]:
+        (number,) = call.args
+        k = number.literal if isinstance(number, Expression) else None
+        if k is None or k != int(k):
+            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...")
+        found = self.modes.frequency(int(k))
+        if found.exact is not None:
+            return found.exact, True
+        assert found.mode.frequency is not None
+        return self._rounded(found.mode.frequency), False
+
+    def _rounded(self, x: float) -> Fraction:
+        self._refuse_unvalued()
+        return Fraction(x)
+
+    # -- as it is shown --------------------------------------------------------------------------------------
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The way, step by step."""
+        model = self.model
+        steps = (data_step(self.small.reference.system), *linearization_steps(self.modes))
+        return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
+
+    @property
+    def picture(self) -> Picture:
+        """The modes, drawn over the reference.
+
+        Raises:
+            RunFailed: parameters have no values; a body stands in space, and nothing oscillates.
+        """
+        return modes_picture(self.modes)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For machines."""
+        reference, equations = self.small.reference, self.equations
+        parts = self.modes.symmetric_parts if self.small.is_second_order else {}
+        return {
+            "name": self.model.name,
+            "about": reference.about,
+            "state": {x.name: _state(reference.exact.get(x), float(reference.numbers[x]), self.valued)
+                      for x in (*reference.system.symbols.q, *reference.system.symbols.u)},
+            "coordinates": list(self.coordinates), "speeds": list(self.speeds), "inputs": list(self.inputs),
+            "left_out": [q.name for q in self.small.left_out],
+            "second_order": self.small.is_second_order,
+            "exact": self.is_exact,
+            **{name: self._matrix(getattr(equations, letter)) for name, letter in (
+                ("mass", "M"), ("rates", "C"), ("stiffness", "K"), ("input", "B"), ("kinematic_rates", "E"),
+                ("kinematic_places", "F"))},
+            **{name: self._matrix([[self.modes.tidy(x) for x in row] for row in parts[letter]]) for name, letter in (
+                ("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H")) if parts},
+            "state_matrix": self.A.tolist() if self.valued else None,
+            "input_matrix": self.B.tolist() if self.valued else None,
+            "characteristic_polynomial": _polynomial(self.modes.polynomial),
+            "conditions": [to_text(x) for x in self.modes.conditions],
+            "transfer_functions": [
+                {"coordinate": f.coordinate.name, "input": f.input.name, "numerator": _polynomial(f.above),
+                 "denominator": _polynomial(f.below)} for f in self.modes.transfers],
+            "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
+            "modes": [self._mode(mode) for mode in self.modes.spectrum.modes],
+            "stability": self.spectrum.stability if self.valued else None,
+            "why": self.spectrum.why if self.valued else None,
+            "steps": steps_as_dicts(self.derivation),
+        }  # fmt: skip
+
+    def _matrix(self, A: Matrix) -> dict[str, Any]:
+        if not self.is_exact:
+            return {"exact": None, "value": A}
+        return {"exact": [[to_text(x) for x in row] for row in A], "value": self._values(A)}
+
+    def _values(self, A: Matrix) -> list[list[float]] | None:
+        if not self.valued:
+            return None
+        from eomgen.symbolic.evaluation import FLOAT, evaluate
+
+        values = {x: float(v) for x, v in self.small.reference.trial.items()}
+        flat = iter(evaluate([x for row in A for x in row], values, FLOAT))
+        return [[float(next(flat)) for _ in row] for row in A]
+
+    def _mode(self, mode: Mode) -> dict[str, Any]:
+        exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
+        number = self.valued
+        return {
+            "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag] if number else None,
+            "frequency": {"exact": None if exact is None else to_text(exact),
+                          "value": mode.frequency if number else None},
+            "hertz": mode.hertz if number else None,
+            "damping_ratio": mode.damping_ratio if number else None,
+            "kind": mode.kind if number else None,
+            "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()} if number else None,
+        }  # fmt: skip
+
+
+def _state(exact: Scalar | None, number: float, valued: bool) -> dict[str, Any]:
+    return {"exact": None if exact is None else to_text(exact), "value": number if valued else None}
+
+
+def _polynomial(polynomial: Polynomial | None) -> list[str] | None:
+    """Coefficients, the constant first."""
+    return None if polynomial is None else [to_text(c) for c in polynomial.coefficients]
+
+
+def linearize(model: Model, about: str | None = None, coordinates: Sequence[str] = ()) -> Linearization:
+    """The small motions of a model about a place of rest, or about its start, a steady motion.
+
+    Args:
+        about: "equilibrium" or "start"; None: as the model says.
+        coordinates: in which they are asked; (): as the model says, or all.
+    Raises:
+        UsageError: a coordinate that the model does not have.
+        DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
+    """
+    part = model.linearize
+    wanted = tuple(coordinates or (part.coordinates if part is not None else None) or ())
+    for name in wanted:
+        if name not in model.coordinates:
+            raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")
+    about = about or (part.about if part is not None else "equilibrium")
+    return Linearization(model, Modes(small_motions_of(system_of(model, modes_at_start(model)), about, wanted)))

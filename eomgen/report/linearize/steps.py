@@ -1,0 +1,224 @@
+"""Modes -> the steps of a linearization: the reference, the equations to first order, modes, stability."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from eomgen.mechanics.small_motions.field import Entry, Matrix
+from eomgen.mechanics.small_motions.modes import Modes
+from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
+from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
+from eomgen.mechanics.small_motions.spectrum import Mode
+from eomgen.report.setting_steps import listed
+from eomgen.report.statements import Cell, Entry as Place, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
+from eomgen.symbolic.graph import Node, is_zero
+from eomgen.symbolic.text import text_size
+
+SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
+FREE = Law("M*q'' + C*q' + K*q = 0", r"M \ddot{q} + C \dot{q} + K q = 0")
+UNDAMPED = Law("M*q'' + K*q = 0", r"M \ddot{q} + K q = 0")
+FIRST_ORDER = Law("M*u' + C*u + K*q = B*w,  q' = E*u + F*q", r"M \dot{u} + C u + K q = B w,\quad \dot{q} = E u + F q")
+WHERE = Law(
+    "R = M*a - Q + c - J^T*lam",
+    r"R = M a - Q + c - J^{\mathsf{T}} \lambda",
+)
+ALONG = Law(
+    "K = Z^T*(R_q*P + R_u*Y + M*X_q),  C = Z^T*(R_u*Z + M*X_u)",
+    r"K = Z^{\mathsf{T}}\left(R_{q} P + R_{u} Y + M X_{q}\right),\quad C = Z^{\mathsf{T}}\left(R_{u} Z + M X_{u}\right)",
+)
+PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C = \frac{\partial R}{\partial u}")
+DETERMINANT = Law("det(s^2*M + s*C + K)", r"\det\left(s^{2} M + s C + K\right)")
+STATE_DETERMINANT = Law("det(M)*det(s*1 - A)", r"\det M \det\left(s \mathbf{1} - A\right)")
+LONG = 1200  # characters of one formula
+MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
+
+
+def linearization_steps(modes: Modes) -> tuple[Step, ...]:
+    """Reference, equations, characteristic polynomial, modes, stability, transfer functions."""
+    steps = [_reference(modes), _equations(modes), *_characteristic(modes)]
+    if modes.small.reference.valued or modes.frequencies:
+        steps.append(_modes(modes))
+    return (*steps, *_stability(modes), *_transfers(modes))
+
+
+# -- the reference --------------------------------------------------------------------------------------------
+
+
+def _reference(modes: Modes) -> Step:
+    reference = modes.small.reference
+    at_rest = reference.about == EQUILIBRIUM
+    words = "The place of rest nearest to the start:" if at_rest else "The steady motion from the start:"
+    symbols = reference.system.symbols
+    shown = symbols.q if at_rest else (*symbols.q, *symbols.u)
+    rows: list[tuple[Cell, ...]] = []
+    for x in shown:
+        exact: Cell = reference.exact.get(x, "")
+        rows.append((x, exact, f"{float(reference.numbers[x]):.9g}" if reference.valued else ""))
+    statements: list[Statement] = [Prose((words,)), narrow_grid(("quantity", "exact", "value"), rows)]
+    if reference.place is not None and reference.place.statics.held:
+        statements.append(Prose((f"What the model drives is held there: {', '.join(reference.place.statics.held)}.",)))
+    if modes.small.left_out:
+        words = "Nothing depends on them, and they have no speed of their own: "
+        statements.append(Prose((words, *listed(modes.small.left_out), ".")))
+    return Step("reference", "Reference", tuple(statements))
+
+
+# -- the equations --------------------------------------------------------------------------------------------
+
+
+def _equations(modes: Modes) -> Step:
+    small = modes.small
+    e = small.exact or small.numbers
+    tied = len(e.coordinates) < len(e.all) or bool(small.reference.system.ties.closing)
+    statements: list[Statement] = [Prose((
+        "The equations of motion ", Law("R = 0", "R = 0"), ", ", WHERE, ", to first order in the displacements ",
+        *listed(e.coordinates), " from it", ", along the ties" if tied else "", ": ", ALONG if tied else PLAIN, ".",
+    ))]  # fmt: skip
+    undamped = all(is_zero(x) for row in e.C for x in row)
+    law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
+    statements.append(Prose((law, ".")))
+    if len(e.speeds) > MOST_SHOWN:
+        statements.append(Prose((f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines.",)))
+        return Step("equations", "Equations to first order", tuple(statements))
+    statements += _entries("M", e.M, e.speeds, e.speeds, symmetric=True)
+    statements += _rates(modes, undamped)
+    statements += _entries("K", e.K, e.speeds, e.coordinates, symmetric=small.is_second_order and _symmetric(modes, e.K))
+    statements += _entries("B", e.B, e.speeds, e.inputs, symmetric=False)
+    if not small.is_second_order:
+        statements += _entries("E", e.E, e.coordinates, e.speeds, symmetric=False)
+        statements += _entries("F", e.F, e.coordinates, e.coordinates, symmetric=False)
+    return Step("equations", "Equations to first order", tuple(statements))
+
+
+def _rates(modes: Modes, undamped: bool) -> list[Statement]:
+    """C, in its damping and its gyroscopic part where it has both."""
+    e = modes.small.exact or modes.small.numbers
+    if undamped:
+        return []
+    if not modes.small.is_second_order:
+        return _entries("C", e.C, e.speeds, e.speeds, symmetric=False)
+    parts = {letter: [[modes.tidy(x) for x in row] for row in modes.symmetric_parts[letter]] for letter in "DG"}
+    shown: list[Statement] = [Prose(("C = D + G, of damping (symmetric) and gyroscopic (skew).",))]
+    for letter, A in parts.items():
+        shown += _entries(letter, A, e.speeds, e.speeds, symmetric=letter == "D")
+    return shown
+
+
+def _symmetric(modes: Modes, A: Matrix) -> bool:
+    if modes.small.exact is None:
+        n = range(len(A))
+        largest = max((abs(x) for row in A for x in row), default=0)
+        return all(abs(A[i][j] - A[j][i]) <= 1e-9 * largest for i in n for j in n)
+    return all(is_zero(modes.tidy(A[i][j] - A[j][i])) for i in range(len(A)) for j in range(i))
+
+
+def _entries(letter: str, A: Matrix, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
+             ) -> list[Statement]:  # fmt: skip
+    """The entries that are not zero; of a symmetric matrix each once."""
+    found: list[Statement] = []
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            if not is_zero(A[i][j]) and (j >= i or not symmetric):
+                found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(A[i][j]))))
+    return found
+
+
+def _plain(x: Node) -> Node:
+    """The coordinate of a rate."""
+    return x.graph.symbol(x.name.removesuffix("'"))
+
+
+def _side(x: Entry) -> Side:
+    if isinstance(x, float):
+        return _number(x)
+    return x if text_size(x) <= LONG else Law("(too long to print)", r"\text{(too long to print)}")
+
+
+def _number(x: float) -> Law:
+    return Law(f"{x:.7g}", f"{x:.7g}")
+
+
+# -- modes ------------------------------------------------------------------------------------------------------
+
+
+def _characteristic(modes: Modes) -> tuple[Step, ...]:
+    polynomial = modes.polynomial
+    if polynomial is None or modes.small.exact is None:
+        return ()
+    law = DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT
+    s = laplace_variable(modes.small.exact)
+    statements: list[Statement] = [Prose(("With displacements that go as exp(s t):",)), Formula((law, _shown(polynomial, s), 0))]
+    return (Step("characteristic", "Characteristic equation", tuple(statements)),)
+
+
+def _shown(polynomial: Polynomial, s: Node) -> Side:
+    total: Any = 0
+    for n, c in reversed(list(enumerate(polynomial.coefficients))):
+        total = total + c * s**n
+    return _side(total)
+
+
+def _modes(modes: Modes) -> Step:
+    """Frequencies in closed form, and a table of the modes in numbers."""
+    statements: list[Statement] = []
+    for k, found in enumerate(modes.frequencies, start=1):
+        if found.exact is not None and not is_zero(found.exact):
+            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(found.exact))))
+    if modes.small.reference.valued:
+        listed_modes = modes.spectrum.modes
+        rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
+        head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
+        statements += [narrow_grid(head, rows), _shapes(listed_modes)]
+    return Step("modes", "Modes", tuple(statements))
+
+
+def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
+    omega, hertz, ratio = mode.frequency, mode.hertz, mode.damping_ratio
+    return (str(k), _complex(mode.eigenvalue, pair=mode.pair), *("" if x is None else f"{x:.7g}" for x in
+            (omega, hertz, ratio)), mode.kind)  # fmt: skip
+
+
+def _complex(x: complex, *, pair: bool = False) -> str:
+    if not x.imag:
+        return f"{x.real:.7g}"
+    sign = "+-" if pair else "+" if x.imag > 0 else "-"
+    return f"{f'{x.real:.7g} ' if x.real else ''}{sign} {abs(x.imag):.7g}i" if x.real else f"{sign}{abs(x.imag):.7g}i"
+
+
+def _shapes(modes: Sequence[Mode]) -> Grid:
+    """A column for each mode, the largest displacement 1."""
+    coordinates = list(modes[0].shape) if modes else []
+    rows = [(q, *(_complex(_tidied(mode.shape[q])) for mode in modes)) for q in coordinates]
+    return Grid(("shape", *(f"mode {k}" for k in range(1, len(modes) + 1))), tuple(rows))
+
+
+def _tidied(x: complex) -> complex:
+    return complex(round(x.real, 6) + 0.0, round(x.imag, 6) + 0.0)
+
+
+# -- stability, inputs ----------------------------------------------------------------------------------------
+
+
+def _stability(modes: Modes) -> tuple[Step, ...]:
+    statements: list[Statement] = []
+    if modes.small.reference.valued:
+        statements.append(Prose((f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}.",)))
+    if modes.conditions:
+        statements.append(Prose(("By Routh and Hurwitz all motions fade where these are positive:",)))
+        statements += [Formula((Law(f"h_{k}", f"h_{{{k}}}"), _side(x))) for k, x in enumerate(modes.conditions, start=1)]
+    return (Step("stability", "Stability", tuple(statements)),) if statements else ()
+
+
+def _transfers(modes: Modes) -> tuple[Step, ...]:
+    if not modes.transfers or modes.small.exact is None:
+        return ()
+    s = laplace_variable(modes.small.exact)
+    statements: list[Statement] = [Prose(("From inputs to coordinates:",))]
+    for f in modes.transfers:
+        above, below = (_shown(x, s) for x in (f.above, f.below))
+        name = Law(f"{f.coordinate.name}/{f.input.name}", rf"\frac{{{f.coordinate.name}}}{{{f.input.name}}}")
+        if isinstance(above, Law) or isinstance(below, Law):
+            continue
+        statements.append(Formula((name, above / below)))  # type: ignore[operator]
+    return (Step("transfer", "Transfer functions", tuple(statements)),)
