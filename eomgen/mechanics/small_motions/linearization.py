@@ -214,6 +214,6 @@ def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: Linea
 def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:
     yield floats(equations.M)
     yield floats(equations.C)
-    yield floats(equations.K)[:, kept]
+    yield floats(equations.K)[:, list(kept)]
     yield floats(equations.F)[np.ix_(kept, kept)]
-    yield floats(equations.E)[kept]
+    yield floats(equations.E)[list(kept)]
