@@ -326,7 +326,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 @main.command()
 @_written
 @click.option("--about", type=click.Choice(["equilibrium", "start"]),
-              help="The place of rest nearest to the start, or the start, a steady motion.  [default: as the model says]")  # fmt: skip
+              help="The nearest place of rest, or the start, a steady motion.  [default: see [linearize]]")  # fmt: skip
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
               **options: Any) -> int:  # fmt: skip

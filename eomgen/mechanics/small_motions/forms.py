@@ -38,8 +38,9 @@ def carrying(equations: LinearEquations, wanted: Sequence[str]) -> tuple[int, ..
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
     K, F = _without_noise(K), _without_noise(F)
     while len(kept) > len(equations.speeds):
-        idle = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])
-                or not np.any(E[j]) and not np.any(F[j, kept])]  # fmt: skip
+        unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
+        still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
+        idle = [*unseen, *still]
         if not idle:
             break
         kept.remove(max(idle, key=lambda j: (equations.coordinates[j].name not in wanted, not _is_own(E[j]), j)))
@@ -113,7 +114,7 @@ def restricted(field: Field, equations: LinearEquations, wanted: Sequence[str], 
         return equations
     if not is_second_order(equations) or set(wanted) - set(names):
         strange = [name for name in wanted if name not in names]
-        what = f"'{strange[0]}' is not free to move by itself" if strange else "some coordinates have no speed of their own"
+        what = f"'{strange[0]}' is not free to move by itself" if strange else "coordinates without a speed are left"
         raise DerivationError(f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates")
     c = [names.index(name) for name in wanted]
     o = [j for j in range(len(names)) if j not in c]

@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.small_motions.field import Exact, Field, Matrix, Numbers
+from eomgen.mechanics.small_motions.field import Exact, Numbers
 from eomgen.mechanics.small_motions.forms import (
     NOTHING,
     carrying,
@@ -65,8 +65,8 @@ class SmallMotions:
     def state_matrix(self) -> np.ndarray:
         """A of x' = A x + B w, x = (q_i, u_i)."""
         e = self.numbers
-        M = floats(e.M)
-        return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, floats(e.K)), -np.linalg.solve(M, floats(e.C))]])
+        M, C, K = (floats(x) for x in (e.M, e.C, e.K))
+        return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
 
     @cached_property
     def input_matrix(self) -> np.ndarray:
@@ -185,8 +185,8 @@ def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, ra
     if culprit is t:
         raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
                               "let nothing but inputs depend on t")  # fmt: skip
-    raise DerivationError(f"no steady motion: '{culprit.name}' moves, and the equations depend on it",
-                          f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")  # fmt: skip
+    what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
+    raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
 
 
 def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]

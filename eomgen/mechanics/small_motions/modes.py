@@ -1,15 +1,14 @@
-"""Small motions -> what is asked of them: frequencies in their order, exact where they are known so, entries by name."""
+"""Small motions -> what is asked of them: frequencies in their order, exact where they are known so, and entries."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-
-import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.small_motions.field import Entry
+from eomgen.mechanics.small_motions.field import WORK, Entry
 from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.polynomial import (
     Polynomial,
@@ -22,7 +21,8 @@ from eomgen.mechanics.small_motions.polynomial import (
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import simplest
 
 SAME = 1e-9  # of an exact frequency against the number
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
@@ -123,7 +123,7 @@ class Modes:
         found = self.frequencies
         if not 1 <= k <= len(found):
             n = len(found)
-            have = "no small motion oscillates" if not n else f"{n} small motion{'s' * (n > 1)} oscillate{'s' * (n == 1)}"
+            have = "one small motion oscillates" if n == 1 else f"{n or 'no'} small motions oscillate"
             raise DerivationError(f"frequency({k}): {have}")
         return found[k - 1]
 
@@ -135,15 +135,12 @@ class Modes:
                 for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)}  # fmt: skip
 
     def tidy(self, x: Entry) -> Entry:
-        from eomgen.symbolic.normal_form import simplest
-
-        return x if isinstance(x, float) else simplest(x, 20_000, self.positive)
+        """An entry in its shortest form."""
+        return x if isinstance(x, float) else simplest(x, WORK, self.positive)
 
 
 def _parted(A: list[list[Entry]]) -> tuple[list[list[Entry]], list[list[Entry]]]:
     """(A + A^T)/2 and (A - A^T)/2."""
-    from fractions import Fraction
-
     half = 0.5 if any(isinstance(x, float) for row in A for x in row) else Fraction(1, 2)
     n = range(len(A))
     return ([[half * (A[i][j] + A[j][i]) for j in n] for i in n], [[half * (A[i][j] - A[j][i]) for j in n] for i in n])

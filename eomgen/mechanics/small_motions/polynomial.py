@@ -96,7 +96,8 @@ def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node]) -> Poly
     expansion.of(s)
     try:
         parts = coefficients(expansion.of(x), s)
-        found = [simplest(expansion.atoms.node(parts.get(n, {})), LIMIT, positive) for n in range(max(parts, default=0) + 1)]
+        powers = range(max(parts, default=0) + 1)
+        found = [simplest(expansion.atoms.node(parts.get(n, {})), LIMIT, positive) for n in powers]
     except TooLarge:
         return None
     return Polynomial(tuple(found))

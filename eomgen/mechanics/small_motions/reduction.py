@@ -21,9 +21,8 @@ and Z^T in front, by which dlam goes:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,18 @@ from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.small_motions.field import Entry, Field, Matrix, Numbers, at, negative, product, solved, total, turned
+from eomgen.mechanics.small_motions.field import (
+    Entry,
+    Field,
+    Matrix,
+    Numbers,
+    at,
+    negative,
+    product,
+    solved,
+    total,
+    turned,
+)
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
@@ -235,7 +245,7 @@ class Reducing:
     def Z(self) -> Matrix:
         """du = Z du_i: J Z = 0."""
         n, kept = len(self.first.system.symbols.u), self.choice.u
-        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.ties else [[0] * len(kept)] * n
+        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.ties else []
         place = {k: j for j, k in enumerate(kept)}
         return [[int(place[k] == j) for j in range(len(kept))] if k in place else found[k] for k in range(n)]
 

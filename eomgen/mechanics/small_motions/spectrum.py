@@ -8,7 +8,7 @@ Systems without C and with symmetric K by the symmetric problem K v = w^2 M v, w
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -154,7 +154,7 @@ def _general(small: SmallMotions) -> list[Mode]:
     return modes + _zero_modes(small, zeros)
 
 
-def _zero_modes(small: SmallMotions, shapes: list[Mapping[Node, complex]]) -> list[Mode]:
+def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
     """Two zeros are one rigid motion of a place of rest; of a steady motion they lead to its neighbours."""
     pairs = len(shapes) // 2 if small.is_second_order and small.reference.about == EQUILIBRIUM else 0
     rigid = [Mode(0j, True, shape) for shape in shapes[: 2 * pairs : 2]]

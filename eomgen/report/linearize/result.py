@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.reaction_outputs import name_of
-from eomgen.mechanics.small_motions.field import Entry, Matrix
+from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
@@ -28,6 +28,7 @@ from eomgen.report.setting_steps import data_step
 from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
 from eomgen.simulation.course import modes_at_start
+from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.text import to_text
@@ -205,8 +206,6 @@ class Linearization(Shown):
     def _values(self, A: Matrix) -> list[list[float]] | None:
         if not self.valued:
             return None
-        from eomgen.symbolic.evaluation import FLOAT, evaluate
-
         values = {x: float(v) for x, v in self.small.reference.trial.items()}
         flat = iter(evaluate([x for row in A for x in row], values, FLOAT))
         return [[float(next(flat)) for _ in row] for row in A]

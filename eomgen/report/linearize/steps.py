@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from eomgen.mechanics.small_motions.field import Entry, Matrix
 from eomgen.mechanics.small_motions.modes import Modes
@@ -11,8 +10,10 @@ from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variab
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.report.setting_steps import listed
-from eomgen.report.statements import Cell, Entry as Place, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
-from eomgen.symbolic.graph import Node, is_zero
+from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
+from eomgen.report.statements import Entry as Place
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.text import text_size
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
@@ -25,7 +26,8 @@ WHERE = Law(
 )
 ALONG = Law(
     "K = Z^T*(R_q*P + R_u*Y + M*X_q),  C = Z^T*(R_u*Z + M*X_u)",
-    r"K = Z^{\mathsf{T}}\left(R_{q} P + R_{u} Y + M X_{q}\right),\quad C = Z^{\mathsf{T}}\left(R_{u} Z + M X_{u}\right)",
+    r"K = Z^{\mathsf{T}}\left(R_{q} P + R_{u} Y + M X_{q}\right),\quad "
+    r"C = Z^{\mathsf{T}}\left(R_{u} Z + M X_{u}\right)",
 )
 PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C = \frac{\partial R}{\partial u}")
 DETERMINANT = Law("det(s^2*M + s*C + K)", r"\det\left(s^{2} M + s C + K\right)")
@@ -83,7 +85,8 @@ def _equations(modes: Modes) -> Step:
         return Step("equations", "Equations to first order", tuple(statements))
     statements += _entries("M", e.M, e.speeds, e.speeds, symmetric=True)
     statements += _rates(modes, undamped)
-    statements += _entries("K", e.K, e.speeds, e.coordinates, symmetric=small.is_second_order and _symmetric(modes, e.K))
+    symmetric = small.is_second_order and _symmetric(modes, e.K)
+    statements += _entries("K", e.K, e.speeds, e.coordinates, symmetric=symmetric)
     statements += _entries("B", e.B, e.speeds, e.inputs, symmetric=False)
     if not small.is_second_order:
         statements += _entries("E", e.E, e.coordinates, e.speeds, symmetric=False)
@@ -148,15 +151,17 @@ def _characteristic(modes: Modes) -> tuple[Step, ...]:
         return ()
     law = DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT
     s = laplace_variable(modes.small.exact)
-    statements: list[Statement] = [Prose(("With displacements that go as exp(s t):",)), Formula((law, _shown(polynomial, s), 0))]
-    return (Step("characteristic", "Characteristic equation", tuple(statements)),)
+    statements = (Prose(("With displacements that go as exp(s t):",)), Formula((law, _shown(polynomial, s), 0)))
+    return (Step("characteristic", "Characteristic equation", statements),)
 
 
 def _shown(polynomial: Polynomial, s: Node) -> Side:
-    total: Any = 0
-    for n, c in reversed(list(enumerate(polynomial.coefficients))):
-        total = total + c * s**n
-    return _side(total)
+    return _side(_written(polynomial, s))
+
+
+def _written(polynomial: Polynomial, s: Node) -> Scalar:
+    """The highest power first."""
+    return sum((c * s**n for n, c in reversed(list(enumerate(polynomial.coefficients)))), start=0)
 
 
 def _modes(modes: Modes) -> Step:
@@ -189,7 +194,7 @@ def _complex(x: complex, *, pair: bool = False) -> str:
 def _shapes(modes: Sequence[Mode]) -> Grid:
     """A column for each mode, the largest displacement 1."""
     coordinates = list(modes[0].shape) if modes else []
-    rows = [(q, *(_complex(_tidied(mode.shape[q])) for mode in modes)) for q in coordinates]
+    rows: list[tuple[Cell, ...]] = [(q, *(_complex(_tidied(mode.shape[q])) for mode in modes)) for q in coordinates]
     return Grid(("shape", *(f"mode {k}" for k in range(1, len(modes) + 1))), tuple(rows))
 
 
@@ -206,7 +211,8 @@ def _stability(modes: Modes) -> tuple[Step, ...]:
         statements.append(Prose((f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}.",)))
     if modes.conditions:
         statements.append(Prose(("By Routh and Hurwitz all motions fade where these are positive:",)))
-        statements += [Formula((Law(f"h_{k}", f"h_{{{k}}}"), _side(x))) for k, x in enumerate(modes.conditions, start=1)]
+        for k, x in enumerate(modes.conditions, start=1):
+            statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _side(x))))
     return (Step("stability", "Stability", tuple(statements)),) if statements else ()
 
 
@@ -214,11 +220,8 @@ def _transfers(modes: Modes) -> tuple[Step, ...]:
     if not modes.transfers or modes.small.exact is None:
         return ()
     s = laplace_variable(modes.small.exact)
-    statements: list[Statement] = [Prose(("From inputs to coordinates:",))]
+    statements: list[Statement] = [Prose(("From inputs to coordinates, as functions of s:",))]
     for f in modes.transfers:
-        above, below = (_shown(x, s) for x in (f.above, f.below))
-        name = Law(f"{f.coordinate.name}/{f.input.name}", rf"\frac{{{f.coordinate.name}}}{{{f.input.name}}}")
-        if isinstance(above, Law) or isinstance(below, Law):
-            continue
-        statements.append(Formula((name, above / below)))  # type: ignore[operator]
+        quotient = over(_written(f.above, s), _written(f.below, s))
+        statements.append(Formula((Place("W", f.coordinate, f.input), _side(quotient))))
     return (Step("transfer", "Transfer functions", tuple(statements)),)
