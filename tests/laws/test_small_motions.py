@@ -9,6 +9,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from known_answers import MODELS
 
 import eomgen
 from eomgen.mechanics.small_motions.linearization import SmallMotions
@@ -363,6 +364,15 @@ def test_a_pendulum_on_a_frame_that_turns_steadily_swings_about_its_angle():
     assert is_formula(frequency.exact, "sqrt(g/(l*cos(theta_0)))*sin(theta_0)", found.small)
 
 
+def test_a_bead_on_a_turning_hoop_rests_beside_it():
+    """About "equilibrium" the place is found: cos(theta) = g/(R W^2), w = W sin(theta); stable"""
+    model = eomgen.load(MODELS / "bead_on_turning_hoop.toml")
+    found = eomgen.linearize(model)
+    (frequency,) = found.frequencies
+    assert is_formula(frequency.exact, "omega*sqrt(1 - (g/(R*omega^2))^2)", found.small)
+    assert found.spectrum.stability == "stable" and "centrifugal" in found.spectrum.why
+
+
 def test_a_conical_pendulum_swings_at_constant_moment_of_momentum():
     """psi is ignorable: w = W sqrt(1 + 3 cos^2 theta_0); C is gyroscopic; Routh's K for theta alone gives the same"""
     free = rotating(f"{{ start = 0, speed = {SPEED} }}", "start")
@@ -437,6 +447,58 @@ along = [0, 1]
     expected = np.roots([J + m * a * a, m * a * v, k * a * a, k * a * v])
     assert nonzero(found.spectrum.eigenvalues) == pytest.approx(nonzero(expected))
     assert_same_eigenvalues(found.small)
+
+
+DISC = """[parameters]
+m = 2
+r = 0.3
+g = 9.81
+n = {0}
+[coordinates]
+X = {{ start = 0, speed = "r*n" }}
+Y = {{ start = 0 }}
+psi = {{ start = 0 }}
+theta = {{ start = 0 }}
+phi = {{ start = 0, speed = "n" }}
+[bodies.a]
+joint = {{ kind = "prismatic", axis = [1, 0, 0], displacement = "X + r*sin(theta)*sin(psi)" }}
+[bodies.b]
+joint = {{ kind = "prismatic", on = "a", axis = [0, 1, 0], displacement = "Y - r*sin(theta)*cos(psi)" }}
+[bodies.c]
+joint = {{ kind = "prismatic", on = "b", axis = [0, 0, 1], displacement = "r*cos(theta)" }}
+[bodies.d]
+joint = {{ kind = "revolute", on = "c", axis = [0, 0, 1], angle = "psi" }}
+[bodies.e]
+joint = {{ kind = "revolute", on = "d", axis = [1, 0, 0], angle = "theta" }}
+[bodies.disc]
+mass = "m"
+inertia = ["m*r^2/4", "m*r^2/2", "m*r^2/4"]
+joint = {{ kind = "revolute", on = "e", axis = [0, 1, 0], angle = "phi" }}
+[constraints.along]
+kind = "equation"
+rate = "X' - r*phi'*cos(psi)"
+[constraints.across]
+kind = "equation"
+rate = "Y' - r*phi'*sin(psi)"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+"""
+
+
+@pytest.mark.parametrize(("n", "oscillates"), [("sqrt(g/(3*r))*99/100", False), ("sqrt(g/(3*r))*101/100", True)])
+def test_a_rolling_disc_is_upright_beyond_its_critical_speed(n, oscillates):
+    """Upright a thin disc rolls steadily where n^2 > g/(3 r);  w^2 = (12 n^2 - 4 g/r)/5
+
+    Source: Neimark & Fufaev, Dynamics of Nonholonomic Systems, ch. II.
+    """
+    head = 'eomgen = 1\nname = "disc"\nspace = "space"\n'
+    found = eomgen.linearize(eomgen.loads(head + DISC.format(f'"{n}"')), "start")
+    square = (12 * (9.81 / 0.9) * (1.01 if oscillates else 0.99) ** 2 - 4 * 9.81 / 0.3) / 5
+    values = nonzero(found.spectrum.eigenvalues)
+    assert values**2 == pytest.approx([-square, -square], rel=1e-6)
+    assert bool(found.frequencies) == oscillates
+    assert_same_eigenvalues(found.small, 1e-6)
 
 
 # -- in whole motions ------------------------------------------------------------------------------------------

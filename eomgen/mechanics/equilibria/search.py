@@ -106,7 +106,16 @@ def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> 
         UsageError: a name in the guess that is no coordinate.
         DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
     """
-    statics = static_equations(system)
+    return equilibria_of(static_equations(system), guess)
+
+
+def equilibria_of(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibria:
+    """Every place at which static equations hold; see `all_equilibria`.
+
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: the forces hold an unknown.
+    """
     if statics.loaded:
         what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
         raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")

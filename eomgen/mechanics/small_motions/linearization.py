@@ -29,12 +29,15 @@ from eomgen.mechanics.small_motions.reduction import (
     choice_of,
     first_order_of,
 )
-from eomgen.mechanics.small_motions.reference import START, Reference, at_the_start, place_of_rest
+from eomgen.mechanics.small_motions.reference import START, Reference, at_the_start, place_of_rest, relative_rest
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic import dense
+from eomgen.symbolic.evaluation import NoValue
 from eomgen.symbolic.graph import Node
 
+PRIME = "'"
+REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
 TIMES = (0.37, 1.19)  # later states of a steady motion, at which it must look the same [of the time of one unit]
@@ -100,6 +103,7 @@ def small_motions_of(
     raw = Reducing(first, choice, Numbers(reference.numbers)).equations()
     kept = carrying(raw, wanted)
     _refuse_unsteady(first, choice, reference, raw, kept)
+    _refuse_singular(raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
     numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
     field = _exact_field(reference, choice)
@@ -117,6 +121,20 @@ def _exact_field(reference: Reference, choice: Choice) -> Exact | None:
     if not reference.is_exact or not small:
         return None
     return Exact(reference.exact, positive_parameters(reference.system.scope), reference.trial)
+
+
+def _refuse_singular(equations: LinearEquations) -> None:
+    """Coordinates that do not describe motions there, as angles at a pole.
+
+    Raises:
+        DerivationError: the speed that moves nothing is named, where it is one.
+    """
+    M = floats(equations.M)
+    idle = [u.name for u, x in zip(equations.speeds, np.diagonal(M), strict=True) if abs(x) <= REGULAR * abs(M).max()]
+    if idle or dense.scaled_condition(M) > 1 / REGULAR:
+        moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
+        raise DerivationError(f"the mass matrix is singular at the place: {moved}", "linearize",
+                              "describe the motion by coordinates that are regular there")  # fmt: skip
 
 
 # -- whether it is a reference ---------------------------------------------------------------------------------
@@ -138,16 +156,23 @@ def _balanced(system: System, about: str, guess: Mapping[str, float] | None) -> 
         reference = place_of_rest(system, guess)
         return reference, first_order_of(reference.system)
     except (DerivationError, NotYet) as error:
-        return _rest_at_start(system, error)
+        return _other_rest(system, guess, error)
 
 
-def _rest_at_start(system: System, why: EomgenError) -> tuple[Reference, FirstOrder]:
-    try:
-        reference, first = at_the_start(system, at_rest=True), first_order_of(system)
-        if not _accelerated(first, reference) and not _moving(first, reference):
-            return reference, first
-    except EomgenError:
-        pass
+def _other_rest(
+    system: System, guess: Mapping[str, float] | None, why: EomgenError
+) -> tuple[Reference, FirstOrder]:
+    """Rest beside what the model drives steadily, or the start without speeds."""
+    first = first_order_of(system)
+    driven = any(part.driven for part in system.scope.model.coordinates.values())
+    ways = (lambda: relative_rest(system, first.assembly, guess), lambda: at_the_start(system, at_rest=True))
+    for way in ways[0 if driven else 1 :]:
+        try:
+            reference = way()
+            if not _accelerated(first, reference):
+                return reference, first
+        except EomgenError:
+            continue
     raise why
 
 
@@ -161,12 +186,6 @@ def _accelerated(first: FirstOrder, reference: Reference) -> str:
     return wrong[0] if wrong else ""
 
 
-def _moving(first: FirstOrder, reference: Reference) -> dict[Node, Any]:
-    """The coordinates that move in the reference, and their rates."""
-    rates = evaluate(first.system.scope.rates, reference.numbers, fifty_digits())
-    return {q: rate for q, rate in zip(first.system.symbols.q, rates, strict=True) if abs(rate) > 1e-12}
-
-
 def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
                      kept: Sequence[int]) -> None:  # fmt: skip
     """A reference that changes with time where it matters.
@@ -174,7 +193,7 @@ def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, ra
     Raises:
         DerivationError: the coordinate that moves is named.
     """
-    moving = _moving(first, reference)
+    moving = reference.moving
     t = first.system.symbols.t
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
     shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in TIMES]

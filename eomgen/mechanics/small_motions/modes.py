@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
+from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.positive import positive_parameters
@@ -20,10 +22,12 @@ from eomgen.mechanics.small_motions.polynomial import (
     transfer_functions,
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
+from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
 
+TRIES = 12  # values of the parameters at which the order of frequencies is looked at
 SAME = 1e-9  # of an exact frequency against the number
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
 
@@ -73,6 +77,9 @@ class Modes:
     def frequencies(self) -> tuple[Frequency, ...]:
         """The frequencies of the oscillating modes, the lowest first."""
         candidates = self._closed
+        if not self.small.reference.valued and not self._ordered(candidates):
+            raise DerivationError("which motion is slower, and whether it oscillates, depends on the parameters",
+                                  "parameters", "give them values")  # fmt: skip
         return tuple(Frequency(mode, self._exact(mode, candidates)) for mode in self.spectrum.oscillating)
 
     @cached_property
@@ -88,6 +95,24 @@ class Modes:
             except (NoValue, ZeroDivisionError, TypeError):  # it does not oscillate
                 continue
         return found
+
+    def _ordered(self, candidates: list[tuple[float, Scalar]]) -> bool:
+        """Whether the frequencies are real and in the same order at all values that are tried for the parameters."""
+        modes = self.spectrum.oscillating
+        inner = [w for mode in modes if (w := self._exact(mode, candidates)) is not None]
+        reference, rng = self.small.reference, Random(5)
+        if len(inner) < len(modes):
+            return False
+        known = values_of_parameters(reference.system.scope, None)
+        for _ in range(TRIES):
+            tried = {x: known.get(x, fifty_digits().number(Fraction(rng.randint(2, 80), 20))) for x in reference.trial}
+            try:
+                values = evaluate(inner, tried, fifty_digits())
+            except (NoValue, ZeroDivisionError):
+                return False
+            if any(b < a for a, b in pairwise(values)):
+                return False
+        return True
 
     def _exact(self, mode: Mode, candidates: list[tuple[float, Scalar]]) -> Scalar | None:
         assert mode.frequency is not None

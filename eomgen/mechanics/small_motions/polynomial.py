@@ -136,10 +136,10 @@ def _squares(x: Scalar, s: Node, positive: Collection[Node]) -> Iterator[Scalar]
 
     for part, _ in factored(f):
         c = coefficients(part, s)
-        if max(c) == 2:
+        if max(c, default=0) == 2:
             squared = over(4 * node(c.get(0, {})) * node(c[2]) - node(c.get(1, {})) ** 2, 4 * node(c[2]) ** 2)
             yield from _possible(written(squared))
-        elif max(c) == 4 and not c.get(1) and not c.get(3):
+        elif max(c, default=0) == 4 and not c.get(1) and not c.get(3):
             root = _root(expansion, c, positive)
             for sign in (-1, 1):
                 yield from _possible(written(over(node(c.get(2, {})) + sign * root, 2 * node(c[4]))))

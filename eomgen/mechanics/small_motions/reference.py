@@ -8,7 +8,11 @@ from functools import cached_property
 from random import Random
 from typing import Any
 
-from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
+from eomgen.errors import DerivationError
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.closed_instant import position_equations
+from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria, equilibria_of
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
@@ -21,6 +25,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
+STILL = 1e-12  # of a rate, below which a coordinate stands still
 EQUILIBRIUM, START = "equilibrium", "start"
 
 
@@ -53,6 +58,12 @@ class Reference:
         """Whether all parameters have values."""
         return not self.system.symbols.parameters.keys() - exact_parameters(self.system.scope.model).keys()
 
+    @cached_property
+    def moving(self) -> dict[Node, Any]:
+        """The coordinates that move in the reference, and their rates."""
+        rates = evaluate(self.system.scope.rates, self.numbers, fifty_digits())
+        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > STILL}
+
     @property
     def trial(self) -> dict[Node, Any]:
         """The values of the parameters."""
@@ -69,6 +80,33 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
         NotYet: speeds that are not rates.
     """
     return _place(all_equilibria(system, guess).nearest(guess))
+
+
+def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float] | None = None) -> Reference:
+    """The place at which all is at rest beside what the model drives at a steady rate: a bead on a hoop that turns.
+
+    forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
+
+    Raises:
+        DerivationError: none was found.
+    """
+    symbols, coordinates = system.symbols, system.scope.model.coordinates
+    start = {q: start_value(system.scope, coordinates[q.name]) for q in symbols.q}
+    driven = [q for q in symbols.q if coordinates[q.name].driven]
+    given: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
+    given |= {q: start[q] for q in driven}
+    inputs = substituted(tuple(system.inputs[name] for name in symbols.inputs), given)
+    given |= dict(zip(symbols.inputs.values(), inputs, strict=True))
+    forcing = substituted(assembly.forcing, given)
+    own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
+    if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
+        raise DerivationError("rest beside drives is sought of coordinates that are all free or driven")
+    statics = StaticEquations(
+        system, (), tuple(own), given, tuple(forcing[k] for k in own.values()), tuple(forcing[k] for k in own.values()),
+        tuple(substituted(row, given) for row in assembly.J), symbols.lam,
+        substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
+    )  # fmt: skip
+    return _place(equilibria_of(statics, guess).nearest(guess))
 
 
 def _place(place: Equilibrium) -> Reference:

@@ -188,5 +188,6 @@ def _stability(small: SmallMotions, values: list[complex]) -> tuple[str, str]:
     if any(x == 0 for x in values):
         return "undecided", "some small motions neither grow nor fade nor oscillate"
     if _is_undamped(small) and small.reference.about == EQUILIBRIUM and np.all(np.linalg.eigvalsh(floats(e.K)) > 0):
-        return "stable", "the potential energy has a minimum (Lagrange and Dirichlet)"
+        added = ", that of the centrifugal forces included," if small.reference.moving else ""
+        return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
     return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"

@@ -192,7 +192,7 @@ class Linearization(Shown):
                 {"coordinate": f.coordinate.name, "input": f.input.name, "numerator": _polynomial(f.above),
                  "denominator": _polynomial(f.below)} for f in self.modes.transfers],
             "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
-            "modes": [self._mode(mode) for mode in self.modes.spectrum.modes],
+            "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
             "steps": steps_as_dicts(self.derivation),
@@ -212,15 +212,11 @@ class Linearization(Shown):
 
     def _mode(self, mode: Mode) -> dict[str, Any]:
         exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
-        number = self.valued
         return {
-            "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag] if number else None,
-            "frequency": {"exact": None if exact is None else to_text(exact),
-                          "value": mode.frequency if number else None},
-            "hertz": mode.hertz if number else None,
-            "damping_ratio": mode.damping_ratio if number else None,
-            "kind": mode.kind if number else None,
-            "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()} if number else None,
+            "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+            "frequency": {"exact": None if exact is None else to_text(exact), "value": mode.frequency},
+            "hertz": mode.hertz, "damping_ratio": mode.damping_ratio, "kind": mode.kind,
+            "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()},
         }  # fmt: skip
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Entry, Matrix
-from eomgen.mechanics.small_motions.modes import Modes
+from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.mechanics.small_motions.spectrum import Mode
@@ -39,8 +40,7 @@ MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
 def linearization_steps(modes: Modes) -> tuple[Step, ...]:
     """Reference, equations, characteristic polynomial, modes, stability, transfer functions."""
     steps = [_reference(modes), _equations(modes), *_characteristic(modes)]
-    if modes.small.reference.valued or modes.frequencies:
-        steps.append(_modes(modes))
+    steps.append(_modes(modes))
     return (*steps, *_stability(modes), *_transfers(modes))
 
 
@@ -51,6 +51,8 @@ def _reference(modes: Modes) -> Step:
     reference = modes.small.reference
     at_rest = reference.about == EQUILIBRIUM
     words = "The place of rest nearest to the start:" if at_rest else "The steady motion from the start:"
+    if at_rest and reference.moving:
+        words = "The place of rest beside what moves steadily, nearest to the start:"
     symbols = reference.system.symbols
     shown = symbols.q if at_rest else (*symbols.q, *symbols.u)
     rows: list[tuple[Cell, ...]] = []
@@ -167,7 +169,7 @@ def _written(polynomial: Polynomial, s: Node) -> Scalar:
 def _modes(modes: Modes) -> Step:
     """Frequencies in closed form, and a table of the modes in numbers."""
     statements: list[Statement] = []
-    for k, found in enumerate(modes.frequencies, start=1):
+    for k, found in enumerate(_frequencies(modes), start=1):
         if found.exact is not None and not is_zero(found.exact):
             statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(found.exact))))
     if modes.small.reference.valued:
@@ -175,7 +177,17 @@ def _modes(modes: Modes) -> Step:
         rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
         head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
         statements += [narrow_grid(head, rows), _shapes(listed_modes)]
+    if not statements:
+        statements.append(Prose(("The modes depend on the values of the parameters.",)))
     return Step("modes", "Modes", tuple(statements))
+
+
+def _frequencies(modes: Modes) -> Sequence[Frequency]:
+    """None, where their order depends on the parameters."""
+    try:
+        return modes.frequencies
+    except DerivationError:
+        return ()
 
 
 def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
