@@ -330,7 +330,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
               **options: Any) -> int:  # fmt: skip
-    """Give the small motions about a place of rest or a steady motion.
+    """Give small motions about rest or a steady motion.
 
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.

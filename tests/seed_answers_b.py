@@ -138,4 +138,4 @@ LINEARIZED = {
         "omega2_squared": "(5 + sqrt(7))/3*k/M",
     },
 }
-"""Outputs of the small oscillations, which are answered where there is a linearization."""
+"""Outputs of the small oscillations."""

@@ -72,7 +72,9 @@ def test_a_missing_value_leaves_the_exact_answer():
     ("output", "word"),
     [
         ('"reaction_n(bob)"', "no normal reaction"),
-        ('"frequency(1)"', "linearization"),
+        ('"frequency(2)"', "one small motion oscillates"),
+        ('"frequency(1)*x(bob.center)"', "function of the state"),
+        ('{ value = "mass(theta, theta)", from = "rest" }', "the state of [linearize]"),
         ('{ value = "theta\'", at = "theta = 100" }', "is not met"),
         ('{ value = "theta\'", at = "t = -1" }', "before the start"),
         ('"drive(theta)"', "moves freely"),

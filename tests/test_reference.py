@@ -70,24 +70,12 @@ def test_a_whole_model_of_the_pages_derives_and_is_certified(text):
     assert eomgen.derive(eomgen.loads(text)).certify().ok
 
 
-@pytest.mark.parametrize("piece", [p for p in PIECES if "# later" not in p], ids=first_table)
+@pytest.mark.parametrize("piece", PIECES, ids=first_table)
 def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
     """Every other ```toml block, added to the model of the page."""
     model = whole_with(piece)
     assert eomgen.derive(model).M is not None
     assert {name: a.message for name, a in eomgen.solve(model).items() if a.message} == {}
-
-
-@pytest.mark.parametrize("piece", [p for p in PIECES if "# later" in p], ids=first_table)
-def test_what_the_reference_puts_off_is_refused_by_name(piece):
-    """Blocks that begin with `# later` load, and end in a message: no answer is better than a wrong one."""
-    model = whole_with(piece)
-    if "outputs" in tomllib.loads(piece):
-        messages = [a.message for name, a in eomgen.solve(model).items() if name in tomllib.loads(piece)["outputs"]]
-        assert all("later version" in message for message in messages)
-    else:
-        with pytest.raises(eomgen.NotYet):
-            eomgen.derive(model)
 
 
 @pytest.mark.parametrize(
