@@ -124,7 +124,7 @@ def restricted(field: Field, equations: LinearEquations, wanted: Sequence[str], 
     if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
         return _taken(equations, c)
     if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):
-        what = f"{', '.join(wanted)} do not move by themselves: {', '.join(names[j] for j in o)} act on them"
+        what = f"{', '.join(wanted)} cannot move alone: coupled with {', '.join(names[j] for j in o)}"
         raise DerivationError(what, "linearize.coordinates", "name these coordinates too")
     return _with_momenta_kept(field, equations, c, o)
 

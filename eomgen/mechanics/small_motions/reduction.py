@@ -300,13 +300,16 @@ def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) ->
     symbols, coordinates = first.system.symbols, reference.system.scope.model.coordinates
     dependent = {name for name, part in coordinates.items() if part.dependent}
 
-    def late(name: str) -> int:
-        return 0 if name in wanted else 2 if name in dependent else 1
+    def late(name: str, rows: Rows, k: int) -> tuple[int, bool]:
+        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay."""
+        stays = not any(depends_on(row[k], symbols.q) for row in rows)
+        return 0 if name in wanted else 2 if name in dependent else 1, stays
 
-    relations, dq = _determined(_floats(at(field, first.derivatives["G"]), len(symbols.q)),
-                                [late(q.name) for q in symbols.q])  # fmt: skip
-    ties, du = _determined(_floats(at(field, first.assembly.J), len(symbols.u)),
-                           [late(u.name.removesuffix("'")) for u in symbols.u])  # fmt: skip
+    G, J = first.derivatives["G"], first.assembly.J
+    relations, dq = _determined(_floats(at(field, G), len(symbols.q)),
+                                [late(q.name, G, k) for k, q in enumerate(symbols.q)])  # fmt: skip
+    ties, du = _determined(_floats(at(field, J), len(symbols.u)),
+                           [late(u.name.removesuffix("'"), J, k) for k, u in enumerate(symbols.u)])  # fmt: skip
     q = tuple(k for k in range(len(symbols.q)) if k not in dq)
     u = tuple(k for k in range(len(symbols.u)) if k not in du)
     return Choice(q, dq, relations, u, du, ties)
@@ -316,14 +319,14 @@ def _floats(A: Matrix, columns: int) -> np.ndarray:
     return np.array(A, dtype=float).reshape(len(A), columns)
 
 
-def _determined(A: np.ndarray, late: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _determined(A: np.ndarray, late: Sequence[tuple[int, bool]]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """(independent rows, columns that they determine): of those first that are late, the last of them first."""
     if not len(A):
         return (), ()
     scaled = dense.balanced(A)[0]
     rows = dense.independent_rows(scaled, RANK)
     chosen: list[int] = []
-    for k in sorted(range(A.shape[1]), key=lambda k: (-late[k], -k)):
+    for k in sorted(range(A.shape[1]), key=lambda k: (late[k], k), reverse=True):
         if len(chosen) < len(rows) and dense.rank(scaled[rows][:, [*chosen, k]].T, smallest=RANK) > len(chosen):
             chosen.append(k)
     return tuple(rows), tuple(sorted(chosen))

@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions
-from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
+from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, START
 from eomgen.symbolic.graph import Node
 
 ZERO = 1e-6  # of an eigenvalue against the largest: a double zero keeps half of the digits
@@ -185,6 +185,8 @@ def _stability(small: SmallMotions, values: list[complex]) -> tuple[str, str]:
     if all(x.real < 0 for x in values):
         return "asymptotically stable", "all motions fade"
     e = small.numbers
+    if any(x == 0 for x in values) and small.reference.about == START and small.reference.moving:
+        return "stable to first order", "motions oscillate, fade, or go over into a steady motion nearby"
     if any(x == 0 for x in values):
         return "undecided", "some small motions neither grow nor fade nor oscillate"
     if _is_undamped(small) and small.reference.about == EQUILIBRIUM and np.all(np.linalg.eigvalsh(floats(e.K)) > 0):

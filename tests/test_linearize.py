@@ -1,0 +1,106 @@
+"""eomgen linearize: what it prints, what machines get, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+
+MODELS = Path(__file__).parent.parent / "models"
+BARS = str(MODELS / "seeds" / "ch22_p3.toml")
+CART = str(MODELS / "cart_pole.toml")
+
+
+def run(*words: str, text: str | None = None):
+    result = CliRunner().invoke(main, ["linearize", *words], input=text)
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def test_the_result_for_machines_has_every_part():
+    """Matrices exact and as numbers, modes with their shapes, the state matrix of x' = A x + B w."""
+    result = run(CART, "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert found["schema_version"] == 1 and found["second_order"] and found["exact"]
+    assert found["mass"]["exact"] == [["M + m", "-1/2*m*l"], ["-1/2*m*l", "1/3*m*l^2"]]
+    assert found["stiffness"]["exact"] == [["0", "0"], ["0", "-1/2*m*l*g"]]
+    assert found["input"]["value"] == [[1.0], [0.0]]
+    assert len(found["state_matrix"]) == 4 and len(found["input_matrix"]) == 4
+    assert found["stability"] == "unstable" and "divergence" in found["why"]
+    theta = next(f for f in found["transfer_functions"] if f["coordinate"] == "theta")
+    assert theta["numerator"] == ["1/2*m*l"]
+    assert {step["key"] for step in found["steps"]} >= {"reference", "equations", "characteristic", "modes", "stability"}
+
+
+@pytest.mark.parametrize(("format", "word"), [("text", "omega_1 = "), ("latex", r"\omega_{1}"), ("markdown", "| mode |")])
+def test_every_format_shows_the_frequencies(format, word):
+    """Text, LaTeX, Markdown."""
+    result = run(BARS, "--format", format)
+    assert result.exit_code == 0, result.stderr
+    assert word in result.stdout
+
+
+def test_modes_are_drawn(tmp_path):
+    """A panel for each mode; of systems in space bars."""
+    for name in ("seeds/ch22_p3.toml", "bead_on_turning_hoop.toml"):
+        path = tmp_path / "modes.png"
+        eomgen.linearize(eomgen.load(MODELS / name)).plot(path)
+        assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_coordinate_that_is_left_out_must_keep_its_momentum_or_not_act():
+    """Of the cart and pole theta alone is asked: the cart keeps its momentum (Routh); of two coupled bars it is not."""
+    found = eomgen.linearize(eomgen.load(CART), coordinates=("theta",))
+    ((M,),), ((K,),) = found.M, found.K
+    assert M == pytest.approx(0.1 / 3 - 0.1**2 / 4 / 1.1) and K == pytest.approx(-0.1 * 9.81 / 2)
+    result = run(BARS, "--coordinate", "theta")
+    assert result.exit_code == 3 and "theta cannot move alone: coupled with phi" in result.stderr
+    result = run(BARS, "--coordinate", "thet")
+    assert result.exit_code == 2 and "no coordinate 'thet'" in result.stderr
+
+
+SWING = """
+eomgen = 1
+name = "swing"
+space = "plane"
+[parameters]
+m = 1
+l = {}
+g = 9.81
+[coordinates]
+theta = {{ start = 0.1, near = 0 }}
+[bodies.bob]
+shape = {{ kind = "rod", mass = "m", length = "l" }}
+joint = {{ kind = "revolute", angle = "theta - pi/2", torque = "{}" }}
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def test_coefficients_that_change_with_time_have_no_modes():
+    """K - sin(2 t): Mathieu's equation is not answered with the modes of an instant."""
+    result = run("-", text=SWING.format(1, "theta*sin(2*t)"))
+    assert result.exit_code == 3 and "change with time" in result.stderr
+
+
+def test_a_pole_of_the_coordinates_is_named():
+    """A spherical pendulum that hangs: its longitude moves nothing there."""
+    result = run(str(MODELS / "spherical_pendulum.toml"))
+    assert result.exit_code == 3 and "'phi' moves nothing there" in result.stderr
+
+
+def test_without_values_formulas_stand_and_numbers_are_missing():
+    """A length without a value: K, M, the frequency; no state matrix."""
+    model = eomgen.loads(SWING.format("{}", "0"))
+    found = eomgen.linearize(model)
+    payload = found.as_dict()
+    assert payload["stiffness"]["exact"] == [["1/2*m*l*g"]] and payload["stiffness"]["value"] is None
+    assert payload["state_matrix"] is None and payload["modes"] is None
+    assert "omega_1 = sqrt(3*g/(2*l))" in found.render("text").replace("1/2*sqrt(6*g/l)", "sqrt(3*g/(2*l))")
