@@ -33,12 +33,13 @@ from eomgen.mechanics.small_motions.reference import START, Reference, at_the_st
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
 from eomgen.symbolic import dense
-from eomgen.symbolic.evaluation import NoValue
+from eomgen.symbolic.evaluation import NoValue, operations
 from eomgen.symbolic.graph import Node
 
 PRIME = "'"
 REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly
+MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
 MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
 TIMES = (0.37, 1.19)  # later states of a steady motion, at which it must look the same [of the time of one unit]
 
@@ -106,7 +107,7 @@ def small_motions_of(
     _refuse_singular(raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
     numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
-    field = _exact_field(reference, choice)
+    field = _exact_field(reference, first, choice)
     exact = None
     if field is not None:
         whole = over_coordinates(field, Reducing(first, choice, field).equations(), kept)
@@ -115,10 +116,11 @@ def small_motions_of(
     return SmallMotions(reference, numbers, exact, left)
 
 
-def _exact_field(reference: Reference, choice: Choice) -> Exact | None:
+def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exact | None:
     """Exact entries, where the reference is known so and the work is bounded; None elsewhere."""
     small = len(choice.u) <= MOST_EXACT and max(len(choice.dq), len(choice.du)) <= MOST_FOLLOWING
-    if not reference.is_exact or not small:
+    long = operations(x for row in first.derivatives["R_q"] for x in row).total > MOST_OPERATIONS
+    if not reference.is_exact or not small or long:
         return None
     return Exact(reference.exact, positive_parameters(reference.system.scope), reference.trial)
 

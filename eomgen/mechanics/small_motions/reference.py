@@ -20,6 +20,7 @@ from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
+from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
@@ -76,10 +77,14 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     Args:
         guess: values of coordinates in place of `near` and `start`.
     Raises:
-        DerivationError: none was found, or rest is possible in many places.
+        DerivationError: none was found, or rest is possible in many places; a one-sided contact would have to pull.
         NotYet: speeds that are not rates.
     """
-    return _place(all_equilibria(system, guess).nearest(guess))
+    place = all_equilibria(system, guess).nearest(guess)
+    if contacts_of(system.scope.model) and (pulls := place.pulling):
+        raise DerivationError(f"'{pulls[0]}' would have to pull where the other forces balance",
+                              f"constraints.{pulls[0]}", "without it the system rests elsewhere")  # fmt: skip
+    return _place(place)
 
 
 def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float] | None = None) -> Reference:
