@@ -295,6 +295,45 @@ def test_a_four_bar_moves_alike_with_multipliers_and_with_dependent_coordinates(
     assert nonzero(other.spectrum.eigenvalues) == pytest.approx(nonzero(free.spectrum.eigenvalues), rel=1e-9)
 
 
+THREE_CRANKS = """[parameters]
+m = 1.0
+g = 9.81
+[coordinates]
+a = { start = -1.5, near = -1.5 }
+b = { start = 0, near = 0 }
+c = { start = -1.5, near = -1.5 }
+d = { start = -1.5, near = -1.5 }
+[bodies.A]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", angle = "a" }
+[bodies.B]
+shape = { kind = "rod", mass = "m", length = 2 }
+joint = { kind = "revolute", on = "A.end", angle = "b - a" }
+[bodies.C]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", at = [2, 0], angle = "c" }
+[bodies.D]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", at = [1, 0], angle = "d" }
+[constraints.p]
+kind = "pin"
+points = ["B.end", "C.end"]
+[constraints.r]
+kind = "pin"
+points = ["B.center", "D.end"]
+[forces.w]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def test_a_redundant_crank_changes_nothing_but_the_masses():
+    """Three parallel cranks and a coupler, one hinge too many: M = 3 m/3 + m, K = 3 m g/2 + m g"""
+    found = linearized(THREE_CRANKS)
+    ((M,),), ((K,),) = found.equations.M, found.equations.K
+    assert is_formula(M, "2*m", found.small) and is_formula(K, "5/2*m*g", found.small)
+
+
 def test_a_disc_rolls_in_a_bowl_as_a_pendulum_of_three_halves():
     """w^2 = 2 g/(3 (R - r)): with the no-slip row by a multiplier, and with the angle of the disc dependent"""
     text = """[parameters]

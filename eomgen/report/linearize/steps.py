@@ -30,6 +30,11 @@ ALONG = Law(
     r"K = Z^{\mathsf{T}}\left(R_{q} P + R_{u} Y + M X_{q}\right),\quad "
     r"C = Z^{\mathsf{T}}\left(R_{u} Z + M X_{u}\right)",
 )
+FOLLOW = Law(
+    "dq = P*dq_i,  du = Z*du_i + Y*dq_i,  da = Z*da_i + X_u*du_i + X_q*dq_i",
+    r"\delta q = P\, \delta q_{i},\quad \delta u = Z\, \delta u_{i} + Y\, \delta q_{i},\quad "
+    r"\delta a = Z\, \delta a_{i} + X_{u}\, \delta u_{i} + X_{q}\, \delta q_{i}",
+)
 PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C = \frac{\partial R}{\partial u}")
 DETERMINANT = Law("det(s^2*M + s*C + K)", r"\det\left(s^{2} M + s C + K\right)")
 STATE_DETERMINANT = Law("det(M)*det(s*1 - A)", r"\det M \det\left(s \mathbf{1} - A\right)")
@@ -80,6 +85,8 @@ def _equations(modes: Modes) -> Step:
         *listed(e.coordinates), " from it", ", along the ties" if tied else "", ": ", ALONG if tied else PLAIN, ".",
     ))]  # fmt: skip
     undamped = all(is_zero(x) for row in e.C for x in row)
+    if tied:
+        statements.append(Prose(("The ties, differentiated, say what follows: ", FOLLOW, ".")))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
     statements.append(Prose((law, ".")))
     if len(e.speeds) > MOST_SHOWN:
