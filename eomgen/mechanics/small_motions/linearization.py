@@ -12,6 +12,7 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.small_motions.field import Exact, Numbers
+from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
 from eomgen.mechanics.small_motions.forms import (
     NOTHING,
     carrying,
@@ -20,15 +21,7 @@ from eomgen.mechanics.small_motions.forms import (
     over_coordinates,
     restricted,
 )
-from eomgen.mechanics.small_motions.reduction import (
-    REST,
-    Choice,
-    FirstOrder,
-    LinearEquations,
-    Reducing,
-    choice_of,
-    first_order_of,
-)
+from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing
 from eomgen.mechanics.small_motions.reference import START, Reference, at_the_start, place_of_rest, relative_rest
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
