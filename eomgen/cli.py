@@ -1,163 +1,20 @@
-"""The command line: verbs, their options, and the conventions that all of them share. No physics.
-
-Results go to stdout, everything else to stderr. Exit codes: 0 ok, 1 the model is wrong, 2 usage,
-3 derivation or run failed, 4 an optional tool is missing. What a verb needs is imported inside it.
-"""
+"""The command line: the verbs and their options. No physics; what a verb needs is imported inside it."""
 
 from __future__ import annotations
 
-import json
-import os
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing
+from eomgen.shell import Verbs, deliver, reading
 from eomgen.version import __version__
 
 if TYPE_CHECKING:
-    from eomgen.model.parts import Model
     from eomgen.verbs.outcome import Outcome
 
-SCHEMA_VERSION = 1
-INTERRUPTED = 130  # as a shell has it for Ctrl-C
-CLOSED_PIPE = 141  # as a shell has it for a reader that went away
-LATER = ("verify", "sweep")
 FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
-
-
-class Verbs(click.Group):
-    """The group of all verbs: what goes wrong in any of them becomes a message and an exit code."""
-
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        name = args[0]
-        if not name.startswith("-") and self.get_command(ctx, name) is None:
-            raise click.UsageError(_unknown_verb(name, self.list_commands(ctx)), ctx)
-        return super().resolve_command(ctx, args)
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(self.commands)  # in the order in which they are used
-
-    def main(
-        self, args: Sequence[str] | None = None, prog_name: str | None = None, complete_var: str | None = None,
-        standalone_mode: bool = True, **extra: Any,
-    ) -> Any:  # fmt: skip
-        words = list(sys.argv[1:] if args is None else args)
-        name = prog_name or "eomgen"
-        if not standalone_mode:
-            return super().main(words, name, complete_var, standalone_mode=False, **extra)
-        sys.exit(self._run(words, name, complete_var, extra))
-
-    def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
-        wants_json = "--json" in words
-        try:
-            return super().main(words, name, complete_var, standalone_mode=False, **extra) or 0
-        except click.ClickException as error:
-            error.show()
-            return _told(error.exit_code, (Problem("", error.format_message()),), wants_json)
-        except EomgenError as error:
-            return self._failed(error.exit_code, _problems(error), wants_json)
-        except _Placed as error:
-            return self._failed(error.exit_code, error.problems, wants_json)
-        except ModuleNotFoundError as error:
-            if (error.name or "").split(".")[0] == "eomgen":
-                raise
-            missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
-            return self._failed(missing.exit_code, _problems(missing), wants_json)
-        except (click.Abort, KeyboardInterrupt):
-            return INTERRUPTED
-
-    def _failed(self, code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
-        click.echo("\n\n".join(str(problem) for problem in problems), err=True)
-        return _told(code, problems, wants_json)
-
-
-class _Placed(Exception):
-    """What went wrong with a model, at its places in the file."""
-
-    def __init__(self, exit_code: int, problems: tuple[Problem, ...]) -> None:
-        self.exit_code, self.problems = exit_code, problems
-
-
-def _unknown_verb(name: str, verbs: list[str]) -> str:
-    import difflib
-
-    if name in LATER:
-        return f"'{name}' comes with a later version."
-    near = difflib.get_close_matches(name, verbs, n=1)
-    return f"There is no command '{name}'." + (f" Did you mean '{near[0]}'?" if near else "")
-
-
-def _problems(error: EomgenError) -> tuple[Problem, ...]:
-    if isinstance(error, ModelError):
-        return error.problems
-    return (Problem(error.where, error.what, mend=error.mend),)
-
-
-def _told(code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
-    """The problems for machines, where they are asked for."""
-    if wants_json:
-        error = {"exit_code": code, "problems": [_as_dict(problem) for problem in problems]}
-        _say(json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, ensure_ascii=False, indent=1) + "\n")
-    return code
-
-
-def _as_dict(problem: Problem) -> dict[str, Any]:
-    """A problem with its place taken apart: file, line and column where there are any."""
-    file, line, column = (*problem.where.rsplit(":", 2), "", "")[:3]
-    placed = line.isdigit() and column.isdigit()
-    return {
-        "where": problem.where, "file": file if placed else None, "line": int(line) if placed else None,
-        "column": int(column) if placed else None, "what": problem.what, "excerpt": problem.excerpt,
-        "mend": problem.mend,
-    }  # fmt: skip
-
-
-def _say(text: str) -> None:
-    """On stdout; a reader that went away ends the program quietly."""
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left in the buffer goes nowhere
-        sys.exit(CLOSED_PIPE)
-
-
-def _deliver(outcome: Outcome, wants_json: bool, output: str | None = None) -> int:
-    """The result to stdout or into a file, the rest to stderr; the exit code."""
-    from eomgen.verbs.outcome import write_text
-
-    result = outcome.json if wants_json else outcome.text
-    if output is None:
-        _say(result)
-    else:
-        write_text(output, result)
-    for line in (*outcome.notes, outcome.failed):
-        if line:
-            click.echo(line, err=True)
-    return 3 if outcome.failed else 0
-
-
-@contextmanager
-def _reading(path: str) -> Iterator[Model]:
-    """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
-    from eomgen.model.reader import load, loads, located
-
-    data = sys.stdin.buffer.read() if path == "-" else None
-    try:
-        yield load(path) if data is None else loads(data, "<stdin>")
-    except EomgenError as error:
-        text = data if data is not None else Path(path).read_bytes() if os.access(path, os.R_OK) else b""
-        name = path if data is None else "<stdin>"
-        problems = tuple(located(problem, text, name) for problem in _problems(error))
-        raise _Placed(error.exit_code, problems) from error
-
-
-# -- the verbs -------------------------------------------------------------------------------------
 
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
@@ -176,9 +33,14 @@ def _written(function: Callable[..., int]) -> Callable[..., int]:
     return _common(format_(plot(function)))
 
 
-def _form(wants_json: bool, format_: str | None, output: str | None) -> str:
-    """The form of a result: as asked, else by the ending of the file."""
-    return "json" if wants_json else format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
+def _write(
+    found: Callable[..., Outcome], model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any
+) -> int:
+    """What a verb finds, in the form that is asked, else by the ending of the file."""
+    form = "json" if wants_json else format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
+    with reading(model) as declared:
+        outcome = found(declared, format=form, **options)
+    return deliver(outcome, form == "json", output)
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -197,7 +59,7 @@ def new(name: str, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
     from eomgen.verbs.new import new as made
 
-    return _deliver(made(name), wants_json)
+    return deliver(made(name), wants_json)
 
 
 @main.command()
@@ -206,9 +68,9 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
     """Validate a model; count its degrees of freedom."""
     from eomgen.verbs.check import check as checked
 
-    with _reading(model) as declared:
+    with reading(model) as declared:
         outcome = checked(declared)
-    return _deliver(outcome, wants_json, output)
+    return deliver(outcome, wants_json, output)
 
 
 @main.command()
@@ -225,10 +87,9 @@ def derive(
     """Derive the equations of motion and certify them."""
     from eomgen.verbs.derive import derive as derived
 
-    form = _form(wants_json, format_, output)
-    with _reading(model) as declared:
-        outcome = derived(declared, method=method, format=form, certify=not no_certify, full=full)
-    return _deliver(outcome, form == "json", output)
+    return _write(
+        derived, model, wants_json, output, format_, method=method, certify=not no_certify, full=full
+    )  # fmt: skip
 
 
 @main.command()
@@ -237,9 +98,9 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve as solved
 
-    with _reading(model) as declared:
+    with reading(model) as declared:
         outcome = solved(declared)
-    return _deliver(outcome, wants_json, output)
+    return deliver(outcome, wants_json, output)
 
 
 @main.command()
@@ -257,17 +118,16 @@ def reactions(
     """
     from eomgen.verbs.reactions import reactions as found
 
-    with _reading(model) as declared:
+    with reading(model) as declared:
         outcome = found(declared, at=at, from_rest=from_rest)
-    return _deliver(outcome, wants_json, output)
+    return deliver(outcome, wants_json, output)
 
 
 @main.command()
 @_written
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
-def statics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
-            **options: Any) -> int:  # fmt: skip
+def statics(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give reactions at rest by virtual work, or the places of rest.
 
     Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
@@ -276,10 +136,7 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
     """
     from eomgen.verbs.statics import statics as found
 
-    form = _form(wants_json, format_, output)
-    with _reading(model) as declared:
-        outcome = found(declared, format=form, plot=plot, **options)
-    return _deliver(outcome, form == "json", output)
+    return _write(found, model, wants_json, output, format_, **options)
 
 
 @main.command()
@@ -288,8 +145,7 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
 @click.option("--relative", multiple=True, metavar='"POINT in BODY"',
               help="Motion of a point on a moving body: transport, relative, Coriolis.")  # fmt: skip
-def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
-               **options: Any) -> int:  # fmt: skip
+def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give velocities and centres of rotation at one instant.
 
     Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
@@ -297,10 +153,7 @@ def kinematics(model: str, wants_json: bool, output: str | None, format_: str | 
     """
     from eomgen.verbs.kinematics import kinematics as found
 
-    form = _form(wants_json, format_, output)
-    with _reading(model) as declared:
-        outcome = found(declared, format=form, plot=plot, **options)
-    return _deliver(outcome, form == "json", output)
+    return _write(found, model, wants_json, output, format_, **options)
 
 
 @main.command()
@@ -308,8 +161,7 @@ def kinematics(model: str, wants_json: bool, output: str | None, format_: str | 
 @click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
 @click.option("--about", metavar="POINT", help="About this point too.")
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
-def inertia(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
-            **options: Any) -> int:  # fmt: skip
+def inertia(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give masses, mass centres, moments of inertia, principal axes.
 
     Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
@@ -317,10 +169,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
     """
     from eomgen.verbs.inertia import inertia as found
 
-    form = _form(wants_json, format_, output)
-    with _reading(model) as declared:
-        outcome = found(declared, format=form, plot=plot, **options)
-    return _deliver(outcome, form == "json", output)
+    return _write(found, model, wants_json, output, format_, **options)
 
 
 @main.command()
@@ -328,8 +177,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 @click.option("--about", type=click.Choice(["equilibrium", "start"]),
               help="The nearest place of rest, or the start, a steady motion.  [default: see [linearize]]")  # fmt: skip
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
-def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, plot: str | None,
-              **options: Any) -> int:  # fmt: skip
+def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give small motions about rest or a steady motion.
 
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
@@ -337,10 +185,7 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
     """
     from eomgen.verbs.linearize import linearize as found
 
-    form = _form(wants_json, format_, output)
-    with _reading(model) as declared:
-        outcome = found(declared, format=form, plot=plot, **options)
-    return _deliver(outcome, form == "json", output)
+    return _write(found, model, wants_json, output, format_, **options)
 
 
 @main.command()
@@ -362,12 +207,12 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
     """
     from eomgen.verbs.simulate import simulate as simulated
 
-    with _reading(model) as declared:
+    with reading(model) as declared:
         outcome = simulated(declared, output=output, **options)
     if output and not wants_json:
         click.echo(outcome.text, err=True, nl=False)
-        return _deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)
-    return _deliver(outcome, wants_json)
+        return deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)
+    return deliver(outcome, wants_json)
 
 
 @main.command()
@@ -380,9 +225,9 @@ def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem
-    with _reading(model) as declared:
+    with reading(model) as declared:
         outcome = generated(declared, stem=stem, origin=Path(model).name, target=target, directory=output)
-    return _deliver(outcome, wants_json)
+    return deliver(outcome, wants_json)
 
 
 @main.command()
@@ -392,7 +237,7 @@ def schema(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
     from eomgen.verbs.schema import schema as written
 
-    return _deliver(written(), wants_json, output)
+    return deliver(written(), wants_json, output)
 
 
 @main.command()
@@ -402,4 +247,4 @@ def doctor(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
     from eomgen.verbs.doctor import doctor as examined
 
-    return _deliver(examined(), wants_json, output)
+    return deliver(examined(), wants_json, output)

@@ -16,9 +16,10 @@ from click.testing import CliRunner
 import eomgen
 from eomgen import equations, pipeline
 from eomgen.certificate import Certificate
-from eomgen.cli import LATER, main
+from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.proof.check import Check
+from eomgen.shell import LATER
 from eomgen.version import __version__
 
 ROOT = Path(__file__).parent.parent
