@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
-class Annulus(Shape):
+class Annulus(Hollow):
     """A thin round plate about its centre (the origin), axis z, between the radii r (`inner`) and R.
 
     I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = half of it.
@@ -18,14 +18,6 @@ class Annulus(Shape):
 
     kind: ClassVar[str] = "annulus"
     dimension: ClassVar[int] = 2
-    radius: Length
-    inner: Length
-
-    def outline(self, value: Value) -> tuple[Line, ...]:
-        return circle(value(self.radius)), circle(value(self.inner))
-
-    def impossible(self, value: Value) -> str:
-        return not_inside(value(self.inner), value(self.radius))
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

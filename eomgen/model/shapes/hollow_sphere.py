@@ -4,14 +4,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
-class HollowSphere(Shape):
+class HollowSphere(Hollow):
     """A ball of radius R with a cavity of radius r (`inner`), about their centre (the origin).
 
     I = 2 m (R^5 - r^5) / (5 (R^3 - r^3)) about every axis.
@@ -19,14 +19,6 @@ class HollowSphere(Shape):
 
     kind: ClassVar[str] = "hollow_sphere"
     dimension: ClassVar[int] = 3
-    radius: Length
-    inner: Length
-
-    def outline(self, value: Value) -> tuple[Line, ...]:
-        return circle(value(self.radius)), circle(value(self.inner))
-
-    def impossible(self, value: Value) -> str:
-        return not_inside(value(self.inner), value(self.radius))
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

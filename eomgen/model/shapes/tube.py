@@ -5,12 +5,13 @@ from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, not_inside
+from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tube(Shape):
+class Tube(Hollow):
     """A cylinder of radius R with a bore of radius r (`inner`), about its centre (the origin), length l along z.
 
     I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = m (3 (R^2 + r^2) + l^2) / 12.
@@ -18,15 +19,7 @@ class Tube(Shape):
 
     kind: ClassVar[str] = "tube"
     dimension: ClassVar[int] = 3
-    radius: Length
-    inner: Length
     length: Length
-
-    def outline(self, value: Value) -> tuple[Line, ...]:
-        return circle(value(self.radius)), circle(value(self.inner))
-
-    def impossible(self, value: Value) -> str:
-        return not_inside(value(self.inner), value(self.radius))
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

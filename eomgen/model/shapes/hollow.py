@@ -1,0 +1,21 @@
+"""What lies between two concentric round surfaces."""
+
+from abc import ABC
+from dataclasses import dataclass
+
+from eomgen.model.kinds import Length
+from eomgen.model.shapes.base import Line, Shape, Value, circle, not_inside
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hollow(Shape, ABC):
+    """A round body of radius R with a concentric hole of radius r (`inner`)."""
+
+    radius: Length
+    inner: Length
+
+    def outline(self, value: Value) -> tuple[Line, ...]:
+        return circle(value(self.radius)), circle(value(self.inner))
+
+    def impossible(self, value: Value) -> str:
+        return not_inside(value(self.inner), value(self.radius))
