@@ -33,19 +33,34 @@ EXAMPLES = {
         (SPACE, f'{SEAT}, displacement = "a", axis = [1, 1, 1], angle = 0.7'),
         (SPACE, 'displacement = "l*cos(a)", axis = [0, 0, 5]'),
     ],
-    "cylindrical": [(SPACE, 'axis = [1, 2, 2], displacement = "a", angle = "b"')],
-    "screw": [(SPACE, 'axis = [0, 3, 4], angle = "a", pitch = 0.1')],
-    "universal": [(SPACE, 'axes = [[1, 0, 0], [0, 2, 0]], angles = ["a", "b"]')],
+    "cylindrical": [
+        (SPACE, 'axis = [1, 2, 2], displacement = "a", angle = "b"'),
+        (SPACE, f'{SEAT}, axis = [0, 0, -3], displacement = "l*sin(a) + w*t", angle = "a - b"'),
+    ],
+    "screw": [
+        (SPACE, 'axis = [0, 3, 4], angle = "a", pitch = 0.1'),
+        (SPACE, f'{SEAT}, axis = [1, 1, 1], angle = "a + b*c", pitch = "l"'),
+        (SPACE, 'axis = [0, 0, 1], angle = "a", pitch = 0'),
+    ],
+    "universal": [
+        (SPACE, 'axes = [[1, 0, 0], [0, 2, 0]], angles = ["a", "b"]'),
+        (SPACE, f'{SEAT}, axes = [[1, 2, 2], [0, 3, 4]], angles = ["a + b", "b*c"]'),
+        (SPACE, 'axes = [[0, 0, 1], [1, 0, "l"]], angles = ["w*t", "a"]'),
+    ],
     "planar": [
         (PLANE, 'x = "a", y = "b - w*t", angle = "c"'),
         (SPACE, f'{SEAT}, x = "a", y = "b", angle = "c + a"'),
     ],
     "spherical": [
-        (SPACE, 'orientation = "zxz", angles = ["a", "b", "c"]'),
+        *((SPACE, f'orientation = "{s}", angles = ["a", "b", "c"]') for s in SEQUENCES),
+        (SPACE, f'{SEAT}, orientation = "zyx", angles = ["a*b", "w*t", "c - a"]'),
     ],
     "free": [
         (PLANE, 'x = "a", y = "b", angle = "c"'),
-        (SPACE, 'position = ["a", "b", "c"], orientation = "xyz", angles = ["a", "b", "c"]'),
+        *(
+            (SPACE, f'position = ["a", "l*b", "c - w*t"], orientation = "{s}", angles = ["c", "a", "b"]')
+            for s in SEQUENCES
+        ),
     ],
     "placed": [
         (PLANE, 'at = ["l*cos(a)", "b*w*t"], angle = "a - c"'),

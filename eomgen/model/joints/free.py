@@ -4,19 +4,21 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, linear
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement
 from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.spatial import Pose
+from eomgen.symbolic.spatial import Pose, apply, transposed
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Free(Joint):
-    """In the plane s = (x, y, angle), as `planar` but with no wrench left in it. In space: read, not derived yet.
+    """In the plane s = (x, y, angle), as `planar` but with no wrench left in it; in space s = (position, angles).
+
+    In space X = (R(angles), position), S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (turning columns, 0), W = ().
 
     Args:
         x, y, angle: of `point` in the parent's axes [m], and of the child [rad] (plane).
@@ -35,7 +37,7 @@ class Free(Joint):
     omega: Omega | None = None
 
     def works_in(self, space: str) -> bool:
-        return space == "plane"
+        return space == "plane" or self.orientation != "quaternion"
 
     def turns(self) -> tuple[Expression, ...]:
         if self.angles is not None:
@@ -44,19 +46,27 @@ class Free(Joint):
         return tuple(as_expression(name) for name in names) or (() if self.angle is None else (self.angle,))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
+        if space == "space":
+            return (*(self.position or ()), *(self.angles or ()))
         return tuple(e or Expression.number(0) for e in (self.x, self.y, self.angle))
 
     def turn(self, s: Scalars, value: Value) -> Any:
         return s[2]
 
     def pose(self, s: Scalars, value: Value) -> Pose:
-        return in_plane(s)
+        if self.orientation is None:
+            return in_plane(s)
+        return Pose(rotation_by(self.orientation, s[3:]), s[:3])
 
     def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        return plane_subspace(s)
+        if self.orientation is None:
+            return plane_subspace(s)
+        R_CP = transposed(rotation_by(self.orientation, s[3:]))
+        along = (linear(apply(R_CP, e)) for e in (X, Y, Z))
+        return (*along, *turning_columns(self.orientation, s[3:]))
 
     def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        return PLANE_COMPLEMENT
+        return PLANE_COMPLEMENT if self.orientation is None else ()
 
     def efforts(self) -> tuple[Effort | None, ...]:
-        return (None, None, None)
+        return ()

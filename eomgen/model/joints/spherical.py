@@ -1,16 +1,17 @@
-"""Spherical: a ball joint. Read and checked; not derived yet."""
+"""Spherical: a ball joint."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
-from eomgen.model.joints.base import Joint
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence
+from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
 from eomgen.symbolic.expressions import Expression, as_expression
+from eomgen.symbolic.spatial import Pose
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spherical(Joint):
-    """The child turns about the joint point.
+    """The child turns about the joint point: s = the angles, S = their columns (`turning_columns`); W: all forces.
 
     Args:
         orientation: "zxz", "xyz", ... with `angles`, turned about the body's own successive axes, zxz:
@@ -19,11 +20,25 @@ class Spherical(Joint):
     """
 
     kind: ClassVar[str] = "spherical"
-    works: ClassVar[bool] = False
     orientation: Sequence
     angles: Angles | None = None
     quaternion: Quaternion | None = None
     omega: Omega | None = None
 
+    def works_in(self, space: str) -> bool:
+        return space == "space" and self.orientation != "quaternion"
+
     def turns(self) -> tuple[Expression, ...]:
         return self.angles or tuple(as_expression(name) for name in self.quaternion or ())
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return self.angles or ()
+
+    def pose(self, s: Scalars, value: Value) -> Pose:
+        return Pose(rotation_by(self.orientation, s))
+
+    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return turning_columns(self.orientation, s)
+
+    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+        return tuple(map(linear, (X, Y, Z)))
