@@ -16,6 +16,7 @@ from eomgen.mechanics.closure import gaps_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.gimbal import locks_of
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.wellposed import is_conservative
@@ -32,6 +33,7 @@ from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 
 METHODS = ("lagrange", "projection", "kinetostatic")
+LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
 
 
 def derive(model: Model, method: str = "lagrange") -> Equations:
@@ -140,6 +142,10 @@ def _watched(
         blocks = system.elimination.blocks
         determinants = _along(equations, tuple(block.determinant for block in blocks), p)
         run = ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
+    locks = locks_of(system.motion)
+    if locks:
+        determinants = _along(equations, tuple(lock.determinant for lock in locks), p)
+        run = ended_where_singular(run, determinants, list(map(str, locks)), again, rtol=tolerances[0], place=LOCKED)
     rank = rank_of_ties(system.ties)
     if rank and len(run.t):
         J = _along(equations, tuple(x for row in equations.graph.J for x in row), p)

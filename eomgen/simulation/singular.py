@@ -24,7 +24,8 @@ Again = Callable[[float, np.ndarray, float], np.ndarray]
 
 
 def ended_where_singular(
-    run: Trajectory, determinants: Determinants, what: Sequence[str], again: Again, *, rtol: float = 1e-9
+    run: Trajectory, determinants: Determinants, what: Sequence[str], again: Again, *, rtol: float = 1e-9,
+    place: str = "a dead centre or a change point",
 ) -> Trajectory:
     """The run, cut where a vanishing determinant led it astray.
 
@@ -33,6 +34,7 @@ def ended_where_singular(
         what: of each determinant, what is not determined where it vanishes: "'pin' does not determine 'phi'".
         again: (t0, x0, t1) -> x there, by a much finer integration; nan where it does not get there.
         rtol: of the run.
+        place: what such a position is called.
     """
     if len(run.t) == 0 or not what:
         return run
@@ -41,12 +43,14 @@ def ended_where_singular(
     allowed = max(AGREE, STEPS * rtol)
     for i, number in sorted((i, k) for k in range(len(what)) for i in _zeros(values[:, k])):
         if not _passed(run, i, again, allowed):
-            return _cut(run, i, _instant(run.t, values[:, number], i), what[number])
+            return _cut(run, i, _instant(run.t, values[:, number], i), what[number], place)
     if run.ok or run.status == "interrupted":
         return run
     k = int(np.argmin(abs(values[-1])))
     flipped = np.any(np.diff(np.sign(values[-3:, k])))
-    return _cut(run, len(run.t) - 1, run.phases[-1].end, what[k]) if flipped or abs(values[-1, k]) < LAST else run
+    if not flipped and abs(values[-1, k]) >= LAST:
+        return run
+    return _cut(run, len(run.t) - 1, run.phases[-1].end, what[k], place)
 
 
 def _zeros(values: np.ndarray) -> list[int]:
@@ -78,9 +82,9 @@ def _instant(t: np.ndarray, values: np.ndarray, i: int) -> float:
     return float(t[i] + (t[i + 1] - t[i]) * share)
 
 
-def _cut(run: Trajectory, i: int, instant: float, what: str) -> Trajectory:
+def _cut(run: Trajectory, i: int, instant: float, what: str, place: str) -> Trajectory:
     """The run up to its i-th instant."""
-    message = f"Stopped at t = {instant:.6g} s: {what} there (a dead centre or a change point)."
+    message = f"Stopped at t = {instant:.6g} s: {what} there ({place})."
     energy, drift = run.energy, run.drift
     if energy is not None:
         moved = np.abs(energy - energy[0])

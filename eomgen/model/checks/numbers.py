@@ -12,6 +12,7 @@ from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, Path, shown, whereabouts
 from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.spatial import cross
 
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:
@@ -25,6 +26,7 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
         if sign:
             yield from _sign(leaf, expression, number_of(expression, values))
     yield from _directions(catalog, values)
+    yield from _crossing(catalog, values)
     yield from _positive(catalog, values)
     yield from _inertias(catalog, values)
     yield from made(catalog, values)
@@ -72,6 +74,18 @@ def _directions(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding
         named = any(component.literal is None for component in leaf.value)
         if named and all(number_of(component, values) == 0 for component in leaf.value):
             yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+
+
+def _crossing(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding]:
+    """The two axes of a universal joint that its numbers make parallel: it then turns about one axis alone."""
+    for name, body in catalog.table("bodies").items():
+        axes = getattr(getattr(body, "joint", None), "axes", None)
+        if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
+            continue
+        a, b = ([number_of(component, values) for component in axis] for axis in axes)
+        if None not in (*a, *b) and any(a) and any(b) and not any(cross(tuple(a), tuple(b))):
+            what = f"the two axes of the universal joint of body '{name}' are parallel"
+            yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
 
 
 def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:
