@@ -27,7 +27,7 @@ from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.start import fixed_by_position
+from eomgen.mechanics.start import fixed_by_position, start_speeds
 from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.ties import holds_identically
@@ -38,7 +38,7 @@ from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.functions import inner
+from eomgen.symbolic.functions import inner, over, sqrt
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import legible, readable_all
 
@@ -279,7 +279,8 @@ def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
     for q in scope.symbols.q:
         if q not in sought:
             start[q] = start_value(scope, model.coordinates[q.name])
-    for u in scope.symbols.u:
-        speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
-        start[u] = 0 if at_rest else scope.value(speed)
-    return start
+    for four in scope.quaternions:
+        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+        start |= {e: over(start[e], norm) for e in four}
+    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(situation.system)
+    return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))

@@ -17,6 +17,7 @@ from eomgen.mechanics.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar
 
 STEPS = 60  # of the search
@@ -72,7 +73,17 @@ def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -
     """Coordinates that lie about those given, soon after t = 0."""
     symbols = ties.motion.scope.symbols
     shifted = {node: number(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
+    shifted |= on_spheres(ties.motion.scope.quaternions, shifted)
     return shifted | {symbols.t: number(rng.uniform(0, spread))}
+
+
+def on_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
+    """The symbols whose squares add up to 1, over their norm."""
+    found: State = {}
+    for symbols in spheres:
+        (norm,) = evaluate((sqrt(sum((x * x for x in symbols), start=0)),), state, fifty_digits())
+        found |= {x: state[x] / norm for x in symbols}
+    return found
 
 
 def number(value: float) -> Any:
@@ -95,8 +106,9 @@ def movable(ties: Ties) -> list[Node]:
 
 
 def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
-    """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
-    return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
+    """phi of every row that the coordinates do not satisfy by themselves, where it has one; e . e - 1 of quaternions."""
+    norms = (sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
+    return (*(row.gap for row in ties.rows if row.gap is not None and not row.identical), *norms)
 
 
 def closed(ties: Ties, state: State, free: Sequence[Node]) -> State | None:

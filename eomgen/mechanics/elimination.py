@@ -16,7 +16,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.closure import generic_state, scattered_state
-from eomgen.mechanics.scope import Scope
+from eomgen.mechanics.scope import Scope, with_speeds_named
 from eomgen.mechanics.ties import Ties, holds_identically
 from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent
@@ -179,11 +179,11 @@ def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple
     """(A, b, blocks) of u_d = A u_i + b."""
     system = [{j: ties.J[i][k] for j, k in enumerate(dependent)} for i in rows]
     right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
-    solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=_shorter)
+    solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=shorter)
     return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
 
 
-def _shorter(x: Scalar) -> Scalar:
+def shorter(x: Scalar) -> Scalar:
     """x as one quotient without common factors, where that takes fewer operations and x is not long."""
     if type(x) is not Node or text_size(x) > LONGEST or len(symbols_of((x,))) > MOST:
         return x
@@ -201,12 +201,12 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
         own = rates.get(q.name, (tuple(row[k] for k in kept), bias))
         N.append(own[0])
         nu.append(own[1])
-    reduced = Scope(scope.model, symbols, tuple(N), tuple(nu), scope.names)
+    reduced = replace(scope, symbols=symbols, N=tuple(N), nu=tuple(nu))
     given = {q.name: rate for q, rate in zip(symbols.q, reduced.rates, strict=True) if q.name in rates}
     second = reduced.with_accelerations(tuple(given.values()))
     names = {f"{name}'": rate for name, rate in given.items()}
     names |= {f"{name}''": acceleration for name, acceleration in zip(given, second, strict=True)}
-    return replace(reduced, names={**scope.names, **names})
+    return with_speeds_named(replace(reduced, names={**scope.names, **names}))
 
 
 def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> Block:

@@ -1,6 +1,7 @@
 """Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant ties by name.
 
-By rank:     f = nu - rank J  at a generic configuration in which the ties hold.
+By rank:     f = nu - rank J  at a generic configuration in which the ties hold; of a quaternion's four rates its norm
+             takes one.
 By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given motions
              (in space 6 Nb + 3 Np); it counts redundant components too, and then says too little.
 """
@@ -88,7 +89,8 @@ def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
         redundant = redundant_rows(ties)
     except EomgenError as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
-    speeds = len(ties.motion.scope.symbols.u)
+    scope = ties.motion.scope
+    speeds = len(scope.symbols.u) - len(scope.quaternions)
     return Freedom(speeds - len(ties.closing) + len(redundant), count, formula, redundant, identical, closing)
 
 
@@ -132,7 +134,9 @@ def _components(link: Link, free: int) -> int:
 
 def freedoms(ties: Ties, state: State | None = None) -> int:
     """nu - rank J; the state and the errors are those of `redundant_rows`."""
-    return len(ties.motion.scope.symbols.u) - rank_of_ties(ties, state)
+    scope = ties.motion.scope
+    turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
+    return len(scope.symbols.u) - turning - rank_of_ties(ties, state)
 
 
 def rank_of_ties(ties: Ties, state: State | None = None) -> int:

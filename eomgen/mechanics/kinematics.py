@@ -51,7 +51,7 @@ class Link:
         joint: the model's joint (None: the ground's frame).
         before: where the joint sits in the parent's frame (`at`, `turned`).
         point: where the joint sits in this body, body axes, 3 [m].
-        s, s_rate: the joint's variables and s' = D u + d.
+        s, s_rate: the joint's variables and s' = D u + d; of a quaternion the angular velocity in place of its rates.
         relative: the joint's pose at s.
         S: columns of the subspace, each (w, v), at the joint point, child's axes.
         pose: of the body's frame in the ground.
@@ -193,7 +193,7 @@ def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> 
     before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
     point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
     s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
-    s_rate = scope.time_derivative(s)
+    s_rate = (*scope.time_derivative(s[: -4 if joint.spins else None]), *(scope.names[w] for w in joint.spins))
     relative = joint.pose(s, scope.value)
     S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
     local = before.then(relative)

@@ -81,9 +81,12 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
     """
     if system.free is None:
         return _accelerations(system, state)
-    free = system.free.scope.symbols.u
-    own = [free.index(u) for u in system.scope.symbols.u]
-    return _accelerations(system.free, state | free_speeds(system, system.free, state))[own]
+    free = system.free.scope
+    state = state | free_speeds(system, system.free, state)
+    found = _accelerations(system.free, state)
+    state |= {a: fifty_digits().number(1) * float(x) for a, x in zip(free.symbols.a, found, strict=True)}
+    own = evaluate(tuple(free.names[a.name] for a in system.scope.symbols.a), state, fifty_digits())
+    return np.array([float(x) for x in own])
 
 
 def free_speeds(system: System, free: System, state: State) -> State:
@@ -96,7 +99,8 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     """a of a system in which every tie that closes has its multiplier."""
     numbers = Numbers(system, state)
     links = system.motion.links
-    n, nu, k = len(links), len(system.scope.symbols.u), len(system.ties.closing)
+    n, nu = len(links), len(system.scope.symbols.u)
+    k = len(system.ties.closing) + len(system.scope.quaternions)
     size = 12 * n + nu + k
     A, right = np.zeros((size, size)), np.zeros(size)
     speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
@@ -191,6 +195,18 @@ def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slic
         A[place, 12 * n : 12 * n + len(J)] = numbers.array(J)
         A[12 * n : 12 * n + len(J), place] = -numbers.array(gradient(row.direct, system.scope.symbols.u))
         right[place] = -float(numbers.rate((row.velocity,))[0])
+    _hold_norms(numbers, A, right, multipliers.start + len(system.ties.closing))
+
+
+def _hold_norms(numbers: Numbers, A: np.ndarray, right: np.ndarray, place: int) -> None:
+    """e . e'' + e' . e' = 0 of every quaternion, with a multiplier of its own."""
+    scope, n = numbers.system.scope, len(numbers.system.motion.links)
+    speeds = [u.name for u in scope.symbols.u]
+    for j, four in enumerate(scope.quaternions, start=place):
+        for e in four:
+            k = 12 * n + speeds.index(f"{e.name}'")
+            A[j, k] = A[k, j] = float(numbers.at((e,))[0])
+            right[j] -= float(numbers.at((scope.names[f"{e.name}'"],))[0]) ** 2
 
 
 def _tilde(a: np.ndarray) -> np.ndarray:

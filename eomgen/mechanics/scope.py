@@ -1,17 +1,20 @@
 """Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
 
 q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero
-row of N and its given rate in nu; a dependent one has the row that the ties give, and is free until then.
+row of N and its given rate in nu; a dependent one has the row that the ties give, and is free until then. Declared
+speeds take the place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError
 from eomgen.model.composite import Composite
+from eomgen.model.joints.orientation import spin_of_quaternion
 from eomgen.model.parts import Coordinate, Model
+from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expressions import Expression
@@ -30,6 +33,7 @@ class Scope:
         N, nu: q' = N u + nu; N has nq rows of nu entries.
         names: what each name of an expression stands for: parameters, unknowns, q, u, `theta'`, `theta''`, inputs,
             t, pi.
+        quaternions: four coordinates each, whose squares add up to 1.
     """
 
     model: Model
@@ -37,6 +41,7 @@ class Scope:
     N: tuple[tuple[Scalar, ...], ...]
     nu: tuple[Scalar, ...]
     names: dict[str, Scalar]
+    quaternions: tuple[tuple[Node, ...], ...] = ()
 
     @property
     def graph(self) -> Graph:
@@ -90,14 +95,13 @@ class Scope:
 
 
 def scope_of(model: Model) -> Scope:
-    """The symbols of a model, its kinematic equations, and the meaning of its names; dependent coordinates are free.
+    """The symbols of a model, its kinematic equations, and the meaning of its names.
+
+    Every rate is a speed of its own here, of dependent coordinates and of those of a quaternion too.
 
     Raises:
-        NotYet: declared speeds, which this version does not derive.
         DerivationError: a given acceleration whose integral has no closed form.
     """
-    if model.speeds:
-        raise NotYet("declared speeds are not derived yet", "speeds", "use the rates of the coordinates")
     model = in_parts(model)
     graph = Graph()
     t = graph.symbol("t")
@@ -124,7 +128,22 @@ def scope_of(model: Model) -> Scope:
             names[name + "'"], names[name + "''"] = rate, tangent((rate,), {t: 1})[0]
             N.append((0,) * len(free))
             nu.append(rate)
-    return Scope(model, symbols, tuple(N), tuple(nu), names)
+    quaternions = tuple(tuple(names[e] for e in each.coordinates) for each in quaternions_of(model))
+    for four in quaternions:
+        graph.hold_on_sphere(four)
+    return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions))
+
+
+def with_speeds_named(scope: Scope) -> Scope:
+    """The scope in which declared speeds, and their derivatives, stand for what they are in its own speeds."""
+    model, names = scope.model, scope.names
+    found = {name: part.rate.evaluate(names) for name, part in model.speeds.items() if part.rate is not None}
+    for each in quaternions_of(model):
+        e, rates = (tuple(names[name + prime] for name in each.coordinates) for prime in ("", "'"))
+        found |= dict(zip(each.speeds, spin_of_quaternion(e, rates), strict=True))
+    rates = scope.with_accelerations(tuple(found.values()))
+    found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
+    return replace(scope, names={**names, **found})
 
 
 def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str) -> Scalar:

@@ -6,6 +6,7 @@ else from `start`; those that only velocity ties move really start at `start`.
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
@@ -16,8 +17,8 @@ from eomgen.mechanics.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.values import first_guesses, numeric_parameters, start_values
-from eomgen.symbolic.derivative import depends_on, gradient, symbols_of
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
+from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar
 
 OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
@@ -52,6 +53,33 @@ def start_state(
     return {node.name: float(state[node]) for node in (*system.symbols.q, *system.symbols.u)}
 
 
+def start_speeds(system: System) -> dict[Node, Scalar]:
+    """Every speed at the start, as functions of the parameters and of where it starts.
+
+    A declared speed without a start of its own is what the start speeds of the coordinates make it.
+    """
+    scope = system.scope
+    model, found = scope.model, {}
+    rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
+    for u in scope.symbols.u:
+        if u.name in rates:
+            found[u] = rates[u.name]
+        elif model.speeds[u.name].start is not None:
+            found[u] = scope.value(model.speeds[u.name].start)
+        else:
+            found[u] = _by_rates(system, u.name, rates)
+    return found
+
+
+def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar:
+    """A declared speed at given rates, those of dependent coordinates as the ties make them, at t = 0."""
+    free = system.free
+    assert free is not None, "declared speeds leave the system over the rates behind"
+    scope = free.scope if system.elimination is None else system.elimination.scope
+    known: dict[Node, Scalar] = {u: rates[u.name] for u in scope.symbols.u}
+    return substituted((scope.names[speed],), {**known, scope.symbols.t: 0})[0]
+
+
 def fixed_by_position(system: System) -> list[Node]:
     """The dependent coordinates that stand in a gap."""
     names = dependent_coordinates(system.scope)
@@ -69,7 +97,35 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
     guesses = first_guesses(system.scope.model, parameters)
     sought = {node.name for node in fixed_by_position(system)}
     values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
+    values |= _normed(system, values)
+    values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}
     return {name: float(values[name]) for name in names}
+
+
+def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
+    """The coordinates of quaternions over their norm."""
+    found = {}
+    for four in system.scope.quaternions:
+        norm = math.sqrt(sum(values[e.name] ** 2 for e in four))
+        if norm == 0:
+            raise UsageError(f"the quaternion {', '.join(e.name for e in four)} cannot start at 0")
+        found |= {e.name: values[e.name] / norm for e in four}
+    return found
+
+
+def _by_coordinates(
+    system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None
+) -> dict[str, float]:
+    """The declared speeds that have no start of their own, by the start speeds of the coordinates."""
+    model, symbols = system.scope.model, system.symbols
+    silent = [u for u in symbols.u if u.name in model.speeds and model.speeds[u.name].start is None]
+    formulas = start_speeds(system) if silent else {}
+    asked = tuple(formulas[u] for u in silent)
+    used = set(symbols_of(asked))
+    p = numeric_parameters(model, parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
+    state = {symbols.parameters[name]: value for name, value in p.items()}
+    state |= {q: values[q.name] for q in symbols.q}
+    return {u.name: float(x) for u, x in zip(silent, evaluate(asked, state, FLOAT), strict=True)}
 
 
 def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None) -> State:

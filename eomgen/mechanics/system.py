@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.elimination import Elimination, dependent_coordinates, elimination_of
+from eomgen.mechanics.declared_speeds import Solved, with_declared_speeds
+from eomgen.mechanics.elimination import Elimination, dependent_coordinates, elimination_of, shorter
 from eomgen.mechanics.kinematics import Motion, motion_of
 from eomgen.mechanics.loads import Loads, loads_of
 from eomgen.mechanics.scope import Scope, scope_of
-from eomgen.mechanics.ties import Ties, ties_of
+from eomgen.mechanics.ties import Ties, holds_identically, ties_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.symbols import Symbols
@@ -23,7 +24,9 @@ class System:
         motion, loads, ties: over the independent speeds alone.
         modes: how the contacts are that can end, rub or stick, by tie.
         elimination: how the dependent coordinates follow; None where there are none.
-        free: the same system before it, dependent coordinates free and all ties closing; None where there are none.
+        free: the same system with every rate a speed, dependent coordinates free and all ties closing; None where it
+            is the same.
+        declared: the rates that follow from declared speeds, and where these do not determine them.
     """
 
     motion: Motion
@@ -32,6 +35,7 @@ class System:
     modes: Modes = field(default_factory=dict)
     elimination: Elimination | None = None
     free: System | None = None
+    declared: tuple[Solved, ...] = ()
 
     @property
     def scope(self) -> Scope:
@@ -60,7 +64,7 @@ def system_of(model: Model, modes: Modes | None = None) -> System:
         DerivationError: what the model says cannot be derived.
     """
     free = free_system_of(model, modes)
-    return reduced(free) if dependent_coordinates(free.scope) else free
+    return reduced(free) if dependent_coordinates(free.scope) or model.speeds else free
 
 
 def free_system_of(model: Model, modes: Modes | None = None) -> System:
@@ -70,12 +74,17 @@ def free_system_of(model: Model, modes: Modes | None = None) -> System:
 
 
 def reduced(free: System) -> System:
-    """The system over its independent speeds: q' = N u + nu with N = [1; A], nu = [0; b].
+    """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
 
     Raises:
         DerivationError: a dependent coordinate that no tie determines.
+        ModelError: declared speeds that do not determine the rates.
     """
-    elimination = elimination_of(free.ties)
-    motion = motion_of(elimination.scope)
-    ties = ties_of(motion, elimination.used, free.modes)
-    return System(motion, loads_of(motion), ties, free.modes, elimination, free)
+    elimination = elimination_of(free.ties) if dependent_coordinates(free.scope) else None
+    scope = free.scope if elimination is None else elimination.scope
+    solved: tuple[Solved, ...] = ()
+    if scope.model.speeds:
+        scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
+    motion = motion_of(scope)
+    ties = ties_of(motion, {} if elimination is None else elimination.used, free.modes)
+    return System(motion, loads_of(motion), ties, free.modes, elimination, free, solved)

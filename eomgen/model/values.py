@@ -8,6 +8,7 @@ from eomgen.errors import ExpressionError, MissingValues, ModelError
 from eomgen.model.arithmetic import Number, in_order
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
+from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic.expressions import Expression, as_expression
 
 
@@ -74,7 +75,22 @@ def start_values(
         u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
     for name, speed in model.speeds.items():
         u[name] = _float(speed.start, lookup, f"speeds.{name}")
+    for each in quaternions_of(model):
+        q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each.body), strict=True))
     return q, u
+
+
+def _normed(e: list[float], body: str) -> list[float]:
+    """A quaternion over its norm.
+
+    Raises:
+        ModelError: it is 0.
+    """
+    norm = math.sqrt(sum(x * x for x in e))
+    if norm == 0:
+        raise ModelError(f"the quaternion of body '{body}' starts at 0", f"bodies.{body}.joint.quaternion",
+                         "start = 1 of its first coordinate: no turn")  # fmt: skip
+    return [x / norm for x in e]
 
 
 def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:

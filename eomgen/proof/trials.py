@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.closure import generic_state, on_spheres
 from eomgen.mechanics.contacts import CLOSED
 from eomgen.mechanics.equilibrium import imbalance
 from eomgen.mechanics.friction import frictions
@@ -63,7 +63,7 @@ def real_state(system: System, rng: Random) -> State:
     state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
     state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
-    return state
+    return state | on_spheres(system.scope.quaternions, state)
 
 
 def closed_state(system: System, rng: Random) -> tuple[State, str]:

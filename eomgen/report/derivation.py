@@ -89,7 +89,12 @@ def _by_method(
 
 
 def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
-    """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations."""
+    """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations.
+
+    Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
+    """
+    if system.scope.model.speeds:
+        return _projection(system, reader, assembly)
     if system.free is None:
         return _by_energies(system, reader, assembly)
     if _is_integrable(system, assembly):
@@ -168,6 +173,7 @@ def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tup
     own = projection.assemble(system)
     steps: tuple[Step, ...] = (
         motion_steps.positions_step(system, reader),
+        *motion_steps.speeds_step(system, reader),
         projection_steps.twists_step(system, reader),
         *motion_steps.constraints_step(system, reader),
     )

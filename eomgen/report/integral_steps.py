@@ -36,10 +36,14 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
     statements: list[Statement] = []
     if cyclic:
         moving = {q.name: q for q in symbols.q}
-        statements.append(_cyclic(tuple(moving[each.coordinate] for each in cyclic)))
-        rates = {u.name: u for u in symbols.u}
-        pairs = [(Partial(Name("T"), rates[each.coordinate + "'"]), each.expression) for each in cyclic]
-        statements += page(reader, pairs)
+        speeds = {u.name.removesuffix("'"): u for u in symbols.u}
+        rates = [each for each in cyclic if speeds[each.coordinate].name != each.coordinate]
+        if rates:
+            statements.append(_cyclic(tuple(moving[each.coordinate] for each in rates)))
+        for each in (*rates, *(other for other in cyclic if other not in rates)):
+            if each not in rates:
+                statements.append(Prose(("The momentum of the speed ", speeds[each.coordinate], " stays constant:")))
+            statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
     for energy in energy_integral(system, assembly):
         statements += _energy(reader, assembly, energy)
     return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()

@@ -30,6 +30,7 @@ def kinetostatic_steps(
     own = projection.assemble(system)
     steps = (
         motion_steps.positions_step(system, reader),
+        *motion_steps.speeds_step(system, reader),
         projection_steps.twists_step(system, reader),
         *motion_steps.constraints_step(system, reader),
         reactions_table_step(letters),

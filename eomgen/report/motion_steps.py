@@ -9,6 +9,7 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import PointForce
+from eomgen.model.quaternions import quaternions_of
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Law, Meaning, Name, Prose, Rate, Side, Statement, Step, Table
@@ -77,6 +78,24 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
     return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
 
 
+def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
+    """The speeds that are no rates, and the rates of the coordinates in terms of them; no step where there are none."""
+    model, scope = system.scope.model, system.scope
+    if not model.speeds or system.free is None:
+        return ()
+    meant = [(u, system.free.scope.names[u.name]) for u in scope.symbols.u if u.name in model.speeds]
+    own = {f"{u.name}" for u in scope.symbols.u}
+    rates: list[Pair] = [
+        (Rate(q), rate) for q, rate in zip(scope.symbols.q, scope.rates, strict=True)
+        if f"{q.name}'" not in own and not model.coordinates[q.name].driven
+    ]  # fmt: skip
+    statements: list[Statement] = [Prose(("The speeds are combinations of the rates:",)), *page(reader, meant)]
+    for each in quaternions_of(model):
+        words = f"{', '.join(each.coordinates)} is a unit quaternion, and {', '.join(each.speeds)} "
+        statements.append(Prose((words, f"is the angular velocity of {each.body} against what it hangs on.",)))
+    return (Step("speeds", "Speeds", (*statements, Prose(("Solved for the rates:",)), *page(reader, rates))),)
+
+
 def at_rest(velocity: Vector) -> bool:
     """True where every component is zero."""
     return all(is_zero(x) for x in velocity)
@@ -104,7 +123,7 @@ def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
     held = _held(system)
     if held:
         statements += [Prose(("These must vanish along the motion:",)), *page(reader, held, then=(0,))]
-    if system.free is not None:
+    if system.free is not None and system.elimination is not None:
         statements += _dependent(system, system.free, reader)
     if system.ties.closing:
         statements.append(_multipliers(system))
@@ -120,7 +139,8 @@ def _held(system: System) -> list[Pair]:
 def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
     """The rates of the dependent coordinates, and how derivatives are meant from here on."""
     known = dict(zip((q.name for q in system.symbols.q), system.scope.rates, strict=True))
-    solved = [u for u in free.symbols.u if u not in system.symbols.u]
+    parts = system.scope.model.coordinates
+    solved = [u for u in free.symbols.u if parts[u.name[:-1]].dependent]
     rates: list[Pair] = [(u, known[u.name[:-1]]) for u in solved]
     return [
         Prose(("Their time derivatives are linear in the rates. Solved for those of the dependent coordinates:",)),

@@ -106,9 +106,11 @@ def along_the_motion(
     system: System, reader: Reader, assembly: Assembly, letters: Lettered
 ) -> tuple[Step, ...]:
     """The reactions as functions of the coordinates alone, where first integrals give the speeds and that is short."""
+    if system.free is not None:
+        return ()
     readings, start = readings_of(system, reader, assembly), _start(system)
     accelerations, positive = readings.accelerations, readings.positive
-    if not accelerations or start is None or system.free is not None:
+    if not accelerations or start is None:
         return ()
     rates = rates_of(system, assembly, start, accelerations=tuple(accelerations.values()))
     if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:

@@ -67,7 +67,7 @@ def _freedom(system: System) -> Step:
     """How many coordinates, how many of them are driven, how many rows close."""
     symbols, closing = system.symbols, system.ties.closing
     dependent = len(dependent_coordinates(system.scope))
-    driven = len(symbols.q) - len(symbols.u) - dependent
+    driven = sum(part.driven for part in system.scope.model.coordinates.values())
     others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
     statements: list[Statement] = [Prose((
         f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
@@ -120,6 +120,7 @@ def _coordinates(system: System) -> Step:
             speed = "" if part.dependent else _start(part, part.speed, values)
             rows.append(Meaning(u, "its rate", _per(unit, "s"), speed))
             rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
+    rows += _speeds(system)
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
     driven: list[Statement] = []
@@ -131,6 +132,26 @@ def _coordinates(system: System) -> Step:
     if driven:
         statements += [Prose(("Driven coordinates move as given:",)), *driven]
     return Step("coordinates", "Coordinates", tuple(statements))
+
+
+def _speeds(system: System) -> list[Meaning]:
+    """The speeds that are no rates, and their derivatives."""
+    model, symbols = system.scope.model, system.symbols
+    values = exact_parameters(model)
+    rows: list[Meaning] = []
+    for u, a in zip(symbols.u, symbols.a, strict=True):
+        if u.name in model.speeds:
+            part = model.speeds[u.name]
+            start = "" if part.start is None else _start_text(part.start, values)
+            rows += [Meaning(u, part.about or "speed", "", start), Meaning(a, "its derivative", "")]
+    return rows
+
+
+def _start_text(expression, values) -> str:
+    """A start value in SI; an expression of parameters without values as text."""
+    if not expression.names <= values.keys() | {"pi"}:
+        return expression.text
+    return f"{float(expression.evaluate({**values, 'pi': math.pi})):.10g}"
 
 
 def _per(unit: str, time: str) -> str:
@@ -148,6 +169,6 @@ def _start(part, expression, values) -> str:
 
 
 def moved_coordinates(system: System) -> tuple[Node, ...]:
-    """The coordinate of each speed."""
-    by_name = {q.name: q for q in system.symbols.q}
-    return tuple(by_name[u.name.removesuffix("'")] for u in system.symbols.u)
+    """The coordinate of each speed; of a speed that is no rate the speed itself."""
+    rates = {f"{q.name}'": q for q in system.symbols.q}
+    return tuple(rates.get(u.name, u) for u in system.symbols.u)

@@ -120,7 +120,26 @@ def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic =
         elif x.op not in ALGEBRAIC and not (x.op == "pow" and type(x.args[1]) is int):
             values[x] = _random(arithmetic, rng)
             independent = False
+    for symbols in _spheres(nodes):
+        values |= zip(symbols, _unit_vector(arithmetic, rng, len(symbols)), strict=True)
     return State(values, independent)
+
+
+def _spheres(nodes: Iterable[Node]) -> list[tuple[Node, ...]]:
+    """The sets of symbols among them whose squares add up to 1."""
+    graphs = {x.graph: None for x in nodes}
+    return [symbols for graph in graphs for symbols in graph.spheres]
+
+
+def _unit_vector(arithmetic: Arithmetic, rng: Random, size: int) -> list[Any]:
+    """A random point of the unit sphere: (1 - r.r, 2 r) / (1 + r.r)."""
+    f, one = arithmetic.functions, arithmetic.number(1)
+    r = [_random(arithmetic, rng) for _ in range(size - 1)]
+    square = arithmetic.number(0)
+    for x in r:
+        square = f["add"](square, f["mul"](x, x))
+    below = f["div"](one, f["add"](one, square))
+    return [f["mul"](f["sub"](one, square), below), *(f["mul"](f["add"](x, x), below) for x in r)]
 
 
 class _Circle:
@@ -235,6 +254,8 @@ def _real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) ->
     symbols = [x for x in order(flat) if x.op == "symbol"]
     for attempt in range(REAL_TRIES):
         values = {x: arithmetic.number(_real(x, rng, attempt)) for x in symbols}
+        for four in _spheres(symbols):
+            values |= zip(four, _unit_vector(arithmetic, rng, len(four)), strict=True)
         try:
             return evaluate(flat, values, arithmetic)
         except NoValue:

@@ -51,6 +51,7 @@ class Graph:
         self._adopted: dict[Node, Node] = {}
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
+        self.spheres: list[tuple[Node, ...]] = []
 
     def __len__(self) -> int:
         return len(self._nodes)
@@ -72,6 +73,10 @@ class Graph:
         symbol = self.symbol(name)
         self._constants.add(symbol)
         return symbol
+
+    def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
+        """Symbols whose squares always add up to 1, as those of a unit quaternion: so are values chosen for them."""
+        self.spheres.append(symbols)
 
     def is_constant(self, x: Scalar) -> bool:
         """Whether x is made of numbers and of symbols that stay the same."""

@@ -82,6 +82,11 @@ class Joint(Part):
         """The expressions that turn the child against the parent."""
         return ()
 
+    @property
+    def spins(self) -> tuple[str, ...]:
+        """Of a joint whose last four variables are a quaternion: the speeds that S takes in place of their rates."""
+        return ()
+
     def works_in(self, space: str) -> bool:
         """Whether this version derives the joint in this space."""
         return self.works

@@ -5,20 +5,21 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, linear
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement
 from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.spatial import Pose, apply, transposed
+from eomgen.symbolic.spatial import Pose, apply, transposed, vector_of
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Free(Joint):
-    """In the plane s = (x, y, angle), as `planar` but with no wrench left in it; in space s = (position, angles).
+    """In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
 
-    In space X = (R(angles), position), S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (turning columns, 0), W = ().
+    In space s = (position, angles or quaternion), X = (R, position),
+    S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (columns as of `spherical`), W = ().
 
     Args:
         x, y, angle: of `point` in the parent's axes [m], and of the child [rad] (plane).
@@ -36,8 +37,9 @@ class Free(Joint):
     quaternion: Quaternion | None = None
     omega: Omega | None = None
 
-    def works_in(self, space: str) -> bool:
-        return space == "plane" or self.orientation != "quaternion"
+    @property
+    def spins(self) -> tuple[str, ...]:
+        return (self.omega or ()) if self.orientation == "quaternion" else ()
 
     def turns(self) -> tuple[Expression, ...]:
         if self.angles is not None:
@@ -47,7 +49,7 @@ class Free(Joint):
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         if space == "space":
-            return (*(self.position or ()), *(self.angles or ()))
+            return (*(self.position or ()), *self.turns())
         return tuple(e or Expression.number(0) for e in (self.x, self.y, self.angle))
 
     def turn(self, s: Scalars, value: Value) -> Any:
@@ -56,14 +58,14 @@ class Free(Joint):
     def pose(self, s: Scalars, value: Value) -> Pose:
         if self.orientation is None:
             return in_plane(s)
-        return Pose(rotation_by(self.orientation, s[3:]), s[:3])
+        return Pose(rotation_of(self.orientation, s[3:]), vector_of(s[:3]))
 
     def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         if self.orientation is None:
             return plane_subspace(s)
-        R_CP = transposed(rotation_by(self.orientation, s[3:]))
+        R_CP = transposed(rotation_of(self.orientation, s[3:]))
         along = (linear(apply(R_CP, e)) for e in (X, Y, Z))
-        return (*along, *turning_columns(self.orientation, s[3:]))
+        return (*along, *columns_of(self.orientation, s[3:]))
 
     def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         return PLANE_COMPLEMENT if self.orientation is None else ()

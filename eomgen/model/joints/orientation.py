@@ -1,8 +1,12 @@
-"""Orientation in space by three angles about the body's own successive axes, over any scalar.
+"""Orientation in space over any scalar: three angles about the body's own successive axes, or a unit quaternion.
 
-For the sequence "zxz" with angles psi, theta, phi: R = Rz(psi) Rx(theta) Rz(phi), child to parent.
+For the sequence "zxz" with angles psi, theta, phi: R = Rz(psi) Rx(theta) Rz(phi), child to parent. A quaternion
+e = (e0, e1, e2, e3), scalar first, child to parent, moves with the child's angular velocity w in its own axes:
+
+    e' = 1/2 e o (0, w),    w = 2 Im(e* o e'),    e . e = 1
 """
 
+from fractions import Fraction
 from itertools import product as combinations
 from typing import Annotated, Any
 
@@ -11,8 +15,9 @@ from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
 from eomgen.model.joints.base import Column, X, Y, Z, angular
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import IDENTITY, Matrix, apply, product, rotation, transposed
+from eomgen.symbolic.spatial import IDENTITY, Matrix, Vector, apply, product, rotation, transposed
 
+HALF = Fraction(1, 2)
 AXES = {"x": X, "y": Y, "z": Z}
 SEQUENCES = tuple("".join(s) for s in combinations("xyz", repeat=3) if s[0] != s[1] != s[2])
 
@@ -37,3 +42,41 @@ def turning_columns(sequence: str, angles: tuple[Any, ...]) -> tuple[Column, ...
         after = rotation_by(sequence[k + 1 :], angles[k + 1 :])
         columns.append(angular(apply(transposed(after), AXES[axis])))
     return tuple(columns)
+
+
+def rotation_of(orientation: str, s: tuple[Any, ...]) -> Matrix:
+    """R at the angles of a sequence, or at a quaternion of norm 1."""
+    return _by_quaternion(s) if orientation == "quaternion" else rotation_by(orientation, s)
+
+
+def columns_of(orientation: str, s: tuple[Any, ...]) -> tuple[Column, ...]:
+    """The columns of S: of the rates of the angles, or of the angular velocity by which a quaternion moves."""
+    if orientation == "quaternion":
+        return (angular(X), angular(Y), angular(Z))
+    return turning_columns(orientation, s)
+
+
+def _by_quaternion(e: tuple[Any, ...]) -> Matrix:
+    """R = (e0^2 - v.v) 1 + 2 v v^T + 2 e0 v~, v = (e1, e2, e3); where e . e = 1 it is a rotation."""
+    e0, e1, e2, e3 = e
+    return (
+        (e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)),
+        (2 * (e1 * e2 + e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 - e0 * e1)),
+        (2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3),
+    )
+
+
+def spin_of_quaternion(e: tuple[Any, ...], rate: tuple[Any, ...]) -> Vector:
+    """w = 2 Im(e* o e'), child's axes."""
+    (e0, e1, e2, e3), (d0, d1, d2, d3) = e, rate
+    return (
+        2 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2),
+        2 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3),
+        2 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1),
+    )
+
+
+def rate_matrix_of(e: tuple[Any, ...]) -> tuple[Vector, Vector, Vector, Vector]:
+    """The rows of e' = G w: half the quaternion's products with the units i, j, k."""
+    e0, e1, e2, e3 = (HALF * x for x in e)
+    return ((-e1, -e2, -e3), (e0, -e3, e2), (e3, e0, -e1), (-e2, e1, e0))

@@ -4,16 +4,16 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
 from eomgen.model.kinds import Angle, SpaceDirection
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expressions import Expression, as_expression
 from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.spatial import Matrix, Pose, apply, rotation, transposed
 
 
 @dataclass(frozen=True, kw_only=True)
 class Placed(Joint):
-    """Position `at` and orientation as expressions: s = (at, angle) or (at, angles), S as of a free body.
+    """Position `at` and orientation as expressions: s = (at, angle | angles | quaternion), S as of a free body.
 
     Args:
         at: of `point` in the parent's axes, 2 or 3 [m].
@@ -31,17 +31,20 @@ class Placed(Joint):
     quaternion: Quaternion | None = None
     omega: Omega | None = None
 
-    def works_in(self, space: str) -> bool:
-        return self.orientation != "quaternion"
+    @property
+    def spins(self) -> tuple[str, ...]:
+        return (self.omega or ()) if self.orientation == "quaternion" else ()
 
     def turns(self) -> tuple[Expression, ...]:
+        if self.quaternion is not None:
+            return tuple(as_expression(name) for name in self.quaternion)
         return self.angles or (() if self.angle is None else (self.angle,))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         zero = Expression.number(0)
         at = (zero,) * (2 if space == "plane" else 3) if self.at is None else self.at
         assert not isinstance(at, str), "a ground point's name stands for its coordinates before this is asked"
-        return (*at, *(self.angles or (self.angle or zero,)))
+        return (*at, *(self.turns() or (zero,)))
 
     def turn(self, s: Scalars, value: Value) -> Any:
         return s[2]
@@ -55,8 +58,8 @@ class Placed(Joint):
         places = self._places(s)
         R_CP = transposed(self._rotation(s[places:], value))
         along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[:places])
-        if self.angles is not None:
-            return (*along, *turning_columns(str(self.orientation), s[places:]))
+        if self.orientation is not None:
+            return (*along, *columns_of(self.orientation, s[places:]))
         return (*along, angular(unit(vector(self.axis, value, Z))))
 
     def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
@@ -66,9 +69,9 @@ class Placed(Joint):
         return ()
 
     def _places(self, s: Scalars) -> int:
-        return len(s) - (3 if self.angles is not None else 1)
+        return len(s) - (4 if self.quaternion is not None else 3 if self.angles is not None else 1)
 
     def _rotation(self, angles: Scalars, value: Value) -> Matrix:
-        if self.angles is not None:
-            return rotation_by(str(self.orientation), angles)
+        if self.orientation is not None:
+            return rotation_of(self.orientation, angles)
         return rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))

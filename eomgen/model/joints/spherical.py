@@ -4,14 +4,16 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, rotation_by, turning_columns
+from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
 from eomgen.symbolic.expressions import Expression, as_expression
 from eomgen.symbolic.spatial import Pose
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spherical(Joint):
-    """The child turns about the joint point: s = the angles, S = their columns (`turning_columns`); W: all forces.
+    """The child turns about the joint point: s = the angles or the quaternion; W: all forces.
+
+    S takes the rates of the angles (`turning_columns`), or the angular velocity by which the quaternion moves.
 
     Args:
         orientation: "zxz", "xyz", ... with `angles`, turned about the body's own successive axes, zxz:
@@ -25,20 +27,24 @@ class Spherical(Joint):
     quaternion: Quaternion | None = None
     omega: Omega | None = None
 
+    @property
+    def spins(self) -> tuple[str, ...]:
+        return (self.omega or ()) if self.orientation == "quaternion" else ()
+
     def works_in(self, space: str) -> bool:
-        return space == "space" and self.orientation != "quaternion"
+        return space == "space"
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles or tuple(as_expression(name) for name in self.quaternion or ())
 
     def variables(self, space: str) -> tuple[Expression, ...]:
-        return self.angles or ()
+        return self.turns()
 
     def pose(self, s: Scalars, value: Value) -> Pose:
-        return Pose(rotation_by(self.orientation, s))
+        return Pose(rotation_of(self.orientation, s))
 
     def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        return turning_columns(self.orientation, s)
+        return columns_of(self.orientation, s)
 
     def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
         return tuple(map(linear, (X, Y, Z)))
