@@ -106,7 +106,7 @@ def movable(ties: Ties) -> list[Node]:
 
 
 def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
-    """phi of every row that the coordinates do not satisfy by themselves, where it has one; e . e - 1 of quaternions."""
+    """phi of every row that the coordinates do not satisfy by themselves, if it has one; of quaternions e . e - 1."""
     norms = (sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
     return (*(row.gap for row in ties.rows if row.gap is not None and not row.identical), *norms)
 

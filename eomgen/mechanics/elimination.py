@@ -17,20 +17,16 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.closure import generic_state, scattered_state
 from eomgen.mechanics.scope import Scope, with_speeds_named
+from eomgen.mechanics.shortened import shorter
 from eomgen.mechanics.ties import Ties, holds_identically
 from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent
-from eomgen.symbolic.derivative import depends_on, symbols_of
+from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations
 from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import cancelled
-from eomgen.symbolic.text import text_size
 
 REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
-LONGEST = 600  # characters of a coefficient that is made readable
-MOST = 9  # symbols in it
-WORK = 2000  # products of terms for making one coefficient readable
 
 Label = tuple[str, int]
 
@@ -181,14 +177,6 @@ def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple
     right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
     solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=shorter)
     return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
-
-
-def shorter(x: Scalar) -> Scalar:
-    """x as one quotient without common factors, where that takes fewer operations and x is not long."""
-    if type(x) is not Node or text_size(x) > LONGEST or len(symbols_of((x,))) > MOST:
-        return x
-    short = cancelled(x, WORK)
-    return short if operations((short,)).total <= operations((x,)).total else x
 
 
 def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A: Any, b: Any) -> Scope:

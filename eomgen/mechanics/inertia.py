@@ -70,9 +70,12 @@ class BodyEnergy:
 def body_energies(motion: Motion) -> tuple[BodyEnergy, ...]:
     """Kinetic energy of every body, T = m v.v / 2 + w.I w / 2, from derivatives of its pose.
 
-    All poses are differentiated in one sweep, so that a chain costs no more than its length.
+    All poses are differentiated in one sweep, so that a chain costs no more than its length. Where speeds are not
+    rates the twists give the energy, in the body's axes: the system over the rates holds that of the poses.
     """
     masses = [mass_properties(motion.scope, link.name) for link in motion.links]
+    if any(u.name in motion.scope.model.speeds for u in motion.scope.symbols.u):
+        return tuple(_by_twist(link, mass) for link, mass in zip(motion.links, masses, strict=True))
     centers = [link.pose.point(mass.com) for link, mass in zip(motion.links, masses, strict=True)]
     turning = [_orientation(link) for link in motion.links]
     places = tuple(x for pair in zip(centers, turning, strict=True) for part in pair for x in part)
@@ -85,6 +88,14 @@ def body_energies(motion: Motion) -> tuple[BodyEnergy, ...]:
         rotation = HALF * dot(spin, apply(mass.I, spin))
         energies.append(BodyEnergy(link.name, velocity, spin, translation, rotation))
     return tuple(energies)
+
+
+def _by_twist(link: Link, mass: MassProperties) -> BodyEnergy:
+    """The same from the twist: v_C = v + w x c in body axes."""
+    w = link.twist.w
+    v = link.twist.at(mass.com).v
+    translation = HALF * mass.m * dot(v, v)
+    return BodyEnergy(link.name, apply(link.pose.R, v), w, translation, HALF * dot(w, apply(mass.I, w)))
 
 
 def _orientation(link: Link) -> tuple[Scalar, ...]:

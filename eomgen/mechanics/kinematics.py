@@ -18,6 +18,7 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.scope import Scope
+from eomgen.mechanics.shortened import shorter
 from eomgen.model.joints.base import Z, oriented
 from eomgen.symbolic.derivative import jacobian, symbols_of
 from eomgen.symbolic.functions import cos, sin
@@ -36,6 +37,7 @@ from eomgen.symbolic.spatial import (
     rotation,
     times,
     transposed,
+    vector_of,
 )
 
 GROUND = -1
@@ -231,7 +233,13 @@ def _twist(
         at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
     moved = at_joint.at(times(-1, point))
     drift = scope.rate_of(point)  # a joint that slides along its own body
-    return Twist(moved.w, minus(moved.v, drift))
+    twist = Twist(moved.w, minus(moved.v, drift))
+    return shortened(twist) if scope.combines else twist
+
+
+def shortened(twist: Twist) -> Twist:
+    """A twist in its shorter form: declared speeds often are its components, once the rates are put in."""
+    return Twist(vector_of(map(shorter, twist.w)), vector_of(map(shorter, twist.v)))
 
 
 def _turned_angle(scope: Scope, joint: Any) -> Scalar:

@@ -48,6 +48,11 @@ class Scope:
         return self.symbols.graph
 
     @cached_property
+    def combines(self) -> bool:
+        """Whether some of its speeds are combinations of rates."""
+        return any(self.model.speeds[u.name].rate is not None for u in self.symbols.u if u.name in self.model.speeds)
+
+    @cached_property
     def rates(self) -> tuple[Scalar, ...]:
         """q' = N u + nu, nq."""
         return tuple(

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.kinematics import GROUND, Link, Motion
+from eomgen.mechanics.kinematics import GROUND, Link, Motion, shortened
 from eomgen.symbolic.derivative import symbols_of, tangent
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import (
     IDENTITY,
     ZERO,
     Matrix,
+    Twist,
     Vector,
     added,
     apply,
@@ -126,6 +127,9 @@ def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane:
         turning = apply(axes, scope.rate_of(body_direction))
         w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
     own_rate = apply(parent_axes, rate)
+    if scope.combines:
+        w = shortened(Twist(w)).w
+        w_bias = scope.rate_of(w)
     return Branch(
         link, link.parent, E, apply(parent_axes, offset), own_rate, apply(parent_axes, bias), w, w_bias,
         _columns(motion, w, own_rate if plane else apply(E, rate)), moments, axes,

@@ -119,7 +119,8 @@ def _coordinates(system: System) -> Step:
             u, a = free[q.name]
             speed = "" if part.dependent else _start(part, part.speed, values)
             rows.append(Meaning(u, "its rate", _per(unit, "s"), speed))
-            rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
+            if part.dependent or u in symbols.u:
+                rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
     rows += _speeds(system)
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]

@@ -1,0 +1,21 @@
+"""Scalar -> the same in a shorter form: what is divided by what dependent rates or declared speeds bring in."""
+
+from __future__ import annotations
+
+from eomgen.symbolic.derivative import symbols_of
+from eomgen.symbolic.evaluation import operations
+from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.normal_form import cancelled
+from eomgen.symbolic.text import text_size
+
+LONGEST = 600  # characters of a scalar that is made readable
+MOST = 9  # symbols in it
+WORK = 2000  # products of terms for making one scalar readable
+
+
+def shorter(x: Scalar) -> Scalar:
+    """x as one quotient without common factors, where that takes fewer operations and x is not long."""
+    if type(x) is not Node or text_size(x) > LONGEST or len(symbols_of((x,))) > MOST:
+        return x
+    short = cancelled(x, WORK)
+    return short if operations((short,)).total <= operations((x,)).total else x
