@@ -19,6 +19,7 @@ from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
+from eomgen.mechanics.system import system_of
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
@@ -74,6 +75,8 @@ class Journey:
     @property
     def _start_rates(self) -> dict[str, float] | None:
         """The speeds at the start that replace the model's."""
+        if self.at_rest and self.model.speeds:
+            return {u.name: 0.0 for u in system_of(self.model).symbols.u}
         free = (q for q, part in self.model.coordinates.items() if not part.driven and not part.dependent)
         return {f"{q}'": 0.0 for q in free} if self.at_rest else None
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from eomgen.codegen.build import compiler
 from eomgen.codegen.program import Program
+from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Functions, Target
 from eomgen.errors import RunFailed, ToolMissing, UsageError
@@ -41,6 +42,7 @@ class RightHandSide:
         self.x0 = None if x0 is None else np.array(x0, dtype=float)
         self.p0 = None if p0 is None else np.array(p0, dtype=float)
         self._functions, self._one = functions, functions.one
+        self.spheres = spheres_of(program)
         self._states = len(program.states)
         self._known: tuple[bytes, Any] = (b"none yet", None)
 

@@ -10,6 +10,7 @@ from typing import Any
 from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.solving import solve_bordered
+from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.codegen.targets.base import Vector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
@@ -70,7 +71,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     """A state without its answer; short decimals, for the reader."""
     symbols = program.symbols
     start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
-    x = tuple(round(v + rng.uniform(-1, 1), 3) for v in start)
+    x = tuple(on_spheres([round(v + rng.uniform(-1, 1), 3) for v in start], spheres_of(program)).tolist())
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     return Vector(round(rng.uniform(0, 2), 3), x, p, inputs if with_inputs and inputs else None, (), TOLERANCE)

@@ -106,19 +106,23 @@ def movable(ties: Ties) -> list[Node]:
 
 
 def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
-    """phi of every row that the coordinates do not satisfy by themselves, if it has one; of quaternions e . e - 1."""
-    norms = (sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
-    return (*(row.gap for row in ties.rows if row.gap is not None and not row.identical), *norms)
+    """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
+    return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
+
+
+def _norms(ties: Ties) -> tuple[Scalar, ...]:
+    """e . e - 1 of every quaternion."""
+    return tuple(sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
 
 
 def closed(ties: Ties, state: State, free: Sequence[Node]) -> State | None:
-    """The nearest state with phi = 0 that is reached by moving the free coordinates; None where none is near.
+    """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
 
     Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
     also where rows are redundant, and does not leap along directions that only an open loop resists.
     Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
     """
-    gaps = gaps_of(ties)
+    gaps = (*gaps_of(ties), *_norms(ties))
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     try:
         for _ in range(STEPS):

@@ -25,6 +25,7 @@ from eomgen.mechanics.fields.field import (
 from eomgen.mechanics.fields.relative_motion import COMPONENTS as PARTS_OF_MOTION
 from eomgen.mechanics.fields.relative_motion import MAGNITUDES as SIZES_OF_PARTS
 from eomgen.mechanics.fields.relative_motion import axes_of, part_of_motion
+from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.instant.centers import finite_center
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
@@ -220,12 +221,13 @@ class Quantities:
 
     def generalized_force(self, coordinate: str) -> Scalar:
         """Q_k of everything applied."""
-        return generalized_forces(self.system.loads)[self._speed(coordinate, "generalized_force")]
+        system, k = self._speed(coordinate, "generalized_force")
+        return self._carried(system, generalized_forces(system.loads)[k])
 
     def momentum(self, coordinate: str) -> Scalar:
-        """p_k = dT/dq_k'."""
-        k = self._speed(coordinate, "momentum")
-        return derivative(kinetic_energy(self.system.motion), self.system.symbols.u[k])
+        """p_k = dT/dq_k', or dT/du_k of a declared speed."""
+        system, k = self._speed(coordinate, "momentum")
+        return self._carried(system, derivative(kinetic_energy(system.motion), system.symbols.u[k]))
 
     def _rate(self, vector: Vector, order: int) -> Vector:
         scope = self.system.scope
@@ -237,11 +239,28 @@ class Quantities:
     def _place(self, point: str) -> Place:
         return self.system.motion.place(point)
 
-    def _speed(self, coordinate: str, function: str) -> int:
-        names = [u.name for u in self.system.symbols.u]
-        if coordinate + "'" not in names:
-            raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
-        return names.index(coordinate + "'")
+    def _speed(self, coordinate: str, function: str) -> tuple[System, int]:
+        """The system among whose speeds it is, or its rate, and its place; of replaced rates the system over the rates.
+
+        Raises:
+            DerivationError: it is no freedom.
+        """
+        declared = self.system.scope.model.speeds
+        turning = {e.name for four in self.system.scope.quaternions for e in four}
+        for system in (self.system, *([self.system.free] if declared and self.system.free else [])):
+            names = [u.name for u in system.symbols.u]
+            sought = coordinate if coordinate in declared else f"{coordinate}'"
+            part = system.scope.model.coordinates.get(coordinate)
+            if sought in names and coordinate not in turning and not (part and part.dependent):
+                return system, names.index(sought)
+        raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
+
+    def _carried(self, system: System, scalar: Scalar) -> Scalar:
+        """A scalar of the system over the rates in the speeds of this one."""
+        if system is self.system:
+            return scalar
+        rates = free_rates(self.system, system)
+        return substituted((scalar,), dict(zip(system.symbols.u, rates, strict=True)))[0]
 
 
 def _of_point(order: int, axis: int) -> Callable[..., Scalar]:

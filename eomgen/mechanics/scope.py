@@ -133,7 +133,7 @@ def scope_of(model: Model) -> Scope:
             names[name + "'"], names[name + "''"] = rate, tangent((rate,), {t: 1})[0]
             N.append((0,) * len(free))
             nu.append(rate)
-    quaternions = tuple(tuple(names[e] for e in each.coordinates) for each in quaternions_of(model))
+    quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in quaternions_of(model))
     for four in quaternions:
         graph.hold_on_sphere(four)
     return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions))

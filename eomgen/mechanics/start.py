@@ -56,15 +56,16 @@ def start_state(
 def start_speeds(system: System) -> dict[Node, Scalar]:
     """Every speed at the start, as functions of the parameters and of where it starts.
 
-    A declared speed without a start of its own is what the start speeds of the coordinates make it.
+    Where no declared speed has a start, they are what the start speeds of the coordinates make them.
     """
     scope = system.scope
-    model, found = scope.model, {}
+    model = scope.model
+    found: dict[Node, Scalar] = {}
     rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
     for u in scope.symbols.u:
         if u.name in rates:
             found[u] = rates[u.name]
-        elif model.speeds[u.name].start is not None:
+        elif any(part.start is not None for part in model.speeds.values()):
             found[u] = scope.value(model.speeds[u.name].start)
         else:
             found[u] = _by_rates(system, u.name, rates)
@@ -104,7 +105,7 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
 
 def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
     """The coordinates of quaternions over their norm."""
-    found = {}
+    found: dict[str, float] = {}
     for four in system.scope.quaternions:
         norm = math.sqrt(sum(values[e.name] ** 2 for e in four))
         if norm == 0:
@@ -116,9 +117,10 @@ def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
 def _by_coordinates(
     system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None
 ) -> dict[str, float]:
-    """The declared speeds that have no start of their own, by the start speeds of the coordinates."""
+    """The declared speeds by the start speeds of the coordinates, where none has a start of its own."""
     model, symbols = system.scope.model, system.symbols
-    silent = [u for u in symbols.u if u.name in model.speeds and model.speeds[u.name].start is None]
+    declared = [u for u in symbols.u if u.name in model.speeds]
+    silent = declared if all(model.speeds[u.name].start is None for u in declared) else []
     formulas = start_speeds(system) if silent else {}
     asked = tuple(formulas[u] for u in silent)
     used = set(symbols_of(asked))

@@ -28,11 +28,16 @@ def refuse_massless(assembly: Assembly) -> None:
         ModelError: naming every such coordinate.
     """
     held = [any(not is_zero(row[k]) for row in assembly.J) for k in range(len(assembly.M))]
-    problems = tuple(
-        Problem(f"coordinates.{q}", f"the free coordinate '{q}' moves no mass, so it has no acceleration",
-                mend="give the bodies that it moves a mass, or drive the coordinate by `motion`")
-        for k, q in enumerate(u.name.rstrip("'") for u in assembly.symbols.u)
-        if is_zero(assembly.M[k][k]) and not held[k]
-    )  # fmt: skip
+    moves_nothing = [u.name for k, u in enumerate(assembly.symbols.u) if is_zero(assembly.M[k][k]) and not held[k]]
+    problems = tuple(map(_massless, moves_nothing))
     if problems:
         raise ModelError(problems)
+
+
+def _massless(speed: str) -> Problem:
+    q = speed.rstrip("'")
+    if q == speed:
+        return Problem(f"speeds.{q}", f"the speed '{q}' moves no mass, so it has no derivative",
+                       mend="give the bodies that it moves a mass")  # fmt: skip
+    return Problem(f"coordinates.{q}", f"the free coordinate '{q}' moves no mass, so it has no acceleration",
+                   mend="give the bodies that it moves a mass, or drive the coordinate by `motion`")  # fmt: skip

@@ -63,7 +63,7 @@ def integrate(
         return rhs(t, x, p) if inputs is None else rhs(t, x, p, inputs(t))
 
     how = Stepping(method, rtol, atol, most_steps)
-    run = march(f, (start, end), x0, how=how, instants=instants, events=events)
+    run = march(f, (start, end), x0, how=how, instants=instants, events=events, spheres=rhs.spheres)
     T, V = (None, None) if energy is None else _rows(energy(run.t, run.x), run.t)
     return Trajectory(
         t=run.t,

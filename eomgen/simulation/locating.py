@@ -122,7 +122,7 @@ class Locating:
         end = self._given_time()
         if end <= self.t0:
             return self._state(end, self._x0)
-        run = march(self._motion, (self.t0, end), self._x0, how=FINE)
+        run = march(self._motion, (self.t0, end), self._x0, how=FINE, spheres=self._rhs.spheres)
         if run.status != "finished" or not np.all(np.isfinite(run.last)):
             raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
         return self._state(end, run.last)

@@ -95,7 +95,8 @@ def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
     x = stage.state(here.values)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(stage, here.t, x, plan)
-    return march(stage.rate, (here.t, plan.end), x, how=plan.how, instants=wanted, events=events)
+    span, spheres = (here.t, plan.end), stage.rhs.spheres
+    return march(stage.rate, span, x, how=plan.how, instants=wanted, events=events, spheres=spheres)
 
 
 def _events(stage: Stage, t: float, x: np.ndarray, plan: Plan) -> Events | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.spheres import Places, on_spheres
 from eomgen.simulation.events import Crossing, Events, Watch
 from eomgen.simulation.trajectory import Status
 
@@ -84,14 +85,16 @@ class _Rows:
 
 def march(
     f: Rate, span: tuple[float, float], x0: np.ndarray, *, how: Stepping, instants: np.ndarray | None = None,
-    events: Events | None = None,
+    events: Events | None = None, spheres: Sequence[Places] = (),
 ) -> Run:  # fmt: skip
     """Step from the first instant of the span to the second, or to an event, or until it goes no further.
 
     Args:
         instants: where states are wanted, in order; None: at the integrator's own steps.
+        spheres: the places of quaternions in x: each is put back to norm 1 after every step.
     """
     start, end = span
+    x0 = on_spheres(x0, spheres)
     if not np.all(np.isfinite(f(start, x0))):
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
@@ -101,16 +104,16 @@ def march(
     rows = _Rows(instants, [np.array([start])[:asked]], [x0[None, :][:asked]])
     solver = _solver(f, span, x0, how)
     watch = Watch(events, start, x0) if events is not None else None
-    status, message, steps, crossing = _stepped(f, solver, rows, watch, how.most_steps)
+    status, message, steps, crossing = _stepped(f, solver, rows, watch, how.most_steps, spheres)
     t, x = (float(solver.t), solver.y) if crossing is None else (crossing.t, crossing.x)
     if status != "finished":
         rows.close(t, x)
-    times, states = np.concatenate(rows.t), np.concatenate(rows.x)
-    return Run(times, states, t, x, status, message or _reached(end), steps, solver.nfev, crossing)
+    times, states = np.concatenate(rows.t), on_spheres(np.concatenate(rows.x), spheres)
+    return Run(times, states, t, on_spheres(x, spheres), status, message or _reached(end), steps, solver.nfev, crossing)
 
 
 def _stepped(
-    f: Rate, solver: Any, rows: _Rows, watch: Watch | None, most_steps: int
+    f: Rate, solver: Any, rows: _Rows, watch: Watch | None, most_steps: int, spheres: Sequence[Places]
 ) -> tuple[Status, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
     steps = 0
@@ -131,6 +134,7 @@ def _stepped(
             rows.add((solver.t_old, crossing.t), crossing.x, dense)
             return "event", f"Stopped by an event at t = {crossing.t:.6g} s.", steps, crossing
         rows.add((solver.t_old, solver.t), solver.y, dense)
+        solver.y = on_spheres(solver.y, spheres)
     return "finished", "", steps, None
 
 

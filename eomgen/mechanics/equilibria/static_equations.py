@@ -203,11 +203,11 @@ def _with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
 
 
 def _refuse_other_speeds(scope: Scope, q: Sequence[Node]) -> None:
-    """Coordinates without a rate of their own."""
-    names = {u.name for u in scope.symbols.u}
-    lacking = [x.name for x in q if f"{x.name}'" not in names]
+    """The coordinates of quaternions, which cannot be varied one by one."""
+    turning = {e for four in scope.quaternions for e in four}
+    lacking = [x.name for x in q if x in turning]
     if lacking:
-        raise NotYet(f"rest of a system whose speeds are not rates is not sought yet: '{lacking[0]}'",
+        raise NotYet(f"rest of a body that is turned by a quaternion is not sought yet: '{lacking[0]}'",
                      f"coordinates.{lacking[0]}", "describe the orientation by angles")  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from eomgen.errors import DerivationError, MissingValues
+from eomgen.errors import DerivationError, MissingValues, NotYet
 from eomgen.mechanics.instant.given_rows import (
     Line,
     given_lines,
@@ -276,6 +276,10 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
         DerivationError: ties that do not close at the start.
     """
     free = free_system_of(freed(model))
+    if free.scope.quaternions:
+        (first, *_), *_ = free.scope.quaternions
+        raise NotYet(f"an instant of a body that is turned by a quaternion is not solved yet: '{first.name}'",
+                     f"coordinates.{first.name}", "describe the orientation by angles")  # fmt: skip
     places, numbers = _places(free)
     located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
     exact = by_coordinates or not located

@@ -6,6 +6,7 @@ from eomgen.model.checks.names import names
 from eomgen.model.checks.numbers import numbers
 from eomgen.model.checks.outputs import outputs
 from eomgen.model.checks.references import references
+from eomgen.model.checks.speeds import speeds
 from eomgen.model.checks.ties import coordinates, idle, ties
 
-ALL = (names, references, formulas, outputs, numbers, bodies, ties, coordinates, idle)
+ALL = (names, references, formulas, outputs, numbers, bodies, ties, coordinates, speeds, idle)

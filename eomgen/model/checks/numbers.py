@@ -12,7 +12,7 @@ from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, Path, shown, whereabouts
 from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.spatial import cross
+from eomgen.symbolic.spatial import cross, vector_of
 
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:
@@ -83,7 +83,7 @@ def _crossing(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding]:
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
             continue
         a, b = ([number_of(component, values) for component in axis] for axis in axes)
-        if None not in (*a, *b) and any(a) and any(b) and not any(cross(tuple(a), tuple(b))):
+        if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
             yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
 
