@@ -8,7 +8,7 @@ import pytest
 from moving import at, equal, rate, state_of, written
 
 import eomgen
-from eomgen.errors import DerivationError, ModelError, NotYet
+from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.kinematics import slide_of, velocity_of
 from eomgen.mechanics.loads import SystemScene
@@ -119,14 +119,6 @@ def test_a_driving_law_holds_time_and_parameters_only(law, name):
     with pytest.raises(ModelError, match=f"\\({name}\\) cannot stand in the motion"):
         text = f'r = {{ motion = "{law}" }}'
         written(GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0", coordinate=text))
-
-
-def test_declared_speeds_wait_for_a_later_version():
-    """Never a wrong answer: exit 3."""
-    declared = "r = 0.1\n[speeds]\nw1 = \"q' + r'\"\nw2 = \"r'\""
-    with pytest.raises(NotYet) as caught:
-        written(GEOMETRY.format(kind="placed", fields='at = ["q", "r"]', point="0", coordinate=declared))
-    assert caught.value.exit_code == 3 and caught.value.mend
 
 
 MOVING_POINT = """

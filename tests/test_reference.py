@@ -78,20 +78,6 @@ def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
     assert {name: a.message for name, a in eomgen.solve(model).items() if a.message} == {}
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"speeds": {"w": "theta'"}},
-    ],
-    ids=lambda more: "-".join(more),
-)
-def test_tables_and_fields_of_later_versions_are_never_ignored(more):
-    """What a model says and this version cannot do ends in NotYet, not in the equations of another system."""
-    model = {key: value for key, value in tomllib.loads(WHOLE[0]).items() if key != "eomgen"}
-    merged = {**model, **{key: {**model.get(key, {}), **value} for key, value in more.items()}}
-    with pytest.raises(eomgen.NotYet):
-        eomgen.derive(eomgen.Model(**merged))
-
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_the_reference_names_every_kind_with_exactly_its_fields(room):
