@@ -141,8 +141,8 @@ def _refuse_turning(declared: Sequence[str], formulas: Sequence[Scalar], turning
 def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node]) -> None:
     if len(declared) == len(replaced):
         return
-    speeds, rates = (f"{len(x)} {noun}{'s' * (len(x) != 1)}" for x, noun in ((declared, "speed"), (replaced, "rate")))
-    what = f"{speeds} are declared for {rates}"
+    rates = f"{len(replaced)} rate{'s' * (len(replaced) != 1)}"
+    what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
     named = ", ".join(x.name for x in replaced) or "none"
     if len(declared) < len(replaced):
         mend = "declare one speed for each rate that stands in them, or leave out those that keep their rate"

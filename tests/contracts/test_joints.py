@@ -16,6 +16,7 @@ from eomgen.symbolic.functions import cos, sin
 from eomgen.symbolic.spatial import apply, matrix_of, rotation, transposed
 
 SEAT = 'at = [0.1, 0.2, 0.3], turned = { axis = [1, 1, 0], angle = "pi/3" }'
+QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'
 PLANE, SPACE = "plane", "space"
 EXAMPLES = {
     "fixed": [
@@ -54,6 +55,8 @@ EXAMPLES = {
     "spherical": [
         *((SPACE, f'orientation = "{s}", angles = ["a", "b", "c"]') for s in SEQUENCES),
         (SPACE, f'{SEAT}, orientation = "zyx", angles = ["a*b", "w*t", "c - a"]'),
+        (SPACE, QUATERNION),
+        (SPACE, f"{SEAT}, {QUATERNION}"),
     ],
     "free": [
         (PLANE, 'x = "a", y = "b", angle = "c"'),
@@ -61,11 +64,13 @@ EXAMPLES = {
             (SPACE, f'position = ["a", "l*b", "c - w*t"], orientation = "{s}", angles = ["c", "a", "b"]')
             for s in SEQUENCES
         ),
+        (SPACE, f'position = ["a", "l*b", "c - w*t"], {QUATERNION}'),
     ],
     "placed": [
         (PLANE, 'at = ["l*cos(a)", "b*w*t"], angle = "a - c"'),
         (SPACE, 'at = ["a", "b", "c"], angle = "a*b", axis = [1, 2, 2]'),
         *((SPACE, f'at = ["a", 0, "b"], orientation = "{s}", angles = ["a", "b", "c"]') for s in SEQUENCES),
+        (SPACE, f'at = ["a", 0, "b"], {QUATERNION}'),
     ],
     "path": [
         (PLANE, 'along = "a", at = [0, 0], pieces = [{ line = 1.0 }, { arc = 0.5, turn = "cw", angle = 1 }]'),
@@ -80,6 +85,18 @@ EXAMPLES = {
     ],
 }
 CASES = [(kind, space, fields) for kind, cases in EXAMPLES.items() for space, fields in cases]
+
+
+TURNING = """
+e0 = 1
+e1 = 0
+e2 = 0
+e3 = 0
+[speeds]
+w1 = {}
+w2 = {}
+w3 = {}
+"""
 
 
 def text(kind: str, space: str, fields: str) -> str:
@@ -98,6 +115,7 @@ w = 1.3
 a = 0.1
 b = 0.2
 c = 0.3
+{TURNING if "quaternion" in fields else ""}
 {others}
 [bodies.child]
 mass = 1
@@ -165,7 +183,9 @@ def test_the_subspace_is_the_difference_of_neighbouring_poses(kind, space, field
     state = state_of(system)
     R = at([x for row in link.relative.R for x in row], state).reshape(3, 3)
     R_rate = rate(system, [x for row in link.relative.R for x in row], state).reshape(3, 3)
-    p_rate, s_rate = rate(system, link.relative.p, state), rate(system, link.s, state)
+    turning = len(link.joint.spins) + 1 if link.joint.spins else 0  # the rates that the angular velocity stands for
+    p_rate = rate(system, link.relative.p, state)
+    s_rate = [*rate(system, link.s[: len(link.s) - turning], state), *at(link.s_rate[len(link.s) - turning :], state)]
     W = R.T @ R_rate
     expected = [W[2, 1], W[0, 2], W[1, 0], *(R.T @ p_rate)]
     S = columns([(*w, *v) for w, v in link.S], state)
@@ -174,10 +194,11 @@ def test_the_subspace_is_the_difference_of_neighbouring_poses(kind, space, field
 
 @built
 def test_the_columns_of_the_subspace_are_as_many_freedoms_as_variables(kind, space, fields):
-    """rank S = f"""
+    """rank S = f; a quaternion's four variables have three freedoms."""
     system, link = system_with(kind, space, fields)
     S = columns([(*w, *v) for w, v in link.S], state_of(system))
-    assert S.shape[1] == len(link.s) == (np.linalg.matrix_rank(S) if link.s else 0)
+    freedoms = len(link.s) - (1 if link.joint.spins else 0)
+    assert S.shape[1] == len(link.s_rate) == freedoms == (np.linalg.matrix_rank(S) if link.s else 0)
 
 
 @built
