@@ -22,7 +22,7 @@ from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_ro
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
@@ -38,7 +38,7 @@ from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.functions import inner, over, sqrt
+from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import legible, readable_all
 
@@ -279,8 +279,6 @@ def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
     for q in scope.symbols.q:
         if q not in sought:
             start[q] = start_value(scope, model.coordinates[q.name])
-    for four in scope.quaternions:
-        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
-        start |= {e: over(start[e], norm) for e in four}
+    start = with_unit_quaternions(scope, start)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(situation.system)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))

@@ -15,12 +15,13 @@ from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Motion, ground_place
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.scope import primitive
+from eomgen.mechanics.scope import Scope, primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
@@ -181,6 +182,7 @@ class SystemScene:
         scope = self.motion.scope
         coordinates = scope.model.coordinates.values()
         at = {q: start_value(scope, c) for q, c in zip(scope.symbols.q, coordinates, strict=True)}
+        at = with_unit_quaternions(scope, at)
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
     def own_place(self, body: str, point: str | None) -> Place:
@@ -225,6 +227,15 @@ def start_value(scope, coordinate) -> Scalar:
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
     return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
+
+
+def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
+    """Start values with every quaternion over its norm."""
+    found = dict(start)
+    for four in scope.quaternions:
+        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+        found |= {e: over(start[e], norm) for e in four}
+    return found
 
 
 def loads_of(motion: Motion) -> Loads:

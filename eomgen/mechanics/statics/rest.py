@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.closure import gaps_of, number
-from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope
@@ -38,6 +38,7 @@ def at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> Stat
     state: State = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
     sought = fixed_by_position(system)
     given = {q: start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q if q not in sought}
+    given = with_unit_quaternions(scope, given)
     state |= {**given, **(places or {})}
     left = [q for q in sought if q not in state]
     if left:
