@@ -33,6 +33,7 @@ from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 
 METHODS = ("lagrange", "projection", "kinetostatic")
+CHOOSE = "declare other speeds"
 LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
 
 
@@ -142,6 +143,10 @@ def _watched(
         blocks = system.elimination.blocks
         determinants = _along(equations, tuple(block.determinant for block in blocks), p)
         run = ended_where_singular(run, determinants, [str(block) for block in blocks], again, rtol=tolerances[0])
+    if system.declared:
+        determinants = _along(equations, tuple(solved.determinant for solved in system.declared), p)
+        what = list(map(str, system.declared))
+        run = ended_where_singular(run, determinants, what, again, rtol=tolerances[0], place=CHOOSE)
     locks = locks_of(system.motion)
     if locks:
         determinants = _along(equations, tuple(lock.determinant for lock in locks), p)

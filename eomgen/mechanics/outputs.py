@@ -253,6 +253,9 @@ class Quantities:
             part = system.scope.model.coordinates.get(coordinate)
             if sought in names and coordinate not in turning and not (part and part.dependent):
                 return system, names.index(sought)
+        if coordinate in turning:
+            raise DerivationError(f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
+                                  mend="ask it of the speeds that the joint's `omega` names")  # fmt: skip
         raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
 
     def _carried(self, system: System, scalar: Scalar) -> Scalar:

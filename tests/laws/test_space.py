@@ -203,6 +203,15 @@ def test_gimbal_lock_is_named():
     assert "'body'" in run.message and "gimbal lock" in run.message
 
 
+def test_speeds_that_do_not_determine_the_rates_somewhere_are_named():
+    """v = sin(a) a' gives no a' at a = 0."""
+    declared = "[coordinates]\na = 0\n[speeds]\nv = \"sin(a)*a'\"\n"
+    hinge = body('kind = "revolute", axis = [1, 0, 0], angle = "a"')
+    run = eomgen.simulate(eomgen.loads(HEAD + INERTIA + declared + hinge), time=1)
+    assert not run.ok
+    assert "declared speeds do not determine" in run.message
+
+
 @pytest.mark.parametrize(
     ("text", "what"),
     [
