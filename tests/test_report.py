@@ -21,7 +21,7 @@ from eomgen.report.latex import symbols_in
 from eomgen.report.notation import MEANINGS, quantities
 from eomgen.report.payload import equations_payload
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Derivation, Formula, Name, Partial, Rate, Step
+from eomgen.report.statements import Derivation, Entry, Formula, Name, Partial, Rate, Step
 from eomgen.report.text import WIDTH, broken, formula_text
 from eomgen.symbolic.decimals import MOST_DIGITS
 from eomgen.symbolic.derivative import gradient, substituted
@@ -119,7 +119,12 @@ def assert_printed_equations_are_those_of_motion(derived: Equations, derivation:
     assert equal_at_random_states(pairs).equal
 
 
-@pytest.mark.parametrize("name", [name for name in SMALL if name != "chain5"])
+def by_energies(name: str) -> bool:
+    """Whether the derivation goes by energies: with declared speeds it goes by projection."""
+    return not equations(name).model.speeds
+
+
+@pytest.mark.parametrize("name", [name for name in SMALL if name != "chain5" and by_energies(name)])
 def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name):
     """dT/du, d/dt dT/du and dT/dq of T = sum of the bodies' T, all as printed"""
     derived = equations(name)
@@ -151,7 +156,7 @@ def _derivatives(derivation: Derivation) -> list[Formula]:
     return [f for step in steps for f in step.statements if isinstance(f, Formula)]
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", [name for name in SMALL if by_energies(name)])
 def test_printed_generalized_forces_are_those_of_the_equations(name):
     """Q(theta) as printed = Q of the equations"""
     derived = equations(name)
@@ -161,6 +166,22 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
     also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
     forces = generalized_forces(_printed_system(derived).loads)
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
+    assert equal_at_random_states(pairs).equal
+
+
+@pytest.mark.parametrize("name", [name for name in SMALL if not by_energies(name)])
+def test_printed_balance_of_momentum_is_that_of_the_equations(name):
+    """M, c and Q of the declared speeds, as printed"""
+    derived = equations(name)
+    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
+    formulas = [f for f in step(derived.derivation, "balance").statements if isinstance(f, Formula)]
+    printed = dict(f.sides for f in formulas if len(f.sides) == 2)
+    graph = derived.graph
+    u, q = graph.symbols.u, moved_coordinates(derived.system)
+    known = {Entry("M", u[i], u[j]): row[j] for i, row in enumerate(graph.M) for j in range(i, len(row))}
+    known |= {Name("c", by=x): c for x, c in zip(u, graph.c, strict=True)}
+    known |= {Name("Q", by=x): Q for x, Q in zip(q, graph.Q, strict=True)}
+    pairs = [(read_back(to_text(printed.get(name, 0)), derived, also), x) for name, x in known.items()]
     assert equal_at_random_states(pairs).equal
 
 
