@@ -12,6 +12,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from moving import at
 
 import eomgen
 from eomgen.equations import Equations
@@ -79,6 +80,7 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
     state = generic_state(equations.system.ties, Random(3))
     a = [fifty_digits().number(1) * float(value) for value in accelerations_at(equations.graph, state)]
     state |= dict(zip(equations.graph.symbols.a, a, strict=True))
+    state |= multipliers_at(equations, state)
     for named in named_reactions(reactions.balance):
         (call,) = parse(named.name, references=True).calls
         try:
@@ -89,6 +91,15 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
             continue
         a, b = evaluate(pair, state, fifty_digits())
         assert float(a) == pytest.approx(float(b), rel=1e-9, abs=1e-9), named.name
+
+
+def multipliers_at(equations: Equations, state: dict) -> dict:
+    """lam from J^T lam = M a - forcing at a state with its accelerations."""
+    graph = equations.graph
+    lam, a = graph.symbols.lam, np.array([float(state[x]) for x in graph.symbols.a])
+    M, J = (np.array([at(row, state) for row in rows]) for rows in (graph.M, graph.J))
+    values = np.linalg.lstsq(J.T, M @ a - at(graph.forcing, state), rcond=None)[0] if lam else []
+    return {x: fifty_digits().number(1) * float(value) for x, value in zip(lam, values, strict=True)}
 
 
 def states(equations: Equations, count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

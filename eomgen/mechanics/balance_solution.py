@@ -10,6 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance import Balance, BodyEquation
 from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.ground_balance import along_ground
 from eomgen.mechanics.statics.unknown_loads import with_unknowns
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted
@@ -30,6 +31,8 @@ def solution_of_balance(balance: Balance, at: Mapping[Node, Scalar], sure: int |
         sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.solved`).
     """
     coefficients, needed = with_unknowns(balance)
+    if not at:
+        coefficients, needed = along_ground(balance, coefficients, needed)
     entries = [x for row in coefficients for x in row.values()]
     pushes = [_pushes(balance, e) for e in balance.equations]
     if at:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from eomgen.errors import NotYet
 from eomgen.mechanics.contacts import CLOSED, friction_factor
 from eomgen.mechanics.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
 from eomgen.mechanics.kinematics import Link, Motion
@@ -164,6 +165,9 @@ def joint_friction(system: System, link: Link) -> Scalar | None:
     factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
+    if system.scope.model.space != "plane":
+        raise NotYet("friction on a path is not derived here", f"bodies.{link.name}.joint",
+                     "it is derived in the plane")  # fmt: skip
     return link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
 
 

@@ -19,7 +19,7 @@ from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
 
 FORCE, COUPLE = "N", "N*m"
-OWN = frozenset(("n", "t", "tension", ""))  # components that are asked for as they are, in space too
+OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too
 
 Part = Callable[[Effect], Vector]
 
@@ -66,7 +66,7 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     ties = [(j, c) for j, c in mine if c.kind != "drive"]
     plane = balance.system.scope.model.space == "plane"
-    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y"))]
+    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y", "wrench"))]
     if len(apart) < len(ties):
         along = (0, 1) if plane else (0, 1, 2)
         for side in dict.fromkeys(("", *(c.side for _, c in ties))):

@@ -18,7 +18,7 @@ from eomgen.symbolic.graph import Node, Scalar
 _AXES = {"x": 0, "y": 1, "z": 2}
 _FORCES = {f"reaction_{axis}": i for axis, i in _AXES.items()}
 _COUPLES = {"reaction_couple": 2, **{f"reaction_couple_{axis}": i for axis, i in _AXES.items()}}
-_ALONE = ("reaction_n", "reaction_t", "tension", "multiplier", "drive")
+_ALONE = ("reaction_n", "reaction_t", "reaction_s", "tension", "multiplier", "drive")
 ASKING_REACTIONS = frozenset((*_FORCES, *_COUPLES, *_ALONE, *KINDS))
 """Functions for which the balance of the bodies is needed."""
 
@@ -59,13 +59,13 @@ class AskedReactions:
         if call.name == "drive":
             return drive(self.system, owner)
         owner, _, side = owner.partition(".")
-        if side and call.name in ("reaction_n", "reaction_t"):
+        if side and call.name in ("reaction_n", "reaction_t", "reaction_s"):
             mend = f"ask {call.name}({owner}), at an instant where it is meant"
             raise DerivationError(f"'{call}': normal force and friction are on the body named first", mend=mend)
         if call.name == "reaction_n":
             return self.reactions.normal(owner)
-        if call.name == "reaction_t":
-            return self.reactions.friction(owner)
+        if call.name in ("reaction_t", "reaction_s"):
+            return self.reactions.friction(owner, call.name[-1])
         if call.name in _FORCES:
             return self.reactions.component("force", _FORCES[call.name], owner, side, frame)
         return self.reactions.component("couple", _COUPLES[call.name], owner, side, frame)

@@ -134,15 +134,18 @@ class Reactions:
             return 0
         return self._labelled(owner, "n", "normal reaction")
 
-    def friction(self, owner: str) -> Scalar:
-        """The force along the contact, positive along the normal turned clockwise: it rubs, or keeps from sliding."""
+    def friction(self, owner: str, along: str = "t") -> Scalar:
+        """The force along the contact, positive along the normal turned clockwise: it rubs, or keeps from sliding.
+
+        In space it has two components, along "t" and "s".
+        """
         if self.is_open(owner):
             return 0
-        name = f"reaction_t({owner})"
+        name = f"reaction_{along}({owner})"
         for named in named_reactions(self.balance):
             if named.name == name:
                 return self.combined({j: self._replaced((k, 0, 0))[0] for j, k in named.combination.items()}, name)
-        return self._labelled(owner, "t", "friction")
+        return self._labelled(owner, along, "friction")
 
     def member(self, truss: str, first: str, second: str) -> Scalar:
         """Tension of the member of a truss between two nodes.

@@ -14,7 +14,7 @@ from eomgen.simulation.trajectory import Trajectory
 MOST_IN_LEGEND = 12
 MOST_REACTIONS = 10  # lines in one panel
 UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
-DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "tension": "-", "couple": "--", "drive": ":"}
+DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension": "-", "couple": "--", "drive": ":"}
 
 
 def plot_trajectory(

@@ -17,7 +17,7 @@ from eomgen.report.statements import Meaning, Table
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector
 
-LETTERS = {"n": "N", "t": "F", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
+LETTERS = {"n": "N", "t": "F", "s": "S", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
 """label -> the letter of a symbol whose owner stands behind it; forces along axes have their owner in front."""
 
 AXES = ("x", "y", "z")
@@ -116,8 +116,9 @@ def meaning(balance: Balance, component: Component) -> str:
         return f"force {on}, along {_axis(balance, component, kind)}"
     if kind == "couple":
         return f"couple {on}, {_sense(balance, component)}"
-    if kind == "t":
-        return f"friction {on}, along the contact, without sliding"
+    if kind in ("t", "s"):
+        space = balance.system.scope.model.space == "space"
+        return f"friction {on}, along {f'{kind} of the contact' if space else 'the contact'}, without sliding"
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
@@ -135,7 +136,7 @@ def said(balance: Balance, named: NamedReaction) -> str:
     mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]
     component = next((c for c in mine if c.side == side), mine[0])
     on = _on(balance, component)
-    if kind == "t":
+    if kind in ("t", "s"):
         return f"friction {on}, along the contact"
     if kind.startswith("couple_"):
         return f"couple {on}, about {axis}"

@@ -11,7 +11,7 @@ from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
-from eomgen.report.reaction_values import Readings, readings_of
+from eomgen.report.reaction_values import Readings, readings_of, shown_system
 from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print
 from eomgen.report.setting_steps import count, listed
 from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table
@@ -29,12 +29,9 @@ VERB = Code("eomgen reactions MODEL")
 
 
 def letters_of(system: System) -> Lettered | str:
-    """The reactions of a system with their symbols; of dependent coordinates as if they were free, which is shorter.
-
-    Where they cannot be derived, why not.
-    """
+    """The reactions of a system with their symbols, or why they cannot be derived."""
     try:
-        return lettered(reactions_of(system.free or system, short=True), system.scope.names)
+        return lettered(reactions_of(shown_system(system), short=True), system.scope.names)
     except DerivationError as error:
         return f"{error.what}; {error.mend}" if error.mend else error.what
 

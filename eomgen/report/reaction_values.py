@@ -109,7 +109,12 @@ def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: boo
     found = short_accelerations(system, assembly)
     long = found is None or sum(map(text_size, found)) > LONGEST
     accelerations = {} if found is None or long else dict(zip(assembly.symbols.a, found, strict=True))
-    return Readings(system, (system.free or system) if free else system, reader, accelerations)
+    return Readings(system, shown_system(system) if free else system, reader, accelerations)
+
+
+def shown_system(system: System) -> System:
+    """The system whose reactions are shown: dependent coordinates free, which is shorter; declared speeds stay."""
+    return system if system.free is None or system.scope.model.speeds else system.free
 
 
 def _ways(system: System) -> tuple[Reactions, ...]:

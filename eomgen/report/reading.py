@@ -10,6 +10,7 @@ from eomgen.report.statements import Omitted
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import operations, order
 from eomgen.symbolic.functions import function
+from eomgen.symbolic.gathered import gathered, with_squares
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.layout import SUMS, factors
 from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, simplest
@@ -37,10 +38,12 @@ class Reader:
 
     Args:
         full: what is too long to print is printed as it is, and not left out.
+        gathers: sums of parameters stand in parentheses before what moves, and squares of sums are left, where that
+            is shorter: so the equations of bodies that turn in space are written.
     """
 
-    def __init__(self, *, full: bool = False) -> None:
-        self.full = full
+    def __init__(self, *, full: bool = False, gathers: bool = False) -> None:
+        self.full, self.gathers = full, gathers
         self.raw: set[Scalar] = set()  # what is too long to print whole
         self.roots: dict[Node, Scalar] = {}  # what the symbols in `shown` stand for
         self._known: dict[Scalar, Scalar | None] = {}
@@ -92,6 +95,8 @@ class Reader:
             short = readable_over(x, held, WORK)
         except TooLarge:
             return None
+        if self.gathers and not held:
+            short = min(short, gathered(x, WORK), with_squares(x, WORK), key=length_in_print)
         left_alone = held or holds_roots(x)
         return x if left_alone and length_in_print(x) < length_in_print(short) else short
 

@@ -14,6 +14,7 @@ from eomgen.symbolic.atoms import RADIAN, Atoms, Opaque
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order, united
 from eomgen.symbolic.factoring import square_root
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.spheres import reduced_on
 from eomgen.symbolic.terms import (
     HALF,
     ONE,
@@ -59,6 +60,7 @@ class Expansion:
         self.graph, self.limit, self.work = graph, limit, 0
         self.positive = frozenset(x.index for x in positive)
         self.atoms = Atoms(graph)
+        self.spheres = tuple(tuple(x.index for x in symbols) for symbols in graph.spheres)
         self._known: dict[Node, Terms] = {}
         self._too_long: set[Node] = set()
 
@@ -187,9 +189,12 @@ class Expansion:
         return times(f, {(inverted, ()): tidy(1 / content(f))}) if f else f
 
     def product(self, a: Terms, b: Terms) -> Terms:
-        """a b, with atom^2 = f for atoms sqrt(f)."""
+        """a b, with atom^2 = f for atoms sqrt(f), and e0^2 = 1 - (the other squares) for symbols on a sphere."""
         self._spend(len(a) * len(b))
-        return self._without_squared_roots(times(a, b))
+        found = self._without_squared_roots(times(a, b))
+        for sphere in self.spheres:
+            found = reduced_on(sphere, found)
+        return found
 
     def power(self, a: Terms, n: int) -> Terms:
         """a ** n for a whole n >= 0."""
@@ -207,6 +212,9 @@ class Expansion:
 
     def _atom(self, x: Node) -> Terms:
         self.atoms.nodes[x.index] = x
+        for symbols in self.graph.spheres:
+            if x in symbols:
+                self.atoms.nodes |= {symbol.index: symbol for symbol in symbols}
         return {(((x.index, 1),), ()): 1}
 
     def _function(self, op: str, arguments: tuple[Terms, ...]) -> Terms:

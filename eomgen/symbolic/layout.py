@@ -17,6 +17,7 @@ from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.graph import Node, Number, Scalar
 
 SUMS = frozenset(("add", "sub", "neg"))
+SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 
 Term = tuple[Number, "Node | None"]
 Factor = tuple[Node, int]
@@ -196,8 +197,27 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
                 heappush(newest, (-part.index, part))
             powers[part] = powers.get(part, 0) + power * exponent
     bases.sort(key=_rank)
+    bases = _constant_sums_first(bases)
     above = tuple((base, power) for base, power in bases if power > 0)
     return Product(_tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
+
+
+def _constant_sums_first(bases: list[Factor]) -> list[Factor]:
+    """(I3 - I2)*w2*w3: sums of what stays the same before the first symbol of what moves."""
+    first = next((k for k, (base, _) in enumerate(bases) if _moves(base)), None)
+    if first is None:
+        return bases
+    sums = [each for each in bases[first:] if each[0].op in SUMS and _is_short_constant(each[0])]
+    return [*bases[:first], *sums, *(each for each in bases[first:] if each not in sums)]
+
+
+def _moves(base: Node) -> bool:
+    return base.op == "symbol" and not base.graph.is_constant(base) and not base.name.endswith("'")
+
+
+def _is_short_constant(base: Node) -> bool:
+    nodes = order((base,))
+    return len(nodes) <= SHORT_SUM and all(x.op != "symbol" or x.graph.is_constant(x) for x in nodes)
 
 
 def rebuilt_as_written(x: Scalar) -> Scalar:

@@ -88,8 +88,10 @@ def equal(a: Scalar, b: Scalar, limit: int = LIMIT) -> bool:
 
 def _has_relations(expansion: Expansion) -> bool:
     """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
-    pi = expansion.graph.pi.index
-    return pi in expansion.atoms.nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
+    nodes, pi = expansion.atoms.nodes, expansion.graph.pi.index
+    if any(sphere[0] in nodes for sphere in expansion.spheres):  # a power of e0 below a line
+        return True
+    return pi in nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
 
 
 def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:

@@ -13,6 +13,7 @@ from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.quotient import powers_in
 from eomgen.symbolic.radicals import Radical, one_root
 from eomgen.symbolic.shortest import Factors, shortest
+from eomgen.symbolic.spheres import shortest_on
 from eomgen.symbolic.terms import (
     ONE,
     Monomial,
@@ -70,20 +71,20 @@ class Writer:
         """sin(theta)*(3*g + 20*R*cos(theta)*theta'^2)"""
         if len(terms) < 2 or any(e < 0 and self.atoms.is_a(a, "sum") for monomial, _ in terms for a, e in monomial):
             return self.sum(terms)
-        written = [(c, monomial, _powers(factors)) for c, monomial, factors in self._written(terms)]
+        written = [(c, monomial, _powers(factors)) for c, monomial, factors in self.written(terms)]
         common = reduce(and_, (powers for _, _, powers in written))
         total: Scalar = 0
         for c, monomial, powers in written:
-            total = self.graph.add(total, self._term(c, monomial, _factors(powers - common)))
-        return self.graph.mul(self._term(1, (), _factors(common)), total)
+            total = self.graph.add(total, self.term(c, monomial, _factors(powers - common)))
+        return self.graph.mul(self.term(1, (), _factors(common)), total)
 
     def content(self, *sums: Terms) -> Fraction:
         """The rational number common to every coefficient as written (27/2 cos^2, not 27/4 + 27/4 cos(2 theta))."""
-        return common_number(c for terms in sums for c, _, _ in self._written(terms))
+        return common_number(c for terms in sums for c, _, _ in self.written(terms))
 
     def leads_with_minus(self, terms: Terms) -> bool:
         """Whether the first term as written has a minus sign."""
-        return bool(terms) and self._written(terms)[0][0] < 0
+        return bool(terms) and self.written(terms)[0][0] < 0
 
     def _divisor(self, below: Monomial) -> Scalar:
         product: Scalar = 1
@@ -93,11 +94,14 @@ class Writer:
 
     def _polynomial(self, terms: Terms) -> Scalar:
         total: Scalar = 0
-        for c, monomial, factors in self._written(terms):
-            total = self.graph.add(total, self._term(c, monomial, factors))
+        for c, monomial, factors in self.written(terms):
+            total = self.graph.add(total, self.term(c, monomial, factors))
         return total
 
-    def _written(self, terms: Terms) -> list[tuple[Number, Monomial, Factors]]:
+    def written(self, terms: Terms) -> list[tuple[Number, Monomial, Factors]]:
+        """(coefficient, monomial, sines and cosines) of each term as it is written."""
+        for sphere in self._expansion.spheres:
+            terms = shortest_on(sphere, terms)
         groups: dict[Monomial, dict[Wave, Number]] = {}
         for (monomial, w), c in terms.items():
             groups.setdefault(monomial, {})[w] = c
@@ -108,7 +112,8 @@ class Writer:
             for sign, turned in (_forward(factors),)
         ]
 
-    def _term(self, c: Number, monomial: Monomial, factors: Factors) -> Scalar:
+    def term(self, c: Number, monomial: Monomial, factors: Factors) -> Scalar:
+        """c * monomial * sines and cosines"""
         above, below = self._monomial(monomial)
         for kind, angle, e in factors:
             above = self.graph.mul(above, self.graph.pow(self.atoms.wave_node(kind, angle), e))

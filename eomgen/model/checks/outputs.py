@@ -8,7 +8,7 @@ from eomgen.model.checks.catalog import Catalog
 from eomgen.model.checks.references import missing_point
 from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Finding, nearest
+from eomgen.model.findings import Finding, nearest, whereabouts
 from eomgen.symbolic.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.functions import NAMES
 
@@ -42,7 +42,7 @@ _BY_SIGNATURE = (
     (Signature(("body", "body"), 1),
      ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y", *_along("omega_*", "epsilon_*"))),
     (Signature(("reaction", "body"), 1),
-     ("reaction_n", "reaction_t", "reaction_couple", *_along("reaction_*", "reaction_couple_*"))),
+     ("reaction_n", "reaction_t", "reaction_s", "reaction_couple", *_along("reaction_*", "reaction_couple_*"))),
     (Signature(("tie or truss", "any", "any"), 1), ("tension",)),
     (Signature(("tie",), 1), ("multiplier",)),
     (Signature(("body", "number", "side"), 2), ("axial_force", "shear_force", "bending_moment")),
@@ -84,6 +84,12 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
     if signature is None:
         mend = nearest(call.name, [*FUNCTIONS, *NAMES])
         yield Finding(leaf.path, f"unknown function '{call.name}'", mend, call.column, len(call.name))
+        return
+    functions = getattr(leaf.rule, "functions", None)
+    if functions is not None and (call.name not in functions or len(call.args) > 2):
+        what, mend = f"'{call}' cannot stand in {whereabouts(leaf.path)}", f"only {', '.join(functions)} can stand here"
+        few = "name one body, whose axes are meant too"
+        yield Finding(leaf.path, what, few if call.name in functions else mend, call.column, len(call.name))
         return
     kinds = signature.kinds + (signature.more,) * (len(call.args) - len(signature.kinds) if signature.more else 0)
     if not signature.least <= len(call.args) <= len(kinds):

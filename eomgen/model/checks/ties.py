@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.model.checks.catalog import Catalog
+from eomgen.model.checks.choices import not_in_the_plane, one_of
+from eomgen.model.checks.rolling import is_round, rolling
 from eomgen.model.fields import NameRule
 from eomgen.model.findings import Finding, Path
 
@@ -30,27 +32,18 @@ def ties(catalog: Catalog) -> Iterator[Finding]:
             if part.kind in ONE_OF:
                 yield from one_of(catalog, path, part, ONE_OF[part.kind])
             if part.kind == "rolling":
-                yield from _rolling(catalog, path, part)
+                yield from rolling(catalog, path, part)
+            elif part.kind == "skate":
+                yield from not_in_the_plane(catalog, path, part, ("normal",))
             elif part.kind == "string":
                 yield from _string(catalog, path, part)
-            elif part.kind == "slider" and _lacks_line(catalog, part.on):
-                what = f"'{name}' slides on the line of body '{part.on}', which has none"
-                yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
+            elif part.kind == "slider":
+                yield from _slider(catalog, path, part)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
             friction = getattr(part, "friction", None)
             if friction is not None:
                 yield from one_of(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
-
-
-def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
-    """Exactly one of these fields is given."""
-    given = [key for key in keys if getattr(part, key) is not None]
-    listed = " and ".join(f"'{key}'" for key in keys)
-    if len(given) > 1:
-        yield Finding((*path, given[1]), f"only one of {listed} can be given ({'.'.join(map(str, path))})", key=True)
-    elif not given and not any((*path, key) in catalog.broken for key in keys):
-        yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
 
 
 def _on_itself(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
@@ -78,39 +71,18 @@ def _owner(point: str) -> str:
     return point.partition(".")[0] if "." in point else ""
 
 
+def _slider(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
+    if _lacks_line(catalog, part.on):
+        what = f"'{path[1]}' slides on the line of body '{part.on}', which has none"
+        yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
+    if part.unilateral and catalog.model.space == "space":
+        what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
+        yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
+
+
 def _lacks_line(catalog: Catalog, body: Any) -> bool:
     part = catalog.table("bodies").get(body)
     return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken
-
-
-def _round(catalog: Catalog, body: Any) -> bool:
-    """Whether a body's shape has a radius (or could not be read)."""
-    part = catalog.table("bodies").get(body)
-    return part is None or ("bodies", body, "shape") in catalog.broken or hasattr(part.shape, "radius")
-
-
-def _rolling(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
-    tracks = ("line", "plane", "circle")
-    alone = part.on is not None and all(getattr(part, track) is None for track in tracks)
-    yield from one_of(catalog, path, part, (*tracks, "on") if part.on is None or alone else tracks)
-    if part.radius is None and part.ellipsoid is None and not _round(catalog, part.body):
-        what = f"the radius of '{part.body}', which rolls, is not known"
-        yield Finding(path, what, "give 'radius', or the body a round shape")
-    if alone and not _round(catalog, part.on):
-        what = f"'{part.body}' rolls on body '{part.on}', which is not round"
-        yield Finding((*path, "on"), what, "give the line or circle of it, or the body a round shape")
-    track = part.line or part.plane or part.circle
-    if part.on is not None and track is not None and isinstance(track.at, str):
-        what = f"'{track.at}' is a point of the ground, but the track is fixed in body '{part.on}'"
-        yield Finding(path, what, f"give 'at' as coordinates in the axes of '{part.on}'")
-    for key in ("plane", "axis", "ellipsoid") if catalog.model.space == "plane" else ():
-        if getattr(part, key) is not None:
-            mend = "in the plane a body rolls on a 'line'" if key == "plane" else "leave it out"
-            yield Finding((*path, key), f"'{key}' of '{path[1]}' is for space", mend, key=True)
-    if part.on is not None and part.on == part.body:
-        yield Finding((*path, "on"), f"'{part.body}' cannot roll on itself")
-    if part.friction is not None and not part.slip:
-        yield Finding((*path, "friction"), "friction needs sliding", "slip = true, or leave 'friction' out", key=True)
 
 
 def _string(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
@@ -119,16 +91,22 @@ def _string(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
         if isinstance(wrap, str):
             continue
         yield from one_of(catalog, where, wrap, ("body", "at"))
-        if wrap.radius is None and (wrap.at is not None or not _round(catalog, wrap.body)):
+        if wrap.radius is None and (wrap.at is not None or not is_round(catalog, wrap.body)):
             yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
         if wrap.turn is None and (*where, "turn") not in catalog.broken:
             yield Finding(where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"')
+        if wrap.axis is not None and catalog.model.space == "plane":
+            yield Finding((*where, "axis"), f"'axis' of a wrap of '{path[1]}' is for space", "leave it out", key=True)
         if wrap.slip and k in (0, len(part.path) - 1):
             yield Finding((*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True)
     owners = {_owner(stop) if isinstance(stop, str) else stop.body or "" for stop in part.path or ()}
     if len(owners) == 1:
         what = f"the string '{path[1]}' has nothing on it that it could hold: all of it is on one body or the ground"
         yield Finding((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
+    for k, way in enumerate(part.strands or ()):
+        if isinstance(way, str) and catalog.model.space == "space":
+            what = f"'{way}' says no direction in space, where nothing tells which axis is up"
+            yield Finding((*path, "strands", k), what, "give the direction as three components")
     pieces = len(part.path or ()) - 1
     if part.strands is not None and part.path is not None and len(part.strands) != pieces:
         what = f"the string has {pieces} strands, but {len(part.strands)} directions are given"

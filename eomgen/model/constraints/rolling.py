@@ -1,68 +1,24 @@
-"""Rolling: a round body on a line, a circle or another body; on planes in space it is read and not derived yet."""
+"""Rolling: a round body on a line, a circle or another body; in space on a plane, a ball or a pipe."""
 
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.plane import Touch, opposite, right
-from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.forces.load import Place, Scalar, Scene, Vector
+from eomgen.model.constraints.plane import Touch, opposite
+from eomgen.model.constraints.round_bodies import Ball, Egg, Round, Wheel
+from eomgen.model.constraints.row import Edge, TieRow
+from eomgen.model.constraints.tracks import Circle, Contact, Curved, Track, curved, normal_of, on_curved, on_level
+from eomgen.model.forces.load import Scalar, Scene
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.kinds import (
-    BodyName,
-    Direction,
-    Flag,
-    GroundPlace,
-    Length,
-    OwnPointName,
-    Size,
-    SpaceDirection,
-)
-from eomgen.model.part import Part, PartRule
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import apply, dot, minus, times
-
-
-@dataclass(frozen=True, kw_only=True)
-class Track(Part):
-    """A line or a plane: through `at`, `normal` towards the rolling body; in the axes of `on`."""
-
-    title: ClassVar[str] = "a line or plane"
-    at: GroundPlace
-    normal: Direction
-
-
-@dataclass(frozen=True, kw_only=True)
-class Circle(Part):
-    """A circle about `at`, in the axes of `on`; the body rolls on its outside, or on its inside."""
-
-    title: ClassVar[str] = "a circle"
-    at: GroundPlace
-    radius: Length
-    inside: Flag = False
-
-
-@dataclass(frozen=True)
-class Contact:
-    """A round body against its track.
-
-    Args:
-        n: from the track towards the body, of unit length where they touch.
-        gap: between them [m].
-        anchor: a place of the track that does not move in its body.
-        arm: from the anchor to the contact, ground axes [m].
-    """
-
-    n: Vector
-    gap: Scalar
-    anchor: Place
-    arm: Vector
-
+from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
+from eomgen.model.part import PartRule
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]
+
+ALONG = ("t", "s")
+"""What the components along a contact are called."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,14 +32,14 @@ class Rolling(Constraint):
         slip: True leaves the contact row only.
         unilateral: it can only push.
         friction: with slip.
-        radius: None: the shape's [m].
+        radius: None: the shape's; of a tyre that of its centre line [m].
+        tube: in space, with `axis`: the radius of the tyre's section (None: a thin disc) [m].
         center: the point of the body about which it is round; None: its origin.
-        axis: in space, of a thin disc, body axes; without it a sphere.
+        axis: in space, of a wheel, body axes; without it a ball.
         ellipsoid: in space, semiaxes of an ellipsoid, 3 [m].
     """
 
     kind: ClassVar[str] = "rolling"
-    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     body: BodyName
     line: TrackField | None = None
     plane: TrackField | None = None
@@ -93,60 +49,67 @@ class Rolling(Constraint):
     unilateral: Flag = False
     friction: FrictionLaw | None = None
     radius: Length | None = None
+    tube: Radius | None = None
     center: OwnPointName | None = None
     axis: SpaceDirection | None = None
     ellipsoid: Size | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """The normal row, gap = 0, n pushing the body off its track; unless it slips, t . (v - v_track) = 0.
+        """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.
 
-        Both velocities are those of the bodies' material points at the contact; t = n turned clockwise (x, where n
-        is y). The no-slip row is one of velocities alone.
+        Both velocities are those of the bodies' material points at the contact. In the plane e = t is n turned
+        clockwise (x, where n is y); in space e = t and s, with n a right-handed frame (x and y, where n is z). The
+        no-slip rows are of velocities alone.
         """
         center = scene.own_place(self.body, self.center)
-        R = scene.radius(self.body) if self.radius is None else scene.value(self.radius)
-        contact = self._contact(scene, scene.position(center), R)
-        touch = Touch(center, times(-R, contact.n)), Touch(contact.anchor, contact.arm)
-        along = opposite(*touch, right(contact.n))
+        contact = self._contact(scene, scene.position(center))
+        touch = Touch(center, contact.reach), Touch(contact.anchor, contact.arm)
         normal = opposite(*touch, contact.n)
+        along = [opposite(*touch, e) for e in contact.tangents]
         if self.slip:
-            return (TieRow(normal, contact.gap, component="n", tangent=along),)
-        return TieRow(normal, contact.gap, component="n"), TieRow(along, None, component="t", material=True)
+            tangent, cross_tangent, *_ = (*along, ())
+            return (TieRow(normal, contact.gap, component="n", tangent=tangent, cross_tangent=cross_tangent),)
+        held = (TieRow(push, None, component=name, material=True) for name, push in zip(ALONG, along, strict=False))
+        return (TieRow(normal, contact.gap, component="n"), *held)
 
-    def _contact(self, scene: Scene, center: Vector, R: Scalar) -> Contact:
-        if self.line is not None:
-            return _on_line(scene, self.on, self.line, center, R)
+    def edges(self, scene: Scene) -> tuple[Edge, ...]:
+        """A wheel on a plane must not lie flat."""
+        body, track = self._round(scene), self.plane
+        if track is None or not isinstance(body, Wheel):
+            return ()
+        n = normal_of(scene, self.on, track)
+        return (Edge(f"'{self.body}' lies flat in '{scene.where.rpartition('.')[2]}'", body.tilt(scene, n)),)
+
+    def _contact(self, scene: Scene, center: Any) -> Contact:
+        body = self._round(scene)
+        track = self.plane or self.line
+        if track is not None:
+            return on_level(scene, self.on, track, center, body)
+        if not isinstance(body, Ball):
+            raise ModelError(f"'{self.body}' is no ball: where it touches something curved is not derived", scene.where,
+                             "let it roll on a plane, or leave out 'axis' and 'ellipsoid'")  # fmt: skip
         if self.circle is not None:
-            anchor = _anchor(scene, self.on, self.circle.at)
-            return _on_circle(scene, anchor, (scene.value(self.circle.radius), self.circle.inside), center, R)
-        assert self.on is not None, "one of line, circle and on is given"
-        return _on_circle(scene, scene.own_place(self.on, None), (scene.radius(self.on), False), center, R)
+            return on_curved(scene, curved(scene, self.on, self.circle), center, body)
+        assert self.on is not None, "one of line, plane, circle and on is given"
+        return on_curved(scene, Curved(scene.own_place(self.on, None), scene.radius(self.on)), center, body)
 
+    def _round(self, scene: Scene) -> Round:
+        """What touches: a ball (in the plane a disc), a wheel, an ellipsoid; sizes left out are those of the shape."""
+        shape = scene.shape(self.body)
+        semiaxes = self.ellipsoid or (getattr(shape, "semiaxes", None) if self._plain else None)
+        if semiaxes is not None:
+            return Egg(self.body, scene.vector(semiaxes))
+        torus = not scene.plane and shape is not None and shape.kind == "torus"
+        if self.axis is None and not (torus and self.radius is None):
+            return Ball(self._radius(scene))
+        R = scene.value(shape.major) if torus and self.radius is None else self._radius(scene)
+        tube = shape.minor if torus and self.tube is None else self.tube
+        return Wheel(self.body, (0, 0, 1) if self.axis is None else scene.vector(self.axis), R, scene.value(tube))
 
-def _anchor(scene: Scene, on: str | None, at: tuple | str) -> Place:
-    return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))
+    @property
+    def _plain(self) -> bool:
+        """Whether nothing is said of the body's form."""
+        return self.radius is None and self.axis is None
 
-
-def _on_line(scene: Scene, on: str | None, track: Track, center: Vector, R: Scalar) -> Contact:
-    """gap = n . (c - at) - R; the contact is at c - R n."""
-    n = direction_of(scene, scene.vector(track.normal))
-    n = n if on is None else apply(scene.orientation(on), n)
-    anchor = _anchor(scene, on, track.at)
-    out = minus(center, scene.position(anchor))
-    return Contact(n, dot(n, out) - R, anchor, minus(out, times(R, n)))
-
-
-def _on_circle(scene: Scene, anchor: Place, circle: tuple[Scalar, bool], center: Vector, R: Scalar) -> Contact:
-    """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre to the body's: d and D = r + R where they touch.
-
-    Inside, D = r - R and both signs turn. No root stands in it: to first order the gap is the distance.
-    """
-    r, inside = circle
-    D, side = (r - R, -1) if inside else (r + R, 1)
-    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
-        raise ModelError("the body is as large as the circle in which it should roll", scene.where,
-                         "give the circle a larger radius")  # fmt: skip
-    d = minus(center, scene.position(anchor))
-    n: Vector = tuple(side * over(x, D) for x in d)  # type: ignore[assignment]
-    gap = Fraction(1, 2) * side * (over(dot(d, d), D) - D)
-    return Contact(n, gap, anchor, times(side * r, n))
+    def _radius(self, scene: Scene) -> Scalar:
+        return scene.radius(self.body) if self.radius is None else scene.value(self.radius)

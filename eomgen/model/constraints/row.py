@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.model.forces.load import Couple, PointForce, Scalar, Scene, Vector
-from eomgen.model.joints.base import unit
+from eomgen.model.joints.base import across, unit
 
 
 @dataclass(frozen=True)
@@ -15,12 +15,14 @@ class TieRow:
     Args:
         pushes: forces and couples on the bodies for a unit of the row's multiplier; empty for an equation.
         gap: phi(q, t), 0 when the tie holds; None where only the velocity row is given.
-        rate: the row of an equation given in rates, 0 when it holds; None elsewhere.
+        rate: the row of an equation given in rates, 0 when it holds; beside pushes, what it holds besides their dual.
+            None elsewhere.
         component: what the multiplier is called: "x", "y", "z", "n" (normal), "t" (along the contact), "couple",
-            "tension"; "" for an equation.
+            "tension", "wrench" (of an equation between points); "" for an equation of coordinates.
         material: the row sees the velocities of the bodies' material points, not of points that wander in them
             (rolling contacts, strings that leave a pulley).
         tangent: of a contact that can rub, the forces for a unit of friction; their dual is the sliding velocity.
+        cross_tangent: of a contact on a surface the same along the second direction, across the first.
         part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
     """
 
@@ -30,7 +32,16 @@ class TieRow:
     component: str = ""
     material: bool = False
     tangent: tuple[PointForce | Couple, ...] = ()
+    cross_tangent: tuple[PointForce | Couple, ...] = ()
     part: str = ""
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A function of the configuration, positive until a motion ends where it vanishes; what is so there, in words."""
+
+    words: str
+    vanishes: Scalar
 
 
 def direction_of(scene: Scene, v: Vector) -> Vector:
@@ -41,6 +52,14 @@ def direction_of(scene: Scene, v: Vector) -> Vector:
         return unit(v)
     x, y, z = ((1 if sense > 0 else -1) if k in along else 0 for k in range(3))
     return (x, y, z)
+
+
+def normals_of(scene: Scene, d: Vector) -> tuple[tuple[str, Vector], ...]:
+    """Unit vectors across the unit vector d, with their names: in the plane its left normal, in space two."""
+    if scene.plane:
+        return (("n", (-d[1], d[0], 0)),)
+    first, second = map(unit, across(d))
+    return ("n 1", first), ("n 2", second)
 
 
 def axes_of(scene: Scene) -> tuple[Vector, ...]:

@@ -5,22 +5,39 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left
+from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
-from eomgen.model.kinds import Direction, PointName
+from eomgen.model.kinds import Direction, PointName, SpaceDirection
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.spatial import apply, cross, dot, times
 
 
 @dataclass(frozen=True, kw_only=True)
 class Skate(Constraint):
-    """No velocity of the point across `along` (body axes); the reaction acts along the left normal."""
+    """No velocity of the point across `along` (body axes); the reaction acts along the left normal.
+
+    Args:
+        point: of the edge.
+        along: the edge, body axes.
+        normal: in space, of the ice on which it cuts, ground axes; None: z.
+    """
 
     kind: ClassVar[str] = "skate"
-    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     point: PointName
     along: Direction
+    normal: SpaceDirection | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """n . v = 0, n the left normal of `along`; a row of velocities alone, which no gap has for a rate."""
+        """n . v = 0; a row of velocities alone, which no gap has for a rate.
+
+        n is the left normal of `along`; in space, on ice of the normal e and with the edge d, n = e x d / |e x d|.
+        """
         place = scene.place(self.point)
-        n = left(direction_of(scene, scene.vector(self.along)))
-        return (TieRow((PointForce(place, n, axes=place[0]),), None, component="n"),)
+        along = direction_of(scene, scene.vector(self.along))
+        if scene.plane:
+            return (TieRow((PointForce(place, left(along), axes=place[0]),), None, component="n"),)
+        e = (0, 0, 1) if self.normal is None else direction_of(scene, scene.vector(self.normal))
+        d = along if place[0] is None else apply(scene.orientation(place[0]), along)
+        n = times(over(1, complement(scene, dot(e, d))), cross(e, d))
+        return (TieRow((PointForce(place, n),), None, component="n"),)

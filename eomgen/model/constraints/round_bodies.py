@@ -1,0 +1,173 @@
+"""Round bodies in space: where each of them comes nearest to a plane.
+
+The place nearest to a plane is the one farthest against its normal n. From the centre it is `reach` away, and the
+centre then is `height` = - n . reach above the plane:
+
+    ball         reach = - R n                                 height = R
+    wheel        reach = - R (n - (n.a) a) / rho - r n         height = R rho + r,   rho = |n x a|
+    ellipsoid    reach = - A n / h                             height = h = sqrt(n . A n)
+
+with a wheel's axis a and the radius r of its tyre (0: a thin disc), A = R_B diag(a^2, b^2, c^2) R_B^T. As the place
+is an extreme one, it may wander in the body, and the gap's rate is still n . v of the material points in contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eomgen.errors import ModelError
+from eomgen.model.forces.load import Scalar, Scene, Vector
+from eomgen.model.joints.base import unit
+from eomgen.symbolic.functions import cos, over, sin, sqrt
+from eomgen.symbolic.graph import Node
+from eomgen.symbolic.spatial import apply, cross, dot, minus, plus, times, transposed
+
+FLAT = 1e-6  # rho of a wheel that lies flat
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The place of a round body that is nearest to a plane.
+
+    Args:
+        reach: from the body's centre to it, ground axes [m].
+        height: of the centre above the plane through it [m].
+    """
+
+    reach: Vector
+    height: Scalar
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A ball of radius R."""
+
+    R: Scalar
+
+    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+        """R below the centre."""
+        return Nearest(times(-self.R, n), self.R)
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A thin disc of radius R about `axis` (body axes), or the centre line of a tyre of radius `tube`."""
+
+    body: str
+    axis: Vector
+    R: Scalar
+    tube: Scalar
+
+    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+        """The lowest place of the rim.
+
+        Raises:
+            ModelError: the wheel lies flat at the start, where the whole rim touches.
+        """
+        a, rho = self._axle(scene), self.tilt(scene, n)
+        if abs(_worth(scene, rho)) < FLAT:
+            raise ModelError(f"'{self.body}' lies flat at the start: its whole rim touches", scene.where,
+                             "start it upright or leaning; an axis along the normal has no lowest point")  # fmt: skip
+        down = times(over(-self.R, rho), cross(a, cross(n, a)))
+        return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
+
+    def tilt(self, scene: Scene, n: Vector) -> Scalar:
+        """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
+        a = self._axle(scene)
+        k = cross(n, a)
+        wave = _other_wave(scene, dot(n, a))
+        return sqrt(dot(k, k)) if wave is None else wave
+
+    def _axle(self, scene: Scene) -> Vector:
+        return apply(scene.orientation(self.body), unit(self.axis))
+
+
+@dataclass(frozen=True)
+class Egg:
+    """An ellipsoid with its semiaxes along the body's axes."""
+
+    body: str
+    semiaxes: Vector
+
+    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+        """The place of the surface at which n is its inner normal."""
+        R = scene.orientation(self.body)
+        n_B = apply(transposed(R), n)
+        x, y, z = (s * s * k for s, k in zip(self.semiaxes, n_B, strict=True))
+        h = sqrt(dot(n_B, (x, y, z)))
+        return Nearest(apply(R, times(over(-1, h), (x, y, z))), h)
+
+
+Round = Ball | Wheel | Egg
+
+
+def laid_in(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
+    """Two directions in the plane across the unit vector n: x laid into the plane (y where n is along x), and n x it.
+
+    So (t, s) is (x, y) on a level floor, and t points down a slope about y.
+    """
+    x, y, z = n
+    if _plain(y) and _plain(z):
+        t: Vector = (0, 1, 0)
+    elif _plain(y):
+        t = times(_sense(scene, z), (z, 0, -x))
+    elif _plain(z):
+        t = times(_sense(scene, y), (y, -x, 0))
+    else:
+        root = complement(scene, x)
+        t = (root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0)
+    return t, cross(n, t)
+
+
+def turned_over(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
+    """Two directions across a unit vector n that moves: those that come along when e turns into n the shortest way.
+
+    t_i = e_i - (n . e_i) (n + e) / (1 + n . e), e the axis of the ground nearest to n at the start. Opposite to e,
+    and only there, they are not determined.
+    """
+    k, sense = _nearest_axis(scene, n)
+    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    e = times(sense, axes[k])
+    first = axes[(k + 1) % 3]
+    middle = plus(n, e)
+    share = over(1, 1 + dot(n, e))
+    t, s = (minus(d, times(dot(n, d) * share, middle)) for d in (first, cross(e, first)))
+    return t, s
+
+
+def _nearest_axis(scene: Scene, n: Vector) -> tuple[int, int]:
+    """(which axis, +1 or -1); z where nobody knows."""
+    sizes = [_worth(scene, x, unknown=0.0) for x in n]
+    k = max((2, 1, 0), key=lambda i: abs(sizes[i]))
+    return k, -1 if sizes[k] < 0 else 1
+
+
+def complement(scene: Scene, x: Scalar) -> Scalar:
+    """sqrt(1 - x^2)."""
+    wave = _other_wave(scene, x)
+    return sqrt(1 - x * x) if wave is None else wave
+
+
+def _other_wave(scene: Scene, x: Scalar) -> Scalar | None:
+    """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
+    if type(x) is Node and x.op == "neg":
+        return _other_wave(scene, x.args[0])
+    other = {"sin": cos, "cos": sin}.get(x.op) if type(x) is Node else None
+    if other is None:
+        return None
+    found = other(x.args[0])
+    return -found if _sense(scene, found) < 0 else found
+
+
+def _sense(scene: Scene, x: Scalar) -> int:
+    return -1 if _worth(scene, x) < 0 else 1
+
+
+def _worth(scene: Scene, x: Scalar, unknown: float = 1.0) -> float:
+    """What x is at the start with the model's values."""
+    found = scene.worth(x)
+    return unknown if found is None else found
+
+
+def _plain(x: Scalar) -> bool:
+    return type(x) is int and x == 0

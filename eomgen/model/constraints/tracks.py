@@ -1,0 +1,130 @@
+"""What a round body rolls on: a plane (in the plane a line), a ball or pipe (in the plane a circle)."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+from eomgen.errors import ModelError
+from eomgen.model.constraints.plane import right
+from eomgen.model.constraints.round_bodies import Ball, Round, laid_in, turned_over
+from eomgen.model.constraints.row import direction_of
+from eomgen.model.forces.load import Place, Scalar, Scene, Vector
+from eomgen.model.joints.base import unit
+from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
+from eomgen.model.part import Part
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.spatial import ZERO, apply, cross, dot, minus, plus, times
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track(Part):
+    """A line or a plane: through `at`, `normal` towards the rolling body; in the axes of `on`."""
+
+    title: ClassVar[str] = "a line or plane"
+    at: GroundPlace
+    normal: Direction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circle(Part):
+    """A circle about `at`, in space a ball or with `axis` a pipe, in the axes of `on`; rolled on outside or inside."""
+
+    title: ClassVar[str] = "a circle"
+    at: GroundPlace
+    radius: Length
+    inside: Flag = False
+    axis: SpaceDirection | None = None
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A round body against its track.
+
+    Args:
+        n: from the track towards the body, of unit length where they touch.
+        gap: between them [m].
+        reach: from the body's centre to the contact, ground axes [m].
+        anchor: a place of the track that does not move in its body.
+        arm: from the anchor to the contact, ground axes [m].
+        tangents: one direction along the contact, in space two.
+    """
+
+    n: Vector
+    gap: Scalar
+    reach: Vector
+    anchor: Place
+    arm: Vector
+    tangents: tuple[Vector, ...]
+
+
+@dataclass(frozen=True)
+class Curved:
+    """A ball, a pipe about `axis` (ground axes), or in the plane a circle, about `anchor`.
+
+    Args:
+        r: its radius [m].
+        side: 1: it is rolled on outside, -1: inside.
+    """
+
+    anchor: Place
+    r: Scalar
+    side: int = 1
+    axis: Vector | None = None
+
+
+def on_level(scene: Scene, on: str | None, track: Track, center: Vector, body: Round) -> Contact:
+    """gap = n . (c - at) - height, n and `at` fixed in the track's body."""
+    own = direction_of(scene, scene.vector(track.normal))
+    tangents = (right(own),) if scene.plane else laid_in(scene, own)
+    n, *along = (_carried(scene, on, e) for e in (own, *tangents))
+    anchor = anchor_of(scene, on, track.at)
+    out, near = minus(center, scene.position(anchor)), body.nearest(scene, n)
+    return Contact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
+
+
+def normal_of(scene: Scene, on: str | None, track: Track) -> Vector:
+    """Its unit normal in ground axes."""
+    return _carried(scene, on, direction_of(scene, scene.vector(track.normal)))
+
+
+def _carried(scene: Scene, on: str | None, e: Vector) -> Vector:
+    """A direction of the ground, or of the body `on`, in ground axes."""
+    return e if on is None else apply(scene.orientation(on), e)
+
+
+def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> Contact:
+    """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre (the pipe's axis) to the ball's.
+
+    d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the
+    gap is the distance.
+    """
+    inside = track.side < 0
+    D = track.r - ball.R if inside else track.r + ball.R
+    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
+        raise ModelError("the body is as large as the circle in which it should roll", scene.where,
+                         "give the circle a larger radius")  # fmt: skip
+    out = minus(center, scene.position(track.anchor))
+    along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
+    d = out if track.axis is None else minus(out, along)
+    n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
+    gap = Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
+    arm = plus(along, times(track.side * track.r, n))
+    return Contact(n, gap, times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+
+
+def _around(scene: Scene, track: Curved, n: Vector) -> tuple[Vector, ...]:
+    """Directions across n: of a pipe its axis k and n x k."""
+    if scene.plane:
+        return (right(n),)
+    return turned_over(scene, n) if track.axis is None else (track.axis, cross(n, track.axis))
+
+
+def curved(scene: Scene, on: str | None, circle: Circle) -> Curved:
+    """The circle of a model as it stands."""
+    axis = None if circle.axis is None else _carried(scene, on, unit(scene.vector(circle.axis)))
+    return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
+
+
+def anchor_of(scene: Scene, on: str | None, at: tuple | str) -> Place:
+    """A place of the track: of the ground, or in the axes of the body `on`."""
+    return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))
