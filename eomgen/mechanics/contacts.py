@@ -39,7 +39,7 @@ CLOSED = Mode()
 
 
 def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: Mode) -> tuple[TieRow, ...]:
-    """The rows that a tie has in a mode: none while it is open, one more while it sticks.
+    """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two).
 
     Raises:
         NotYet: friction where the contact has no single tangent.
@@ -51,10 +51,12 @@ def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: Mode) -> tuple
         return rows
     rubbing = [row for row in rows if row.tangent]
     if not rubbing:
-        raise NotYet(f"friction of a '{constraint.kind}' is not derived here", mend="it is derived in the plane")
+        raise NotYet(f"friction of a '{constraint.kind}' is not derived here: its normal force has two components",
+                     mend="it is derived in the plane")  # fmt: skip
     if mode.sense != 0 or law.coulomb is None:
         return rows
-    held = tuple(TieRow(row.tangent, None, component="t", material=row.material) for row in rubbing)
+    pairs = ((name, row, push) for row in rubbing for name, push in (("t", row.tangent), ("s", row.cross_tangent)))
+    held = (TieRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
     return (*rows, *held)
 
 

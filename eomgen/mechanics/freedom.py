@@ -16,6 +16,7 @@ from eomgen.errors import EomgenError, NotYet
 from eomgen.mechanics.closure import State, generic_state
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
+from eomgen.mechanics.integrability import Integrability, integrability_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
@@ -54,6 +55,8 @@ class Freedom:
         identical: ties that the coordinates satisfy by themselves: they only carry a reaction.
         closing: ties with rows that close.
         not_counted: why not, or "".
+        integrability: what the rows of velocities alone are, None where there are none; freedoms in position may be
+            more than those in velocity.
     """
 
     by_rank: int | None = None
@@ -63,6 +66,7 @@ class Freedom:
     identical: tuple[str, ...] = ()
     closing: tuple[str, ...] = ()
     not_counted: str = ""
+    integrability: Integrability | None = None
 
 
 def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
@@ -86,12 +90,13 @@ def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
     identical = tuple(dict.fromkeys(row.tie for row in ties.rows if row.identical))
     closing = tuple(dict.fromkeys(row.tie for row in ties.closing))
     try:
-        redundant = redundant_rows(ties)
+        redundant, integrability = redundant_rows(ties), integrability_of(ties)
     except EomgenError as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
     scope = ties.motion.scope
     speeds = len(scope.symbols.u) - len(scope.quaternions)
-    return Freedom(speeds - len(ties.closing) + len(redundant), count, formula, redundant, identical, closing)
+    by_rank = speeds - len(ties.closing) + len(redundant)
+    return Freedom(by_rank, count, formula, redundant, identical, closing, integrability=integrability)
 
 
 # -- by formula ------------------------------------------------------------------------------------

@@ -118,7 +118,8 @@ class _Laws:
 
     def _line(self, a: Scalar, q: Node, u: Node) -> Line | None:
         """a as A q + B u + f(t) with constants A and B, or None."""
-        if self._vary([derivative(a, q), derivative(a, u)]):
+        A, B = derivative(a, q), derivative(a, u)
+        if self._vary([[A], [B], [a, -A * q, -B * u]]):
             return None
         a = simplest(a, WORK, self.positive)
         A, B = derivative(a, q), derivative(a, u)
@@ -129,7 +130,9 @@ class _Laws:
 
     def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> Pair | None:
         """a as A q + B u + b with constants, or None."""
-        if self._vary([derivative(x, y) for x in a for y in (*q, *u)]):
+        slopes = [[derivative(x, y) for y in (*q, *u)] for x in a]
+        rests = [[x, *(-k * y for k, y in zip(row, (*q, *u), strict=True))] for x, row in zip(a, slopes, strict=True)]
+        if self._vary([*([k] for row in slopes for k in row), *rests]):
             return None
         a = tuple(simplest(x, WORK, self.positive) for x in a)
         A, B = ([[derivative(x, y) for y in of] for x in a] for of in (q, u))
@@ -138,16 +141,21 @@ class _Laws:
         constants = (*A[0], *A[1], *B[0], *B[1], *b)
         return None if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants) else Pair(A, B, b)
 
-    def _vary(self, coefficients: Sequence[Scalar]) -> bool:
-        """Whether numbers at two states show that one of the coefficients is none: it changes with what moves."""
+    def _vary(self, sums: Sequence[Sequence[Scalar]]) -> bool:
+        """Whether numbers at two states show that one of the sums of terms is no constant: it changes with what moves."""
         rng = Random(1)
-        fixed = {x: rng.uniform(0.5, 1.5) for x in symbols_of(coefficients) if x not in self._moving}
+        terms = [x for each in sums for x in each]
+        fixed = {x: rng.uniform(0.5, 1.5) for x in symbols_of(terms) if x not in self._moving}
         states = [fixed | {x: rng.uniform(0.3, 1.1) for x in self._moving} for _ in range(2)]
         try:
-            one, other = (evaluate(coefficients, state, FLOAT) for state in states)
+            one, other = (iter(evaluate(terms, state, FLOAT)) for state in states)
         except (NoValue, ZeroDivisionError):
             return False
-        return any(abs(x - y) > SEEN * max(abs(x), abs(y)) for x, y in zip(one, other, strict=True))
+        for each in sums:
+            pairs = [(next(one), next(other)) for _ in each]
+            if abs(sum(x - y for x, y in pairs)) > SEEN * max(max(abs(x), abs(y)) for x, y in pairs):
+                return True
+        return False
 
     def _coordinate(self, u: Node) -> Node | None:
         """The coordinate whose rate the speed is."""

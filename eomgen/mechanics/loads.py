@@ -6,21 +6,23 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.kinematics import Motion, ground_place
+from eomgen.mechanics.kinematics import GROUND, Motion, ground_place
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope, primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import readable_all
@@ -167,6 +169,44 @@ class SystemScene:
     def angle_rate(self, body: str) -> Scalar:
         return self.motion.scope.time_derivative((self.angle(body),))[0]
 
+    def slopes(self, law: Expression, values: Mapping[Call, Scalar | None]) -> tuple[Scalar, tuple[Scalar, ...]]:
+        """(value, derivatives by the functions of the motion in it) of a law; None: it is linear in that, taken as 0.
+
+        Raises:
+            ModelError: it is not linear there.
+        """
+        value, symbols = self._open(law, values)
+        slopes = gradient(value, tuple(symbols.values()))
+        linear = [k for k, at in enumerate(values.values()) if at is None]
+        if any(depends_on(slopes[k], [tuple(symbols.values())[j]]) for k in linear for j in linear):
+            raise ModelError(f"'{law.text}' is not linear in the velocities", self.where,
+                             "write it as a sum of velocities, each times a function of the configuration")  # fmt: skip
+        at = {symbol: 0 if (x := values[call]) is None else x for call, symbol in symbols.items()}
+        found = substituted((value, *slopes), at)
+        return found[0], found[1:]
+
+    def held_rate(self, law: Expression, values: Mapping[Call, Scalar]) -> Scalar:
+        """d/dt of a law while the functions of the motion in it stay as they are."""
+        value, symbols = self._open(law, values)
+        rate = self.motion.scope.time_derivative((value,))
+        return substituted(rate, {symbol: values[call] for call, symbol in symbols.items()})[0]
+
+    def _open(self, law: Expression, calls: Iterable[Call]) -> tuple[Scalar, dict[Call, Node]]:
+        """A law over symbols for the functions in it."""
+        scope = self.motion.scope
+        symbols = {call: scope.graph.symbol(f"({call})") for call in calls}
+        return law.evaluate(scope.names, symbols.__getitem__), symbols
+
+    def turn_of_joint(self, body: str) -> tuple[Scalar, Vector, str | None]:
+        """(angle, unit axis in the body's axes, parent) of the joint that turns a body about one axis."""
+        link = self.motion.link(body)
+        turning = [(s, w) for s, (w, _) in zip(link.s, link.S, strict=False) if not all(map(is_zero, w))]
+        if len(turning) != 1:
+            raise DerivationError(f"the joint of body '{body}' has no single angle", self.where,
+                                  "hang it on a revolute, cylindrical or screw joint")  # fmt: skip
+        parent = None if link.parent == GROUND else self.motion.links[link.parent].name
+        return *turning[0], parent
+
     def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[Place, Scalar], ...]:
         """(mass centre, mass) of the named bodies, or of all, that have mass."""
         names = [link.name for link in self.motion.links] if bodies is None else bodies
@@ -199,6 +239,10 @@ class SystemScene:
         """Of the body's round shape [m]."""
         shape: Any = self.motion.scope.model.bodies[body].shape
         return self.value(shape.radius)
+
+    def shape(self, body: str) -> Any:
+        """The body's shape, as the model declares it; None where it has none."""
+        return self.motion.scope.model.bodies[body].shape
 
     def moves(self, scalars: tuple[Scalar, ...]) -> bool:
         return self.motion.moves(scalars)

@@ -25,7 +25,7 @@ from eomgen.symbolic.normal_form import readable_all
 from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, times, transposed, vector_of
 from eomgen.symbolic.text import to_text
 
-DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip"}
+DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip", "s": "slip"}
 """What a body can do along a row of forces that has ended."""
 
 

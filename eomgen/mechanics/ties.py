@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -18,11 +19,13 @@ from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.contacts import CLOSED, Mode, Modes, friction_factor, rows_in_mode
 from eomgen.mechanics.kinematics import GROUND, Link, Motion, slide_of
 from eomgen.mechanics.loads import SystemScene, body_wrench, in_ground_axes
+from eomgen.mechanics.shortened import shorter_row
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import Wrench, apply, dot, times
 from eomgen.symbolic.text import text_size, to_text
@@ -30,6 +33,7 @@ from eomgen.symbolic.text import text_size, to_text
 Push = PointForce | Couple
 
 LONG = 60  # characters of a gap that is not printed
+STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
 MEETS = 1e-12  # a gap at the model's own values, below which points that stand still meet
 
 
@@ -48,10 +52,11 @@ class Row:
         component: "x", "y", "z", "n", "t", "couple", "tension", or "".
         pushes: the forces and couples behind `wrenches`, as the tie gave them.
         tangent: of a contact that can rub, the forces and couples for a unit of friction.
-        sliding: the sliding velocity dual to it [m/s].
+        sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
         friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
         eliminates: the dependent coordinate that an "eliminated" row determines, or "".
         part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
+        cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
     """
 
     tie: str
@@ -68,6 +73,8 @@ class Row:
     friction: Scalar | None = None
     eliminates: str = ""
     part: str = ""
+    cross_tangent: tuple[Push, ...] = ()
+    across: Scalar | None = None
 
     @property
     def identical(self) -> bool:
@@ -157,23 +164,31 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
     wrenches = _wrenches(motion, row.pushes)
     if row.pushes:
         direct = 0 if row.material else _slide(motion, row.pushes)
+        direct = direct if row.rate is None else direct + row.rate
     elif row.rate is not None:
         direct = _linear(motion, name, row.rate)
     else:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
     velocity = _power(motion, wrenches, direct)
-    sliding: Scalar = 0
-    if row.tangent:
-        along = 0 if row.material else _slide(motion, row.tangent)
-        sliding = _power(motion, _wrenches(motion, row.tangent), along)
+    if row.pushes and row.rate is not None:
+        _linear(motion, name, velocity)
+    if row.pushes and motion.scope.model.space == "space":
+        velocity = shorter_row(velocity)
+    sliding = _dual(motion, row, row.tangent) if row.tangent else 0
+    across = _dual(motion, row, row.cross_tangent) if row.cross_tangent else None
     status = "eliminated" if used else _status(motion, velocity, row.gap)
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
     return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
-               row.tangent, sliding, part=row.part)  # fmt: skip
+               row.tangent, sliding, part=row.part, across=across, cross_tangent=row.cross_tangent)  # fmt: skip
+
+
+def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
+    """The velocity that is dual to pushes of a row."""
+    return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
 
 
 def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
@@ -181,7 +196,31 @@ def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
     law = getattr(constraint, "friction", None)
     if law is None or not row.tangent:
         return row
+    if row.across is not None:
+        row = _on_surface(row, viscous=law.coulomb is None, still=mode.sense is not None)
+        if law.coulomb is None:
+            return replace(row, friction=-mode.push * scene.value(law.viscous))
     return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
+
+
+def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
+    """A contact on a surface, with v = (v_1, v_2) along its tangents: it rubs along v / |v|, and slides with |v|.
+
+    Of viscous friction, which is along v itself, the unit is v, and v . v / 2 has the derivatives dual to it. In a
+    phase that may begin at rest, where v has no direction, |v| is sqrt(v . v + STILL^2).
+    """
+    assert row.across is not None, "asked of a contact on a surface"
+    pair = (row.sliding, row.across)
+    square = pair[0] * pair[0] + pair[1] * pair[1]
+    speed = sqrt(square + STILL * STILL if still else square)
+    shares = pair if viscous else tuple(over(v, speed) for v in pair)
+    tangent = (*_scaled(row.tangent, shares[0]), *_scaled(row.cross_tangent, shares[1]))
+    return replace(row, tangent=tangent, sliding=Fraction(1, 2) * square if viscous else speed)
+
+
+def _scaled(pushes: tuple[Push, ...], k: Scalar) -> tuple[Push, ...]:
+    return tuple(replace(push, couple=times(k, push.couple)) if isinstance(push, Couple)
+                 else replace(push, force=times(k, push.force)) for push in pushes)  # fmt: skip
 
 
 def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:

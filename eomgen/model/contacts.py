@@ -20,12 +20,14 @@ class Contact:
         kind: as the model file says it: "support", "link", "path".
         unilateral: it can end.
         friction: its law, or None.
+        surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
     """
 
     name: str
     kind: str
     unilateral: bool
     friction: Resistance | None
+    surface: bool = False
 
     @property
     def words(self) -> str:
@@ -69,4 +71,5 @@ def _ties(model: Model) -> Iterator[Contact]:
     for name, tie in model.constraints.items():
         friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
         if unilateral or friction is not None:
-            yield Contact(name, tie.kind, unilateral, friction)
+            surface = model.space == "space" and friction is not None
+            yield Contact(name, tie.kind, unilateral, friction, surface)

@@ -43,6 +43,7 @@ class FormulaRule:
         scope: which names may stand in it.
         words: texts that stand for themselves (`length = "start"`).
         also: names that mean something here only (`r` of `between`).
+        functions: of the motion, that may be called: x(bead.center).
     """
 
     unit: str | None = None
@@ -50,13 +51,14 @@ class FormulaRule:
     scope: str = PARAMETERS
     words: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
+    functions: tuple[str, ...] = ()
 
     def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
         if isinstance(raw, Mapping):
             return self._quantity(raw, path, found)
         if isinstance(raw, str) and raw in self.words:
             return str(raw)
-        return _expression(raw, path, found)
+        return _expression(raw, path, found, references=bool(self.functions))
 
     def _quantity(self, raw: Mapping, path: Path, found: list[Finding]) -> Expression | None:
         unknown_keys(raw, ("value", "unit"), path, found, "a quantity")

@@ -15,6 +15,7 @@ from eomgen.model.fields import (
     TextRule,
     VectorRule,
 )
+from eomgen.model.samples import TimeLawRule
 from eomgen.symbolic.expressions import Expression
 
 Vector = tuple[Expression, ...]
@@ -37,14 +38,18 @@ Friction = Annotated[Expression, FormulaRule("1", "nonnegative")]
 
 Angle = Annotated[Expression, FormulaRule("rad", "", CONFIGURATION)]
 Displacement = Annotated[Expression, FormulaRule("m", "", CONFIGURATION)]
-Gap = Annotated[Expression, FormulaRule(None, "", CONFIGURATION)]
+PLACES = ("x", "y", "z", "angle")
+VELOCITIES = ("vx", "vy", "vz", "omega", "omega_x", "omega_y", "omega_z")
+Gap = Annotated[Expression, FormulaRule(None, "", CONFIGURATION, functions=PLACES)]
 Energy = Annotated[Expression, FormulaRule("J", "", CONFIGURATION)]
 Law = Annotated[Expression, FormulaRule(None, "", MOTION)]
 Force = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
-RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
+RateLaw = Annotated[Expression, FormulaRule(None, "", RATES, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"))]
-TimeLaw = Annotated[Expression, FormulaRule(None, "", TIME)]
+TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
+MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic",))]
+RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic", "linear"))]
 
 Place = Annotated[Vector, VectorRule(FormulaRule("m"))]
 MovingPlace = Annotated[Vector, VectorRule(FormulaRule("m", "", CONFIGURATION))]

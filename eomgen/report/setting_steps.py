@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 
+from eomgen.errors import EomgenError
 from eomgen.mechanics.elimination import dependent_coordinates
+from eomgen.mechanics.integrability import integrability_of
+from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
@@ -95,10 +98,30 @@ def _freedom(system: System) -> Step:
             "remains to be satisfied by the motion" if len(closing) == 1 else "remain to be satisfied by the motion",
             " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
         )))  # fmt: skip
+    statements += _velocities(system)
     freedom = len(symbols.u) - len(closing)
     independent = ", where the constraints' equations are independent" if closing else ""
     statements.append(Prose((f"{count(freedom, 'degree')} of freedom{independent}.",)))
     return Step("freedom", "Degrees of freedom", tuple(statements))
+
+
+def _velocities(system: System) -> list[Statement]:
+    """Which conditions on velocities are holonomic, and what these keep at zero."""
+    try:
+        found = integrability_of((system.free or system).ties)
+    except EomgenError:  # the ties do not close near the start: whoever needs a state says so
+        return []
+    statements: list[Statement] = []
+    for row in () if found is None else found.rows:
+        condition = f"The condition on velocities of '{row.tie}' (row {row.number}) "
+        if not row.integrable:
+            statements.append(Prose((condition, "cannot be integrated: it restricts no position (Frobenius).")))
+        elif row.integral is None:
+            statements.append(Prose((condition, "can be integrated (Frobenius): it is holonomic.")))
+        else:
+            statements.append(Prose((condition, "can be integrated, it is holonomic; with the constant of the start")))
+            statements.append(Formula((row.integral, 0)))
+    return statements
 
 
 def _coordinates(system: System) -> Step:
@@ -127,12 +150,21 @@ def _coordinates(system: System) -> Step:
     driven: list[Statement] = []
     for q, rate in zip(symbols.q, scope.rates, strict=True):
         if q.name not in free:
-            motion = model.coordinates[q.name].motion
-            driven += [] if motion is None else [Formula((q, scope.value(motion)))]
-            driven.append(Formula((Rate(q), rate)))
+            driven += _as_given(scope, q, rate)
     if driven:
         statements += [Prose(("Driven coordinates move as given:",)), *driven]
     return Step("coordinates", "Coordinates", tuple(statements))
+
+
+def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
+    """How a driven coordinate moves: formulas, or through how many samples."""
+    part = scope.model.coordinates[q.name]
+    of = {"": part.motion, "The rate of ": part.rate, "The acceleration of ": part.acceleration}
+    for what, law in of.items():
+        if law is not None and law.sampled is not None:
+            return [Prose((what, q, f" is {law.text}."))]
+    motion = [] if part.motion is None else [Formula((q, scope.value(part.motion)))]
+    return [*motion, Formula((Rate(q), rate))]
 
 
 def _speeds(system: System) -> list[Meaning]:

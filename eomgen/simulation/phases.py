@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.model.parts import Model
+from eomgen.simulation.conditions import Condition as Ending
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.course import Course, Standing, at_start, course_of
 from eomgen.simulation.events import Events
 from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.joined import joined
+from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Run, Stepping, march
 from eomgen.simulation.stretch import Stretch
@@ -48,23 +50,26 @@ class Plan:
 def run_phases(
     model: Model, *, time: float | tuple[float, float], p: np.ndarray, parameters: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None, target: str | None = None, how: Stepping | None = None,
-    samples: int | Sequence[float] | None = None,
+    samples: int | Sequence[float] | None = None, until: Ending | None = None,
 ) -> Trajectory:  # fmt: skip
     """The motion from the start values, through every change of its contacts.
 
     Args:
         p: the parameters' values; parameters: those of them that replace the model's.
         start: start values and speeds that replace the model's.
-        samples: as of `integrate`; evenly spaced ones are given beside the beginning and the end of every phase.
+        until: what ends it where it becomes 0.
+        samples: as of `integrate`; given beside the beginning and the end of every phase (see `thinned`).
     Raises:
         DerivationError: the ties do not hold at the start; the reaction of a contact is indeterminate.
     """
     begin, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
     instants = instants_of(samples, begin, end)
-    course = course_of(model, p, target)
+    how = how or Stepping()
+    course = course_of(model, p, target, how.rates if how.stabilization == "baumgarte" else None)
     first = at_start(course, begin, parameters, start)
-    stretches = list(passed(course, first, Plan(end, how or Stepping(), instants)))
-    return joined(course, stretches, samples)
+    condition = None if until is None else lambda stage: until(stage.system)
+    stretches = list(passed(course, first, Plan(end, how, instants, condition)))
+    return joined(course, stretches)
 
 
 def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
@@ -95,8 +100,9 @@ def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
     x = stage.state(here.values)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(stage, here.t, x, plan)
-    span, spheres = (here.t, plan.end), stage.rhs.spheres
-    return march(stage.rate, span, x, how=plan.how, instants=wanted, events=events, spheres=spheres)
+    slope = stage.slope if plan.how.method in IMPLICIT else None
+    return march(stage.rate, (here.t, plan.end), x, how=plan.how, instants=wanted, events=events,
+                 spheres=stage.rhs.spheres, projection=stage.projection, slope=slope)  # fmt: skip
 
 
 def _events(stage: Stage, t: float, x: np.ndarray, plan: Plan) -> Events | None:

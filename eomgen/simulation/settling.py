@@ -21,6 +21,7 @@ from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, on_pieces
 from eomgen.simulation.stage import FORCE, Stage, Values, smallest_speed
 from eomgen.simulation.stages import OPEN, Stages
+from eomgen.simulation.watching import stopped_below
 
 MOST_TRIED = 2000  # configurations at one instant
 STICKS = Mode(sense=0)
@@ -92,7 +93,8 @@ def _sliding(
         return {}
     closed = Configuration(Table({c.name: OPEN if c.name in apart else Mode() for c in contacts}), Table(pieces))
     found, still = stages.slides(closed).at(t, values), smallest_speed(values)
-    return {name: 0 if abs(v) <= still else 1 if v > 0 else -1 for name, v in found.items()}
+    least = {c.name: max(still, 2 * stopped_below(c)) for c in contacts}
+    return {name: 0 if abs(v) <= least[name] else 1 if v > 0 else -1 for name, v in found.items()}
 
 
 def _choices(
@@ -118,7 +120,8 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
     elif sense:
         modes = [Mode(sense=sense, push=push) for push in pushes]
     else:
-        modes = [STICKS, *(Mode(sense=s, push=push) for s in (1, -1) for push in pushes)]
+        senses = (1,) if contact.surface else (1, -1)
+        modes = [STICKS, *(Mode(sense=s, push=push) for s in senses for push in pushes)]
     return [*modes, OPEN] if contact.unilateral else modes
 
 
@@ -164,5 +167,5 @@ def _signs(
     if mode.sense == 0:
         grip = found[name, "mu"] * abs(found[name, "N"]) - abs(found[name, "hold"])
         yield grip if np.isfinite(found[name, "hold"]) else -np.inf, -abs(found[name, "slide'"])  # at a dead centre
-    elif mode.sense is not None and sense == 0:
+    elif mode.sense is not None and sense == 0 and not contact.surface:
         yield 0.0, mode.sense * found[name, "slide'"]

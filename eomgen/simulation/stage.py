@@ -17,8 +17,11 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.simulation.watching import Bound, Watch
+from eomgen.simulation.slopes import slope_of
+from eomgen.simulation.solvers import Slope
+from eomgen.simulation.watching import Bound, Watch, stopped_below
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Scalar
 
@@ -101,23 +104,29 @@ class Stage:
         return np.array([values.get(name, 0.0) for name in names])
 
     def columns(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
-        """Coordinates, rates and slacks of n states, by name."""
+        """Coordinates, rates, speeds and slacks of n states, by name."""
         rates = self._rates.many(t, self.inner(x), self.p)
-        named = dict(zip(self.coordinates, x.T, strict=False))
+        named = dict(zip((*self.coordinates, *self.speeds), x.T, strict=False))
         named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
         return named | dict(zip(map(slack_name, self.loose), self._slacks(x).T, strict=True))
 
     def values(self, t: float, x: np.ndarray) -> dict[str, float]:
-        """Coordinates, rates and slacks of one state, by name."""
+        """Coordinates, rates, speeds and slacks of one state, by name."""
         return {name: float(column[0]) for name, column in self.columns(np.array([t]), x[None, :]).items()}
 
     def energies(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """(T, V), each n [J]."""
         return self._energies.many(t, self.inner(x), self.p).T
 
-    def gaps(self, t: np.ndarray, x: np.ndarray) -> float:
-        """The largest |phi| of the ties that hold."""
-        return float(np.max(np.abs(self._gaps.many(t, self.inner(x), self.p)), initial=0.0))
+    @cached_property
+    def projection(self) -> Projection | None:
+        """Onto the ties that hold; None where none closes."""
+        return projection_of(self.system, self.p, self.target)
+
+    @cached_property
+    def slope(self) -> Slope | None:
+        """d(x')/dx; None where it is found by differences."""
+        return None if self.loose else slope_of(self.system, self.assembly, self.p, self.target)
 
     def look(self, t: float, x: np.ndarray) -> dict[tuple[str, str], float]:
         """The signals at one state, by owner and kind; nan where a reaction has no single value there."""
@@ -167,10 +176,14 @@ class Stage:
         if bound.kind == "closes":
             return signals[name, "gap"]
         if bound.kind == "stops":
-            return (mode.sense or 0) * signals[name, "slide"]
+            slowing = signals[name, "slide'"] < 0  # a speed that grows from 0 does not stop
+            return (mode.sense or 0) * signals[name, "slide"] - slowing * float(stopped_below(self.contact(name)))
         if bound.kind == "slips":
             return signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"])
         return mode.push * signals[name, f"N{bound.row}" if bound.row > 1 else "N"]
+
+    def contact(self, name: str) -> Contact:
+        return next(contact for contact in self.contacts if contact.name == name)
 
     def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:
         """Functions of q, u, t, accelerations and multipliers along the states, n x scalars."""
@@ -233,10 +246,6 @@ class Stage:
     @cached_property
     def _energies(self) -> RightHandSide:
         return self._kinematic((self.assembly.T, self.assembly.V))
-
-    @cached_property
-    def _gaps(self) -> RightHandSide:
-        return self._kinematic(tuple(r.gap for r in self.system.ties.rows if r.gap is not None and not r.identical))
 
 
 def smallest_speed(values: Values) -> float:

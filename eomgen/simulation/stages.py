@@ -16,6 +16,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import freedoms, redundant_rows
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.release import released, stays_straight
+from eomgen.mechanics.stabilization import Rates, stabilized
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
@@ -59,10 +60,11 @@ class Stages:
         model: whose contacts change.
         p: the values of its parameters.
         target: of the emitted code.
+        rates: alpha and beta of Baumgarte's rows; None: they do not pull.
     """
 
-    def __init__(self, model: Model, p: np.ndarray, target: str | None) -> None:
-        self.model, self.p, self.target = model, p, target
+    def __init__(self, model: Model, p: np.ndarray, target: str | None, rates: Rates | None = None) -> None:
+        self.model, self.p, self.target, self.rates = model, p, target, rates
         self._made: dict[Configuration, Stage] = {}
         self._slides: dict[Configuration, Slides] = {}
 
@@ -101,7 +103,8 @@ class Stages:
     def _stage(self, configuration: Configuration) -> Stage:
         model = on_pieces(self.model, configuration.pieces)
         system = self._system(model, configuration)
-        assembly = with_friction(system, recursive.assemble(system))
+        assembly = recursive.assemble(system)
+        assembly = with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
         watch = Watch(configuration, contacts_of(model), lengths, system)
         return Stage(watch, assembly, self.p, self.target)

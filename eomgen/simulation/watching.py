@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Literal
 
@@ -22,8 +23,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
-from eomgen.symbolic.functions import function
+from eomgen.symbolic.functions import function, sqrt
 from eomgen.symbolic.graph import Scalar
+
+STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,7 @@ class Watch:
             grip = signals["mu"] * _size(signals["N"])
             found.append(Bound(name, "slips", grip - _size(signals["hold"]), "force"))
         elif mode.sense is not None:
-            found.append(Bound(name, "stops", mode.sense * signals["slide"], "rate"))
+            found.append(Bound(name, "stops", mode.sense * signals["slide"] - stopped_below(contact), "rate"))
         return found
 
     @property
@@ -169,9 +172,16 @@ class Watch:
         v, scope = sliding_velocity(self.system, contact), self.system.scope
         found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
         if self.mode(contact).sense == 0:
-            held = next(r for r in self.system.ties.rows if r.tie == name and r.component == "t")
-            found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._reaction(held))]
+            found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._holding(name))]
         return found
+
+    def _holding(self, name: str) -> tuple[Scalar, str]:
+        """What lets a contact stick, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
+        held = [r for r in self.system.ties.rows if r.tie == name and r.component in ("t", "s")]
+        forces = [self._reaction(row) for row in held]
+        if len(forces) == 1:
+            return forces[0]
+        return sqrt(sum((force * force for force, _ in forces), start=0)), ""
 
     def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
         """N of a support, the tensions of a string: (value, name of its column)."""
@@ -195,6 +205,11 @@ class Watch:
     @cached_property
     def _redundant(self) -> bool:
         return bool(redundant_rows(self.system.ties))
+
+
+def stopped_below(contact: Contact) -> Fraction | int:
+    """The speed at which sliding stops: 0 where it has a sense that can turn; a speed only comes near to 0 [m/s]."""
+    return STOPPED if contact.surface else 0
 
 
 def sliding_velocity(system: System, contact: Contact) -> Scalar:

@@ -75,11 +75,11 @@ class Polynomials:
 
     def without_common_divisor(self, above: Element, below: Element) -> tuple[Element, Element]:
         """(above, below) of the same quotient, without what they have in common in any of the forms."""
-        _, above, below = above.cofactors(below)
+        above, below = _coprime(above, below)
         if 0 < len(self._axes) <= MOST_AXES:
             for form in (self.in_sines, self.of_one_degree):
                 if not below.is_ground:
-                    _, above, below = form(above).cofactors(form(below))
+                    above, below = _coprime(form(above), form(below))
         return above, below
 
     def in_sines(self, element: Element) -> Element:
@@ -110,3 +110,12 @@ class Polynomials:
             f = one + (0 if one else cosine**2) + sign * sine**2
             total += (f**j * number).mul_monom((*exponents[:i], k, l, *exponents[i + 2 :]))
         return total
+
+
+def _coprime(above: Element, below: Element) -> tuple[Element, Element]:
+    """The two without their common divisor; as they are where sympy finds none."""
+    try:
+        _, above, below = above.cofactors(below)
+    except TypeError:  # its heuristic takes the root of a huge integer, and gets a float
+        pass
+    return above, below

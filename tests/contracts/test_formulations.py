@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from laws.test_random_systems import random_model
 from moving import at, equal, state_of, written
+from random_systems import random_model
 
 import eomgen
 from eomgen.mechanics import articulated

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
@@ -33,6 +33,10 @@ class Constraint(Part, ABC):
 
     def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
         """The straight pieces of a string; () where it is no string."""
+        return ()
+
+    def edges(self, scene: Scene) -> tuple[Edge, ...]:
+        """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
         return ()
 
     @abstractmethod

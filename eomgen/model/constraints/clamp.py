@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.pin import across_from, held_together, others_of
+from eomgen.model.constraints.pin import held_together, not_turning, others_of
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import PointName, Points
-from eomgen.symbolic.spatial import IDENTITY
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,9 +25,6 @@ class Clamp(Constraint):
         rows: list[TieRow] = []
         for other in others_of(scene, named):
             rows += held_together(scene, first, other)
-            if scene.plane:
-                rows.append(same_turn(scene, first[0], other[0]))
-            else:  # y x z = x: the couples about x, y and z
-                x, y, z = IDENTITY
-                rows += [across_from(scene, (first[0], other[0]), e, n) for e, n in ((y, z), (z, x), (x, y))]
+            bodies = first[0], other[0]
+            rows += [same_turn(scene, *bodies)] if scene.plane else not_turning(scene, bodies)
         return tuple(rows)

@@ -4,20 +4,44 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.measured import Measured
+from eomgen.model.constraints.plane import Push
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import Scalar, Scene
 from eomgen.model.kinds import Gap, RateLaw
 
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Constraint):
-    """gap = 0 (holonomic), or rate = 0 (in the rates)."""
+    """gap = 0 (holonomic), or rate = 0 (in the rates).
+
+    Places of points and angles of bodies may stand in both, velocities in a rate: what holds them pushes on the
+    bodies, with lam times the derivative of the equation by each.
+    """
 
     kind: ClassVar[str] = "equation"
     gap: Gap | None = None
     rate: RateLaw | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        if self.gap is not None:
-            return (TieRow((), scene.value(self.gap)),)
-        return (TieRow((), None, scene.value(self.rate)),)
+        """phi = 0 with the forces lam dphi/dx(P); or sum k v + rest = 0 with the forces lam k."""
+        law = self.rate if self.gap is None else self.gap
+        assert law is not None, "one of gap and rate is given"
+        measured = {call: Measured(scene, call) for call in law.calls}
+        if self.gap is None:
+            values = {call: None if x.is_velocity else x.value for call, x in measured.items()}
+            rest, slopes = scene.slopes(law, values)
+            moved = {call: k for call, k in zip(values, slopes, strict=True) if measured[call].is_velocity}
+            return (_row(None, rest, _pushes(measured, moved)),)
+        values = {call: x.value for call, x in measured.items()}
+        gap, slopes = scene.slopes(law, values)
+        pushes = _pushes(measured, dict(zip(values, slopes, strict=True)))
+        return (_row(gap, scene.held_rate(law, values) if pushes else None, pushes),)
+
+
+def _pushes(measured: dict, slopes: dict) -> tuple[Push, ...]:
+    return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
+
+
+def _row(gap: Scalar | None, rate: Scalar | None, pushes: tuple[Push, ...]) -> TieRow:
+    return TieRow(pushes, gap, rate, component="wrench" if pushes else "")

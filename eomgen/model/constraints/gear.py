@@ -4,22 +4,40 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.plane import same_turn
+from eomgen.model.constraints.plane import Push, same_turn
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import Couple, Scalar, Scene
 from eomgen.model.kinds import Pure, TwoBodies
+from eomgen.symbolic.spatial import times
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gear(Constraint):
-    """The rates of the two bodies' angles are in the ratio: omega of the first = ratio * omega of the second."""
+    """The rates of the two bodies' angles are in the ratio: omega of the first = ratio * omega of the second.
+
+    In the plane the angles are those against the ground's axes; in space those of the bodies' own joints.
+    """
 
     kind: ClassVar[str] = "gear"
-    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     bodies: TwoBodies
     ratio: Pure
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """theta_1 - ratio theta_2 stays; a couple 1 on the first body, - ratio on the second, none on the ground."""
+        """theta_1 - ratio theta_2 stays; a couple 1 on the first body, - ratio on the second, none on the ground.
+
+        In space each couple is along the axis of the body's joint, its opposite on the body that carries the joint.
+        """
         first, second = self.bodies
-        return (same_turn(scene, first, second, scene.value(self.ratio)),)
+        ratio = scene.value(self.ratio)
+        if scene.plane:
+            return (same_turn(scene, first, second, ratio),)
+        (one, on_first), (other, on_second) = (_at_joint(scene, body, k) for body, k in ((first, 1), (second, -ratio)))
+        turned = one - ratio * other
+        return (TieRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
+
+
+def _at_joint(scene: Scene, body: str, couple: Scalar) -> tuple[Scalar, tuple[Push, ...]]:
+    """The angle of a body's joint, and the couple along its axis on the body, the opposite on its parent."""
+    angle, axis, parent = scene.turn_of_joint(body)
+    on_parent = () if parent is None else (Couple(parent, times(-couple, axis), axes=body),)
+    return angle, (Couple(body, times(couple, axis), axes=body), *on_parent)

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.plane import left, same_turn
-from eomgen.model.constraints.row import TieRow, direction_of
+from eomgen.model.constraints.pin import not_turning
+from eomgen.model.constraints.plane import same_turn
+from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName
 from eomgen.symbolic.spatial import dot
@@ -13,17 +14,21 @@ from eomgen.symbolic.spatial import dot
 
 @dataclass(frozen=True, kw_only=True)
 class Guide(Constraint):
-    """The point moves along `along` (ground axes) and its body does not turn: a normal force and a couple."""
+    """The point moves along `along` (ground axes) and its body does not turn.
+
+    A normal force and a couple; in space two forces across `along` and three couples.
+    """
 
     kind: ClassVar[str] = "guide"
-    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     point: PointName
     along: Direction
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """n . (p - p_start) = 0, n the left normal of `along`; theta - theta_start = 0."""
-        n = left(direction_of(scene, scene.vector(self.along)))
+        """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
         place = scene.place(self.point)
-        height = dot(n, scene.position(place))
-        normal = TieRow((PointForce(place, n),), height - scene.start(height), component="n")
-        return (normal, same_turn(scene, place[0], None))
+        rows = []
+        for name, n in normals_of(scene, direction_of(scene, scene.vector(self.along))):
+            height = dot(n, scene.position(place))
+            rows.append(TieRow((PointForce(place, n),), height - scene.start(height), component=name))
+        turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
+        return (*rows, *turns)

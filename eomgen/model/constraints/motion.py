@@ -6,7 +6,7 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
-from eomgen.model.kinds import CoordinateName, TimeLaw
+from eomgen.model.kinds import CoordinateName, MotionLaw
 from eomgen.symbolic.expressions import as_expression
 
 
@@ -16,7 +16,7 @@ class Motion(Constraint):
 
     kind: ClassVar[str] = "motion"
     coordinate: CoordinateName
-    value: TimeLaw
+    value: MotionLaw
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """q - f(t) = 0; lam is the generalized force along q."""

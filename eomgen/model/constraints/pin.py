@@ -8,7 +8,7 @@ from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
-from eomgen.symbolic.spatial import apply, cross, dot, matrix_of, minus, times, transposed
+from eomgen.symbolic.spatial import IDENTITY, apply, cross, dot, matrix_of, minus, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +63,12 @@ def across_from(scene: Scene, bodies: tuple[str | None, str | None], e: Vector, 
     couple = cross(e, n)
     pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
     return TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple")
+
+
+def not_turning(scene: Scene, bodies: tuple[str | None, str | None]) -> list[TieRow]:
+    """e_i . e_j = 0 in space of axes in either body, that agree at the start: the couples about x, y and z."""
+    x, y, z = IDENTITY  # y x z = x
+    return [across_from(scene, bodies, e, n) for e, n in ((y, z), (z, x), (x, y))]
 
 
 def carried(scene: Scene, body: str | None, direction: Vector) -> Vector:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Push, angle_of, left
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import TieRow, normals_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
+from eomgen.model.joints.base import Z
 from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.spatial import dot, minus, plus, times
+from eomgen.symbolic.spatial import cross, dot, minus, plus, times
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
 BACKWARDS = -1e-9  # a strand that is shorter runs against its direction [m]
@@ -25,11 +26,13 @@ class Stop:
         place: the point or the centre.
         offset: a: the string touches at centre + a left(d); the radius where one travels round clockwise, minus the
             radius counter-clockwise, 0 at a point [m].
+        axis: in space, about which it is round, and turned counter-clockwise: unit, ground axes; left(d) = axis x d.
     """
 
     scene: Scene
     place: Place
     offset: Scalar = 0
+    axis: Vector = Z
 
     @property
     def body(self) -> str | None:
@@ -40,20 +43,33 @@ class Stop:
         return self.scene.position(self.place)
 
     @property
+    def round(self) -> bool:
+        return not _zero(self.offset)
+
+    @property
+    def winds(self) -> bool:
+        """Whether a turn of the body that no single angle tells gives out string."""
+        return self.round and self.body is not None and not self.scene.plane
+
+    @property
     def wound(self) -> Scalar:
         """a theta: what a turn of the body gives out at the strand's beginning [m]."""
-        return 0 if _zero(self.offset) else self.offset * angle_of(self.scene, self.body)
+        return self.offset * angle_of(self.scene, self.body) if self.round else 0
+
+    def left(self, d: Vector) -> Vector:
+        """d turned by a quarter, counter-clockwise about the axis."""
+        return left(d) if self.scene.plane else cross(self.axis, d)
 
     def touched(self, d: Vector) -> Vector:
         """Where a strand of direction d touches, ground axes."""
-        return plus(self.center, times(self.offset, left(d)))
+        return plus(self.center, times(self.offset, self.left(d))) if self.round else self.center
 
     def pulled(self, d: Vector, sense: int) -> tuple[Push, ...]:
         """A force sense * d at centre + a left(d): at the centre, with the moment - a * sense."""
         force = PointForce(self.place, times(sense, d))
-        if self.body is None or _zero(self.offset):
+        if self.body is None or not self.round:
             return (force,)
-        return force, Couple(self.body, (0, 0, -sense * self.offset))
+        return force, Couple(self.body, times(-sense * self.offset, self.axis))
 
 
 @dataclass(frozen=True)
@@ -87,6 +103,7 @@ def strand_along(scene: Scene, first: Stop, second: Stop, d: Vector) -> Strand:
     Raises:
         ModelError: at the start it runs against d.
     """
+    _refuse_out_of_plane(scene, first, second, d)
     length = dot(d, minus(second.center, first.center))
     run = scene.worth(length)
     if run is not None and run < BACKWARDS:
@@ -100,10 +117,13 @@ def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
         d = (l D - h left(D)) / D . D,   for then d . D = l and left(d) . D = h.
 
     Raises:
-        ModelError: at the start there is no such line.
+        ModelError: at the start there is no such line; in space, it is not across the axis of what it lies on.
     """
-    D, h = minus(second.center, first.center), first.offset - second.offset
-    straight = _straight(scene, D, h)
+    D = minus(second.center, first.center)
+    _refuse_out_of_plane(scene, first, second, D)
+    h = first.offset - _same_way_round(first, second) * second.offset
+    side = (first if first.round else second).left
+    straight = _straight(scene, D, h, side)
     if straight is not None:
         return Strand(first, second, *straight)
     square = dot(D, D)
@@ -115,18 +135,51 @@ def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
     length = sqrt(rest)
     if _zero(h):
         return Strand(first, second, _over(D, length), length)
-    return Strand(first, second, _over(minus(times(length, D), times(h, left(D))), square), None)
+    return Strand(first, second, _over(minus(times(length, D), times(h, side(D))), square), None)
 
 
-def _straight(scene: Scene, D: Vector, h: Scalar) -> tuple[Vector, Scalar] | None:
+def _straight(scene: Scene, D: Vector, h: Scalar, side: Callable[[Vector], Vector]) -> tuple[Vector, Scalar] | None:
     """Direction and length of a strand that stays along an axis: left(d) . D = h for good, d . D > 0 at the start."""
-    for d in AXES:
+    for d in AXES if scene.plane else (*AXES, Z, times(-1, Z)):
         length = dot(d, D)
         run = scene.worth(length)
         forwards = run is not None and run > 0 if _zero(h) else run is None or run >= 0
-        if forwards and scene.vanishes(dot(left(d), D) - h):
+        if forwards and all(map(scene.vanishes, _off(scene, d, D, h, side))):
             return d, length
     return None
+
+
+def _off(scene: Scene, d: Vector, D: Vector, h: Scalar, side: Callable[[Vector], Vector]) -> tuple[Scalar, ...]:
+    """What keeps D from being along d and h to its left."""
+    if scene.plane:
+        return (dot(side(d), D) - h,)
+    return cross(d, D) if _zero(h) else (dot(side(d), D) - h,)
+
+
+def _same_way_round(first: Stop, second: Stop) -> int:
+    """1, or -1 where the axes of two round stops are opposite."""
+    return 1 if first.scene.plane or not (first.round and second.round) else _along(first, second)
+
+
+def _along(first: Stop, second: Stop) -> int:
+    """The sense of the second axis along the first one: 1 or -1.
+
+    Raises:
+        ModelError: the axes are not parallel.
+    """
+    for sense in (1, -1):
+        if all(map(first.scene.vanishes, minus(first.axis, times(sense, second.axis)))):
+            return sense
+    raise ModelError(f"the axes of {_names(first, second)} are not parallel", first.scene.where,
+                     "lead the string over an eyelet, a point, between them")  # fmt: skip
+
+
+def _refuse_out_of_plane(scene: Scene, first: Stop, second: Stop, d: Vector) -> None:
+    """In space a strand lies in the plane of what it touches: n . d = 0."""
+    for stop in (first, second):
+        if not scene.plane and stop.round and not scene.vanishes(dot(stop.axis, d)):
+            what = f"the strand between {_names(first, second)} is not in the plane of the wrap, across its axis"
+            raise ModelError(what, scene.where, "turn the axis, or lead the string over an eyelet, a point, there")
 
 
 def rope_row(scene: Scene, strands: Sequence[Strand]) -> TieRow:
@@ -144,28 +197,42 @@ def rope_row(scene: Scene, strands: Sequence[Strand]) -> TieRow:
 def _gap(scene: Scene, strands: Sequence[Strand]) -> Scalar | None:
     used: Scalar = 0
     for strand in strands:
-        if strand.length is None:
+        if strand.length is None or strand.first.winds or strand.second.winds:
             return None
         used = used + strand.length + strand.first.wound - strand.second.wound
     return scene.start(used) - used
 
 
-def side_row(scene: Scene, strand: Strand) -> TieRow | None:
-    """The restriction that a strand keeps its direction: left(d) . (p_1 - p_2) = 0 of its ends; None where it holds.
+def side_rows(scene: Scene, strand: Strand) -> list[TieRow]:
+    """The restrictions that a strand keeps its direction: n . (p_1 - p_2) = 0 of its ends, for each n across it.
+
+    In the plane n = left(d). Those that hold by themselves are left out.
 
     Raises:
         ModelError: the ends stand beside one another, and nothing moves that.
     """
-    n = left(strand.d)
-    gap = dot(n, minus(strand.first.center, strand.second.center)) + strand.first.offset - strand.second.offset
-    if scene.vanishes(gap):
-        return None
-    if not scene.moves((gap,)):
-        what = f"the strand between {_names(strand.first, strand.second)} cannot have the direction given"
-        raise ModelError(f"{what}: its ends are not in line", scene.where,
-                         "move one of them across the strand, or exchange 'cw' and 'ccw'")  # fmt: skip
-    ends = PointForce(strand.first.place, n), PointForce(strand.second.place, times(-1, n))
-    return TieRow(ends, gap, component="n")
+    first, second = strand.first, strand.second
+    rows = []
+    for name, n, offset in _sides(scene, strand):
+        gap = dot(n, minus(first.center, second.center)) + offset
+        if scene.vanishes(gap):
+            continue
+        if not scene.moves((gap,)):
+            what = f"the strand between {_names(first, second)} cannot have the direction given"
+            raise ModelError(f"{what}: its ends are not in line", scene.where,
+                             "move one of them across the strand, or exchange 'cw' and 'ccw'")  # fmt: skip
+        rows.append(TieRow((PointForce(first.place, n), PointForce(second.place, times(-1, n))), gap, component=name))
+    return rows
+
+
+def _sides(scene: Scene, strand: Strand) -> list[tuple[str, Vector, Scalar]]:
+    """(name, n, how far apart along n the strand's centres are) for each n across it."""
+    first, second = strand.first, strand.second
+    if not (first.round or second.round) or scene.plane:
+        return [(name, n, first.offset - second.offset) for name, n in normals_of(scene, strand.d)]
+    stop = first if first.round else second
+    apart = first.offset - _same_way_round(first, second) * second.offset
+    return [("n 1", stop.left(strand.d), apart), ("n 2", stop.axis, 0)]
 
 
 def _against(scene: Scene, first: Stop, second: Stop) -> ModelError:
@@ -178,7 +245,7 @@ def _names(first: Stop, second: Stop) -> str:
 
 
 def _over(a: Vector, b: Scalar) -> Vector:
-    return (over(a[0], b), over(a[1], b), 0)
+    return (over(a[0], b), over(a[1], b), over(a[2], b))
 
 
 def _zero(x: Any) -> bool:

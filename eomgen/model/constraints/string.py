@@ -6,13 +6,15 @@ from typing import Annotated, ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_row, strand_along
+from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.forces.load import Scene, Vector
-from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, Turn
+from eomgen.model.joints.base import Z, unit
+from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.spatial import apply
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +25,7 @@ class Wrap(Part):
         body: a pulley (about its origin); or `at`, a place on the ground: a peg.
         radius: None: the shape's [m].
         turn: the sense in which one travels round it.
+        axis: in space, about which it is round and the sense is seen, in the axes of the body or the ground; None: z.
         slip: the string slides on it: one tension through.
     """
 
@@ -31,6 +34,7 @@ class Wrap(Part):
     at: GroundPlace | None = None
     radius: Radius | None = None
     turn: Turn | None = None
+    axis: SpaceDirection | None = None
     slip: Flag = False
 
 
@@ -51,7 +55,6 @@ class String(Constraint):
     """
 
     kind: ClassVar[str] = "string"
-    spaces: ClassVar[tuple[str, ...]] = ("plane",)
     path: Route
     strands: Strands | None = None
     unilateral: Flag = False
@@ -82,7 +85,7 @@ class String(Constraint):
         """
         strands, numbers = self.strands_at(scene), self.strand_rows()
         ropes = [[s for s, k in zip(strands, numbers, strict=True) if k == row] for row in range(1, numbers[-1] + 1)]
-        sides = [] if self.strands is None else [side for s in strands if (side := side_row(scene, s)) is not None]
+        sides = [] if self.strands is None else [side for strand in strands for side in side_rows(scene, strand)]
         return (*(rope_row(scene, rope) for rope in ropes), *sides)
 
 
@@ -92,7 +95,9 @@ def _stop(scene: Scene, item: str | Wrap) -> Stop:
         return Stop(scene, scene.place(item))
     place = (None, scene.ground_place(item.at)) if item.body is None else scene.own_place(item.body, None)
     radius = scene.radius(str(item.body)) if item.radius is None else scene.value(item.radius)
-    return Stop(scene, place, radius if item.turn == "cw" else -radius)
+    axis = Z if item.axis is None else unit(scene.vector(item.axis))
+    n = axis if item.body is None or scene.plane else apply(scene.orientation(item.body), axis)
+    return Stop(scene, place, radius if item.turn == "cw" else -radius, n)
 
 
 def _direction(scene: Scene, way: str | tuple[Expression, ...]) -> Vector:

@@ -1,11 +1,12 @@
 """Support: a point stays on a line or a plane."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.round_bodies import laid_in
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import PointForce, Scene, Vector
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
 from eomgen.symbolic.spatial import dot, minus
@@ -31,11 +32,16 @@ class Support(Constraint):
     friction: FrictionLaw | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
-        """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y."""
+        """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.
+
+        In space along t and s, as those of a rolling body.
+        """
         n = direction_of(scene, scene.vector(self.normal))
         place = scene.place(self.point)
         position = scene.position(place)
         origin = tuple(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
-        tangent = (PointForce(place, (n[1], -n[0], 0)),) if scene.plane else ()
+        along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
+        rubs = [(PointForce(place, t),) for t in along]
         gap = dot(n, minus(position, origin))
-        return (TieRow((PointForce(place, n),), gap, component="n", tangent=tangent),)
+        row = TieRow((PointForce(place, n),), gap, component="n", tangent=rubs[0])
+        return (row if scene.plane else replace(row, cross_tangent=rubs[1]),)

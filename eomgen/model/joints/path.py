@@ -81,7 +81,8 @@ class Path(Joint):
     """A point that moves along pieces, `along` from the first one's beginning at `at`; its axes do not turn.
 
     X = (p(s), 1), S = (0, t), t the direction of travel; W: the force along its left normal, every torque and the
-    force out of the plane. Before its beginning and after its end the first and the last piece go on.
+    force out of the plane, in space that of x and y of the joint's seat. Before its beginning and after its end the
+    first and the last piece go on.
 
     Args:
         along: the arc length s [m].
@@ -98,9 +99,6 @@ class Path(Joint):
     def friction(self) -> FrictionLaw | None:
         """The friction of its piece, where it has only one."""
         return self.pieces[0].friction if len(self.pieces) == 1 else None
-
-    def works_in(self, space: str) -> bool:
-        return space == "plane"
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
