@@ -22,7 +22,7 @@ Emitted = tuple[Program, Description]
 
 def write_files(
     name: str, program: Program, description: Description, *, target: str, directory: Path,
-    reactions: Emitted | None = None,
+    reactions: Emitted | None = None, inverse: Emitted | None = None,
 ) -> list[Path]:  # fmt: skip
     """Write NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
 
@@ -33,22 +33,26 @@ def write_files(
         target: "c" or "numpy".
         directory: where to; made if it is not there.
         reactions: their program and its description, or None where there are none.
+        inverse: the same of inverse dynamics, where they are asked for.
     Returns:
         The paths written.
     Raises:
         RunFailed: the folder cannot be written; nothing is then left behind.
     """
     texts = target_named(target).files(program, identifier(name), description)
-    if reactions is not None:
-        texts |= target_named(target).files(reactions[0], identifier(name), reactions[1])
-    texts["test_vectors.json"] = vectors_text(program, description, reactions)
+    for emitted in (reactions, inverse):
+        if emitted is not None:
+            texts |= target_named(target).files(emitted[0], identifier(name), emitted[1])
+    texts["test_vectors.json"] = vectors_text(program, description, reactions, inverse)
     try:
         return _written(texts, directory)
     except OSError as error:
         raise RunFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
 
 
-def vectors_text(program: Program, description: Description, reactions: Emitted | None = None) -> str:
+def vectors_text(
+    program: Program, description: Description, reactions: Emitted | None = None, inverse: Emitted | None = None
+) -> str:
     """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), result."""
     symbols = program.symbols
     head = {
@@ -67,6 +71,11 @@ def vectors_text(program: Program, description: Description, reactions: Emitted 
     else:
         names = json.dumps(list(reactions[1].outputs), ensure_ascii=False)
         lines += [' "reactions": {', f'  "names": {names},', *_listed(reactions[1], "  "), " },"]
+    if inverse is not None:
+        own = {"names": inverse[1].outputs, "accelerations": [x.name for x in inverse[0].accelerations],
+               "inputs": list(inverse[0].symbols.inputs)}  # fmt: skip
+        told = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
+        lines += [' "inverse": {', *told, *_listed(inverse[1], "  "), " },"]
     return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
 
 
@@ -74,9 +83,10 @@ def _listed(description: Description, indent: str) -> list[str]:
     """The vectors, a line each."""
     result = description.role.result
     rows = [
-        {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, result: v.result, "tolerance": v.tolerance}
+        {"t": v.t, "x": v.x, **({"a": v.a} if v.a else {}), "p": v.p, "inputs": v.inputs, result: v.result,
+         "tolerance": v.tolerance}
         for v in description.vectors
-    ]
+    ]  # fmt: skip
     listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
     return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 C_WORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if inline int long "
@@ -18,18 +18,24 @@ MATH_WORDS = frozenset(
     "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
     "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
 )
-OWN_WORDS = frozenset("t x p c inputs dx out given n constants evaluate math float SIZE".split())
+OWN_WORDS = frozenset("between parts t x p c inputs dx out given n constants evaluate math float SIZE".split())
 RESERVED = C_WORDS | MATH_WORDS | OWN_WORDS | frozenset(keyword.kwlist) | frozenset(keyword.softkwlist)
 # our own variables, functions and macros, and what C keeps for itself
-LOCAL = re.compile(r"[vi][0-9]+|solve.*|.*_(rhs|reactions).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*")
+LOCAL = re.compile(
+    r"[vi][0-9]+|samples[0-9]+|solve.*|.*_(rhs|reactions|inverse).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
+)
 
 
-def identifiers(names: Iterable[str]) -> dict[str, str]:
-    """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot."""
+def identifiers(names: Iterable[str], taken: Container[str] = ()) -> dict[str, str]:
+    """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot.
+
+    Args:
+        taken: words that stand for something else.
+    """
     chosen: dict[str, str] = {}
     for name in names:
         word = identifier(name)
-        if word in RESERVED or LOCAL.fullmatch(word):
+        if word in RESERVED or word in taken or LOCAL.fullmatch(word):
             word += "_"
         unique, number = word, 2
         while unique in chosen.values():

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 from eomgen.codegen import factorization
+from eomgen.codegen.sparsity import Places, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FREE, Count, operations, order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.evaluation import FREE, Count, order
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.symbols import Symbols
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
@@ -57,13 +59,25 @@ class Solve:
         lower = [self.matrix[i][j] for i in range(len(self.matrix)) for j in range(i + 1)]
         return (*lower, *(entry for row in self.border for entry in row), *self.right)
 
+    @cached_property
+    def plain(self) -> Zeros:
+        """What may not be zero in the factors of the matrix."""
+        return zeros_of(self.matrix, self.border)
+
+    @property
+    def zeros(self) -> tuple[Zeros, Zeros]:
+        """The same of the matrix, and of matrix + border^T W border."""
+        return self.plain, zeros_with_ties(self.matrix, self.border)
+
+    @property
+    def lists(self) -> tuple[tuple[Places, Places, Places], ...]:
+        """The same as plain lists, as codegen/solving.py reads them."""
+        return tuple((way.partners, way.reach, way.rows) for way in self.zeros)
+
     @property
     def operations(self) -> int:
-        """L D L^T for k + 1 right sides; the k x k system of the multipliers, made and solved."""
-        n, k = len(self.matrix), len(self.border)
-        factor = sum(d * d + 2 * d for d in range(n))
-        border = 4 * k * n + k * n * n + 2 * k * n + k * k * n
-        return factor + (k + 1) * (2 * n * n - n) + (border + sum(d * d + 6 * d + 1 for d in range(k)) if k else 0)
+        """L D L^T, and with a border the system of the multipliers, made and solved, and all solved once more."""
+        return self.plain.operations
 
 
 Statement = Assign | Solve
@@ -81,6 +95,7 @@ class Program:
         statements: all others.
         outputs: the values that the function returns.
         count: operations at every call, and hoisted (once for given parameters) apart; `defaults` are not counted.
+        accelerations: a, where the caller gives them too, as to inverse dynamics.
     """
 
     symbols: Symbols
@@ -90,11 +105,17 @@ class Program:
     statements: tuple[Statement, ...]
     outputs: Row
     count: Count
+    accelerations: tuple[Node, ...] = ()
 
     @property
     def states(self) -> tuple[Node, ...]:
         """x = (q, u)"""
         return self.symbols.q + self.symbols.u
+
+    @property
+    def moving(self) -> tuple[Node, ...]:
+        """What a caller gives anew at every call beside t and inputs: x, and a where it is an argument."""
+        return self.states + self.accelerations
 
 
 def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
@@ -123,8 +144,9 @@ def program_in_motion(outputs: Row, assembly: Assembly, inputs: Mapping[str, Sca
         return program_of(outputs, assembly.symbols, inputs=inputs, solve=bordered(assembly))
     candidates = [_explicit(outputs, assembly, a, inputs) for a in _explicit_accelerations(assembly)]
     if not candidates or not (assembly.friction or _is_short(assembly)):
-        solve = Solve(assembly.M, (), assembly.forcing, assembly.symbols.a)
-        candidates.append(program_of(outputs, assembly.symbols, inputs=inputs, solve=solve))
+        solve = _ordered(assembly.M, (), assembly.forcing, assembly.symbols.a)
+        if all(solve.operations < program.count.total for program in candidates):
+            candidates.append(program_of(outputs, assembly.symbols, inputs=inputs, solve=solve))
     return min(candidates, key=lambda program: program.count.total)
 
 
@@ -151,7 +173,8 @@ def kinematics(assembly: Assembly) -> Row:
     rates = []
     for row, value in zip(assembly.N, assembly.nu, strict=True):
         for entry, speed in zip(row, u, strict=True):
-            value = value + entry * speed
+            if not is_zero(entry):
+                value = value + entry * speed
         rates.append(value)
     return tuple(rates)
 
@@ -160,7 +183,19 @@ def bordered(assembly: Assembly) -> Solve:
     """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
     symbols = assembly.symbols
     right = (*assembly.forcing, *(-g for g in assembly.gamma))
-    return Solve(assembly.M, assembly.J, right, symbols.a + symbols.lam)
+    return _ordered(assembly.M, assembly.J, right, symbols.a + symbols.lam)
+
+
+def _ordered(M: Sequence[Row], J: Sequence[Row], right: Row, unknowns: tuple[Node, ...]) -> Solve:
+    """The system with the accelerations in the order in which elimination fills in least: in a tree leaves first."""
+    order = factorization.elimination_order(M)
+    places = [*order, *range(len(M), len(right))]
+    return Solve(
+        tuple(tuple(M[max(i, j)][min(i, j)] for j in order) for i in order),
+        tuple(tuple(row[j] for j in order) for row in J),
+        tuple(right[i] for i in places),
+        tuple(unknowns[i] for i in places),
+    )
 
 
 def program_of(
@@ -169,6 +204,7 @@ def program_of(
     *,
     inputs: Mapping[str, Scalar] | None = None,
     solve: Solve | None = None,
+    accelerations: tuple[Node, ...] = (),
 ) -> Program:
     """Any outputs as a program.
 
@@ -177,32 +213,34 @@ def program_of(
         symbols: the arguments' names.
         inputs: the model's own expression of each input, in t and parameters.
         solve: the linear system behind a and lam, where the outputs hold these.
+        accelerations: a, where it is an argument.
     Raises:
         DerivationError: an output holds a symbol that is none of the arguments, or an input has no expression.
     """
     outputs, entries = tuple(outputs), tuple(solve.entries) if solve else ()
-    defaults = _defaults([*outputs, *entries], symbols, inputs or {})
-    parameters = frozenset(symbols.parameters.values())
-    _refuse_strangers([*outputs, *entries, *defaults], symbols, solve)
     needed = order([*outputs, *entries])
-    depth = _depths([*needed, *order(defaults)], parameters)
+    defaults = _defaults(needed, symbols, inputs or {})
+    own = order(defaults)
+    _refuse_strangers([*needed, *own], symbols, (*accelerations, *(solve.unknowns if solve else ())))
+    depth = _depths([*needed, *own], frozenset(symbols.parameters.values()))
     hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
+    moving = [x for x in needed if depth[x] == _MOVING and x.op not in FREE]
     known = frozenset(hoisted)
-    count = operations([*outputs, *entries], parameters)
     return Program(
         symbols=symbols,
         defaults=defaults,
-        preamble=tuple(Assign(x) for x in order(defaults) if _is_computed(x, depth) and x not in known),
+        preamble=tuple(Assign(x) for x in own if _is_computed(x, depth) and x not in known),
         hoisted=tuple(map(Assign, hoisted)),
-        statements=_scheduled([x for x in needed if depth[x] == _MOVING and x.op not in FREE], solve),
+        statements=_scheduled(moving, solve),
         outputs=outputs,
-        count=Count(count.total + (solve.operations if solve else 0), count.hoisted),
+        count=Count(len(moving) + (solve.operations if solve else 0), len(hoisted)),
+        accelerations=accelerations,
     )
 
 
-def _defaults(needed: Sequence[Scalar], symbols: Symbols, inputs: Mapping[str, Scalar]) -> Row:
+def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Scalar]) -> Row:
     """The inputs' own expressions; an input that nothing needs may do without."""
-    used = {x.name for x in order(needed) if x.op == "symbol"}
+    used = {x.name for x in needed if x.op == "symbol"}
     silent = [name for name in symbols.inputs if name in used and name not in inputs]
     if silent:
         raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}")
@@ -218,8 +256,12 @@ def _depths(nodes: Iterable[Node], parameters: frozenset[Node]) -> dict[Node, in
     for x in nodes:
         if x.op == "symbol":
             depth[x] = _FIXED if x in parameters else _MOVING
-        else:
-            depth[x] = max((depth[a] for a in x.args if type(a) is Node), default=_CONSTANT)
+            continue
+        deepest = _CONSTANT
+        for a in x.args:
+            if type(a) is Node and depth[a] > deepest:
+                deepest = depth[a]
+        depth[x] = deepest
     return depth
 
 
@@ -237,9 +279,8 @@ def _scheduled(moving: Sequence[Node], solve: Solve | None) -> tuple[Statement, 
     return (*before, solve, *after)
 
 
-def _refuse_strangers(outputs: Sequence[Scalar], symbols: Symbols, solve: Solve | None) -> None:
-    arguments = {symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values(), *symbols.inputs.values()}
-    arguments |= set(solve.unknowns) if solve else set()
-    strangers = [x.name for x in order(outputs) if x.op == "symbol" and x not in arguments]
+def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence[Node]) -> None:
+    arguments = {symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values(), *symbols.inputs.values(), *others}
+    strangers = [x.name for x in needed if x.op == "symbol" and x not in arguments]
     if strangers:
         raise DerivationError(f"not an argument of the program: {', '.join(map(repr, strangers))}")

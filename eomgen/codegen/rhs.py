@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,7 @@ class RightHandSide:
         self.p0 = None if p0 is None else np.array(p0, dtype=float)
         self._functions, self._one = functions, functions.one
         self.spheres = spheres_of(program)
-        self._states = len(program.states)
+        self._states = len(program.moving)
         self._known: tuple[bytes, Any] = (b"none yet", None)
 
     def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
@@ -63,6 +63,11 @@ class RightHandSide:
         if len(inputs) != len(self.inputs):
             raise _wrong_length("inputs", self.inputs, len(inputs))
         return self._one(t, x, known[1], inputs)
+
+    def at(self, p: Any) -> Callable[[float, Any], np.ndarray]:
+        """(t, x) -> dx for given parameters and the model's own inputs: a call without checks, for integrators."""
+        one, known = self._one, self._constants(p)
+        return lambda t, x: one(t, x, known, None)
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
         """dx at n states at once: t n or one number, x n x states, inputs () or n x inputs -> n x outputs."""

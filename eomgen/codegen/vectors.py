@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -64,7 +65,7 @@ def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
     M = [entries[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
     J = [entries[rows + m * n : rows + (m + 1) * n] for m in range(k)]
     right = entries[rows + k * n :]
-    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:]), strict=True))
+    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.lists), strict=True))
 
 
 def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> Vector:
@@ -74,14 +75,15 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     x = tuple(on_spheres([round(v + rng.uniform(-1, 1), 3) for v in start], spheres_of(program)).tolist())
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
-    return Vector(round(rng.uniform(0, 2), 3), x, p, inputs if with_inputs and inputs else None, (), TOLERANCE)
+    t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
+    return Vector(t, x, p, inputs if with_inputs and inputs else None, (), TOLERANCE, a)
 
 
 def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | None:
     """The state with its answer, or None where there is none."""
     symbols = program.symbols
-    arguments = [symbols.t, *program.states, *symbols.parameters.values()]
-    numbers = [state.t, *state.x, *state.p]
+    arguments = [symbols.t, *program.moving, *symbols.parameters.values()]
+    numbers = [state.t, *state.x, *state.a, *state.p]
     if state.inputs is not None:
         arguments += symbols.inputs.values()
         numbers += state.inputs
@@ -91,9 +93,9 @@ def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | 
         result = tuple(float(value) for value in outputs_at(program, values, arithmetic))
     except NoValue:
         return None
-    found = floats(state.t, state.x, state.p, state.inputs or ())
+    found = floats(state.t, [*state.x, *state.a], state.p, state.inputs or ())
     largest = max(1.0, *map(abs, result)) if result else 1.0
     error = max((abs(a - b) for a, b in zip(found, result, strict=True)), default=0.0) / largest
     if not error < WORST:
         return None
-    return Vector(state.t, state.x, state.p, state.inputs, result, float(max(TOLERANCE, 10 * error)))
+    return replace(state, result=result, tolerance=float(max(TOLERANCE, 10 * error)))

@@ -1,11 +1,15 @@
-"""Branches -> bias forces (recursive Newton-Euler) and mass matrix (composite bodies).
+"""Branches -> bias forces and inverse dynamics (recursive Newton-Euler), mass matrix (composite bodies).
 
-Outward, at a = 0:   w = E w_p + w_J,  U = wd~ + w~ w~,  acc = E (acc_p + U_p p + 2 w_p x p' + p'')
-inward:              f = m acc + U h,  n = h x acc + vee(U J - J U^T), both carried to the parent.
+Outward:   w = E w_p + w_J,  U = wd~ + w~ w~,  acc = E (acc_p + U_p p + 2 w_p x p' + p'')
+inward:    f = m acc + U h,  n = h x acc + vee(U J - J U^T), both carried to the parent.
+
+Of bias forces a = 0; of inverse dynamics wd gets w_k a_k and acc gets v_k a_k of each column (w_k, v_k).
 Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §5.3 and §6.2, in second moments of mass.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from eomgen.mechanics.kinematics import GROUND
 from eomgen.mechanics.loads import Loads, body_wrench, in_ground_axes
@@ -58,15 +62,17 @@ def inertia_wrench(body: Moments, acc: Vector, U: Matrix) -> Wrench:
 
 
 def bias_forces(
-    branches: tuple[Branch, ...], size: int, *, base_acceleration: Vector, applied: dict[int, Wrench]
-) -> list[Scalar]:
-    """Generalized forces that keep a = 0: c - Q of the wrenches, with the ground accelerating upwards for weight.
+    branches: tuple[Branch, ...], size: int, *, base_acceleration: Vector, applied: dict[int, Wrench],
+    a: Sequence[Scalar] = (),
+) -> list[Scalar]:  # fmt: skip
+    """Generalized forces that the motion takes: M a + c - Q of the wrenches, the ground accelerating up for weight.
 
     Args:
         base_acceleration: minus the field of gravity, ground axes [m/s^2].
         applied: wrenches on branches, working axes, about the joint point.
+        a: accelerations, size of them; () where all are 0.
     """
-    wrenches = _inertia_wrenches(branches, base_acceleration)
+    wrenches = _inertia_wrenches(branches, base_acceleration, a)
     for i, wrench in applied.items():
         own = wrenches[i]
         wrenches[i] = Wrench(minus(own.tau, wrench.tau), minus(own.f, wrench.f))
@@ -86,7 +92,9 @@ def carried(branch: Branch, wrench: Wrench) -> Wrench:
     return turned.moved(branch.p)
 
 
-def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector) -> list[Wrench]:
+def _inertia_wrenches(
+    branches: tuple[Branch, ...], base_acceleration: Vector, a: Sequence[Scalar]
+) -> list[Wrench]:
     rates: list[Rates] = []
     accelerations: list[Vector] = []
     wrenches = []
@@ -102,6 +110,9 @@ def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector) -
         if any(not is_zero(x) for x in branch.p_rate):
             seat = plus(seat, times(2, cross(w_p, branch.p_rate)))
         acc = _turned(E, seat)
+        if a:
+            for k, (turning, sliding) in branch.columns.items():
+                wd, acc = plus(wd, times(a[k], turning)), plus(acc, times(a[k], sliding))
         U = rate_matrix(w, wd)
         rates.append((w, U, wd))
         accelerations.append(acc)

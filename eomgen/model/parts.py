@@ -17,8 +17,10 @@ from eomgen.model.kinds import (
     Formula,
     Inertia,
     Mass,
+    MotionLaw,
     MovingPlace,
     Place,
+    RateInTime,
     RateLaw,
     SpaceDirection,
     Text,
@@ -66,7 +68,7 @@ class Coordinate(Part):
         unit: in which the numbers are given; they are in SI already.
         near: first guess of a dependent coordinate, or of an equilibrium.
         dependent: eliminated through the constraints.
-        motion, rate, acceleration: q, q' or q'' as a function of time, of a driven coordinate.
+        motion, rate, acceleration: q, q' or q'' as a function of time, or through samples, of a driven coordinate.
     """
 
     shorthand: ClassVar[str] = "start"
@@ -78,8 +80,8 @@ class Coordinate(Part):
     about: Text | None = None
     near: Formula | None = None
     dependent: Flag = False
-    motion: TimeLaw | None = None
-    rate: TimeLaw | None = None
+    motion: MotionLaw | None = None
+    rate: RateInTime | None = None
     acceleration: TimeLaw | None = None
 
     @property
@@ -176,7 +178,7 @@ class Linearize(Part):
     """About which state the equations are linearized, and in which coordinates (None: all)."""
 
     title: ClassVar[str] = "[linearize]"
-    about: Annotated[str, TextRule(("equilibrium", "start"))] = "equilibrium"
+    about: Annotated[str, TextRule(("equilibrium", "start", "steady"))] = "equilibrium"
     coordinates: Coordinates | None = None
 
 

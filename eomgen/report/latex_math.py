@@ -17,6 +17,7 @@ from eomgen.symbolic.decimals import decimal_of
 from eomgen.symbolic.graph import Node, Number, Scalar
 from eomgen.symbolic.layout import SUMS, Factor, Product, is_base, is_part_of_turn
 from eomgen.symbolic.printed import summands
+from eomgen.symbolic.splines import sampled_of
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
@@ -139,6 +140,9 @@ class Setter:
         op = node.op
         if op in ("symbol", "pi"):
             tex = r"\pi" if op == "pi" else self.notation.get(node.name) or symbol_latex(node.name)
+            return Set(tex, width_of(tex))
+        if op == "sampled":
+            tex = symbol_latex(sampled_of(node.args[1]).name)
             return Set(tex, width_of(tex))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sqrt":

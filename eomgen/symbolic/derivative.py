@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Graph, Node, Scalar
+from eomgen.symbolic.splines import number_of, sampled_of
 
 
 def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
@@ -177,6 +178,11 @@ def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
     ]
 
 
+def _rate_of_sampled(g: Graph, t: Scalar, k: Scalar) -> Scalar:
+    rate = sampled_of(k).derivative()
+    return 0 if rate.spline.vanishes else g.call("sampled", t, number_of(rate))
+
+
 def _power_in_exponent(g: Graph, x: Node, a: Scalar, n: Scalar) -> Scalar:
     return x * g.call("log", a)
 
@@ -202,6 +208,7 @@ PARTIALS: dict[str, tuple[Callable[..., Scalar], ...]] = {
         lambda g, x, y, z: g.div(z, y * y + z * z),
         lambda g, x, y, z: -g.div(y, y * y + z * z),
     ),
+    "sampled": (lambda g, x, t, k: _rate_of_sampled(g, t, k), lambda g, x, t, k: 0),
     "min": (
         lambda g, x, a, b: g.select(g.call("less_equal", a, b), 1, 0),
         lambda g, x, a, b: g.select(g.call("less_equal", a, b), 0, 1),

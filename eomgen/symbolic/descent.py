@@ -18,6 +18,7 @@ from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.splines import sampled_of
 
 STEPS = 80
 POLISHINGS = 200  # at a multiple root the error shrinks by a factor only
@@ -32,6 +33,7 @@ _ON_ARRAYS: dict[str, Callable[..., Any]] = {
     "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": np.true_divide,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "pow": np.float_power,
     "min": np.minimum, "max": np.maximum, "select": np.where, "pi": lambda: np.pi,
+    "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, float, np.pi), otypes=[float]),
     **{op: getattr(np, op) for op in "sqrt sin cos tan sinh cosh tanh exp log abs sign less less_equal".split()},
 }  # fmt: skip
 ARRAYS = Arithmetic("arrays", float, _ON_ARRAYS, lambda x: np.nan)
@@ -149,7 +151,7 @@ class Descent:
                 break
             At = A[left].transpose(0, 2, 1)
             normal = At @ A[left] + mu[left, None, None] * np.eye(n)
-            step = self._columns * np.linalg.solve(normal, -(At @ f[left][:, :, None]))[:, :, 0]
+            step = self._columns * _solved(normal, -(At @ f[left][:, :, None])[:, :, 0])
             trial = x[left] + step
             new_f, new_A = self._scaled(trial)
             better = _size(new_f) < size[left]
@@ -163,6 +165,15 @@ class Descent:
         f = self._rows * self._at(self.equations, x)
         A = self._at(self._slopes, x).reshape(-1, *self._shape) * self._rows[:, None] * self._columns
         return f, np.where(np.isfinite(A), A, 0.0)
+
+
+def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """x of normal x = right, one a row; the shortest where a matrix is singular (redundant equations)."""
+    try:
+        found: np.ndarray = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        found = (np.linalg.pinv(normal, hermitian=True) @ right[:, :, None])[:, :, 0]
+    return found
 
 
 def _apart(x: np.ndarray) -> list[np.ndarray]:

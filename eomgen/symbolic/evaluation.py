@@ -15,6 +15,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.graph import CONSTANTS, LARGEST_POWER, Graph, Node, Number, Scalar
+from eomgen.symbolic.splines import sampled_of
 
 FREE = frozenset(("symbol", "pi", "neg"))
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
@@ -184,7 +185,7 @@ FLOAT = Arithmetic(
     _RING
     | _ORDERED
     | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}
-    | {"pow": math.pow, "pi": lambda: math.pi},
+    | {"pow": math.pow, "pi": lambda: math.pi, "sampled": lambda t, k: sampled_of(k).at(t, float, math.pi)},
     lambda x: math.nan,
 )
 
@@ -205,12 +206,18 @@ def _whole_power(a: Any, exponent: Any) -> Any:
     return a ** int(exponent)
 
 
+def _rational_sample(t: Fraction, k: Fraction) -> Fraction:
+    if sampled_of(k).pi_power:
+        raise NoMeaning("pi is not rational")
+    return sampled_of(k).spline.at(t)
+
+
 RATIONAL = Arithmetic(
     "rationals",
     Fraction,
     _RING
     | _ORDERED
-    | {"sqrt": _rational_root, "pow": _whole_power}
+    | {"sqrt": _rational_root, "pow": _whole_power, "sampled": _rational_sample}
     | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "the rationals"),
     _no_value,
 )
@@ -254,7 +261,7 @@ PRIME_FIELD = Arithmetic(
     _residue,
     _MODULAR
     | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "a prime field")
-    | _refusing("abs sign min max less less_equal select", "a prime field"),
+    | _refusing("abs sign min max less less_equal select sampled", "a prime field"),
     _no_value,
 )
 
@@ -281,7 +288,11 @@ def fifty_digits() -> Arithmetic:
 
     names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
     functions = {op: real(getattr(mp, op)) for op in names}
-    own = {"pow": real(mp.power), "pi": lambda: +mp.pi}
-    return Arithmetic(
-        "50 digits", lambda c: mp.mpf(c.numerator) / c.denominator, _RING | _ORDERED | functions | own, _no_value
-    )
+
+
+    def number(c: Number) -> Any:
+        return mp.mpf(c.numerator) / c.denominator
+
+    own: dict[str, Callable[..., Any]] = {"pow": real(mp.power), "pi": lambda: +mp.pi}
+    own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
+    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, _no_value)

@@ -57,6 +57,8 @@ def _factors(x: Node) -> list[Scalar]:
 def _squared(factors: list[Scalar]) -> list[Node]:
     """The sines and cosines that stand twice among the factors."""
     circular = [f for f in factors if type(f) is Node and f.op in ("sin", "cos")]
+    if len(circular) < 2:
+        return []
     return [f for k, f in enumerate(circular) if circular.count(f) == 2 and f in circular[k + 1 :]]
 
 

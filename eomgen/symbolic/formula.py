@@ -14,11 +14,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.symbolic import scalar_operations
+from eomgen.symbolic.splines import Sampled
 
 Scalar = Any
 Instruction = tuple[str, Any]
 """("number", value) | ("name", name) | ("neg", None) | ("+" "-" "*" "/" "^", None) | ("function", (name, count))
-| ("call", Call)"""
+| ("call", Call) | ("sampled", Sampled): a function through samples, of what stands before it"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,20 @@ class Expression:
 
     def __str__(self) -> str:
         return self.text
+
+    @staticmethod
+    def through_samples(sampled: Sampled, text: str) -> Expression:
+        """A function of time through samples."""
+        return Expression(text, (("name", "t"), ("sampled", sampled)), (-1, -1))
+
+    @property
+    def sampled(self) -> Sampled | None:
+        """The function through samples that this is, or None."""
+        return self.code[1][1] if len(self.code) == 2 and self.code[1][0] == "sampled" else None
+
+    def named(self, name: str) -> Expression:
+        """The same; a function through samples with a name by which it is printed."""
+        return self if self.sampled is None else Expression.through_samples(self.sampled.named(name), self.text)
 
     @property
     def literal(self) -> int | Fraction | None:
@@ -140,6 +155,8 @@ class Expression:
         """factor * pi^pi_power * this; the columns stay those of the source."""
         if factor == 1 and pi_power == 0:
             return self
+        if self.sampled is not None:
+            return Expression.through_samples(self.sampled.scaled(factor, pi_power), self.text)
         literal, code, columns = self.literal, list(self.code), list(self.columns)
         if literal is not None:
             scaled = Expression.number(literal * factor)
@@ -239,6 +256,8 @@ def apply_operation(stack: list[Scalar], kind: str, what: Any, pi: Scalar) -> No
     """Replaces the operands on top of the stack by the result of one operation."""
     if kind == "neg":
         stack[-1] = -stack[-1]
+    elif kind == "sampled":
+        stack[-1] = scalar_operations.through_samples(what, stack[-1], pi)
     elif kind == "function":
         name, count = what
         args = tuple(stack[-count:])

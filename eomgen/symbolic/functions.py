@@ -6,7 +6,7 @@ The laws of mechanics call these and never `math` or `sympy`, so one text of a l
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -77,6 +77,18 @@ def over(a, b):
 def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
     """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
+
+
+def combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any, ...]:
+    """The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row."""
+    total: list[Any] = []
+    for factor, row in zip(factors, rows, strict=True):
+        total = total or [0] * len(row)
+        if not is_zero(factor):
+            for i, x in enumerate(row):
+                if not is_zero(x):
+                    total[i] = total[i] + factor * x
+    return tuple(total)
 
 
 def chosen(a, bound, if_below, if_above):

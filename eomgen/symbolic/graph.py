@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 UNARY = frozenset("neg sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs sign".split())
-BINARY = frozenset("add sub mul div pow atan2 min max less less_equal".split())
+BINARY = frozenset("add sub mul div pow atan2 min max less less_equal sampled".split())
 LARGEST_POWER = 4096  # of a node, when it stays a whole power
 _OF_EQUALS = {"min": None, "max": None, "less": 0, "less_equal": 1}  # f(x, x); None: x itself
 

@@ -149,6 +149,7 @@ INTERVALS = Arithmetic(
         "acos": _rounded(_acos),
         "atan": _rising(np.arctan),
         "atan2": lambda a, b: (np.full_like(a[0] + b[0], -math.pi), np.full_like(a[0] + b[0], math.pi)),
+        "sampled": lambda t, k: (np.full_like(t[0] + t[1], -np.inf), np.full_like(t[0] + t[1], np.inf)),
         "sinh": _rising(np.sinh),
         "cosh": _rounded(_cosh),
         "tanh": _rising(np.tanh),

@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import isqrt
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.splines import sampled_of
 
 Number = int | Fraction
 
@@ -80,4 +81,7 @@ def binary_folded_at(name: str, a: Number, b: Number) -> Number | None:
         return int(a < b)
     if name == "less_equal":
         return int(a <= b)
+    if name == "sampled":
+        sampled = sampled_of(b)
+        return None if sampled.pi_power else tidy(sampled.spline.at(Fraction(a)))
     return 0 if name == "atan2" and a == 0 and b > 0 else None

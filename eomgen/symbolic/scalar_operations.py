@@ -7,12 +7,14 @@ expression or a float. What has no value (1/0, sqrt(-1), a power beyond all size
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from math import isqrt
 from typing import Any
 
 from eomgen.symbolic import functions
 from eomgen.symbolic.graph import Node, Number
+from eomgen.symbolic.splines import Sampled, number_of
 
 Scalar = Any
 
@@ -100,6 +102,18 @@ def _root(a: int | Fraction, b: Fraction, pi: Scalar) -> Scalar:
             raise Undefined("a broken power of a negative number")
         return float(a) ** float(b)
     return (a + (pi - pi)) ** b
+
+
+def through_samples(sampled: Sampled, t: Scalar, pi: Scalar = None) -> Scalar:
+    """The value at t of a function through samples; in the graph it stays one operation."""
+    if type(t) is Node:
+        return t.graph.call("sampled", t, number_of(sampled))
+    if is_exact(t):
+        value = sampled.spline.at(Fraction(t))
+        return bounded(value) if sampled.pi_power == 0 else value * (math.pi if pi is None else pi) ** sampled.pi_power
+    if isinstance(t, float):
+        return sampled.at(t, float, math.pi)
+    return sampled.chosen(t, functions.chosen, pi)
 
 
 def function(name: str, args: tuple[Scalar, ...], pi: Scalar = None) -> Scalar:

@@ -33,8 +33,12 @@ def matrix_of(rows: Iterable[Iterable[Scalar]]) -> Matrix:
 
 
 def dot(a: Vector, b: Vector) -> Scalar:
-    """a . b"""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    """a . b; what is multiplied by the number 0 is not looked at."""
+    total: Scalar = 0
+    for x, y in zip(a, b, strict=True):
+        if (type(x) is not int or x != 0) and (type(y) is not int or y != 0):
+            total = total + x * y
+    return total
 
 
 def cross(a: Vector, b: Vector) -> Vector:

@@ -16,7 +16,9 @@ from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.functions import chosen
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.splines import sampled_of
 
 TRUTHS = (Relational, BooleanFunction, BooleanAtom)
 SUMS = frozenset(("add", "sub", "neg"))
@@ -93,6 +95,8 @@ def _summand(sign: int, x: Scalar, made: Mapping[Node, Any]) -> sympy.Expr:
 
 def _made(x: Node, made: Mapping[Node, Any]) -> Any:
     values = [_value(a, made) for a in x.args]
+    if x.op == "sampled":
+        return sampled_of(x.args[1]).chosen(_plain(values[0]), chosen, sympy.pi)
     if x.op == "select":
         condition, if_true, if_false = values
         return sympy.Piecewise((_plain(if_true), _condition(condition)), (_plain(if_false), True))

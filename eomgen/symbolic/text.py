@@ -12,6 +12,7 @@ from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.layout import Factor, Product, is_base, is_part_of_turn
 from eomgen.symbolic.printed import summands
+from eomgen.symbolic.splines import sampled_of
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
@@ -103,6 +104,8 @@ def _power_text(factor: Factor, printed: Printed) -> str:
 def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]) -> tuple[str, int]:
     if node.op in ("symbol", "pi"):
         return (node.name if node.op == "symbol" else "pi"), ATOM
+    if node.op == "sampled":
+        return sampled_of(node.args[1]).name, ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
     products = plans.get(node.args[0], []) if node.op == "sqrt" else []
@@ -138,6 +141,8 @@ def _sizes(expressions: Iterable[Scalar]) -> dict[Node, int]:
 def _size(node: Node, sizes: Mapping[Node, int]) -> int:
     if node.op in ("symbol", "pi"):
         return len(node.name) if node.op == "symbol" else 2
+    if node.op == "sampled":
+        return len(sampled_of(node.args[1]).name)
     inside = sum(sizes[a] if type(a) is Node else len(number_text(a)) for a in node.args)
     return inside + {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}.get(
         node.op, len(node.op) + 2 * len(node.args)
@@ -206,7 +211,7 @@ def _uses(nodes: Iterable[Node], expressions: Iterable[Scalar]) -> dict[Node, in
 
 def _can_be_named(node: Node) -> bool:
     """A sign or a coefficient stays with the text; a condition is no quantity."""
-    return node.op not in ("symbol", "pi", "less", "less_equal") and _core(node) is node
+    return node.op not in ("symbol", "pi", "sampled", "less", "less_equal") and _core(node) is node
 
 
 def _core(node: Node) -> Node:

@@ -32,7 +32,7 @@ def transplanted(scalars: Sequence[Scalar], graph: Graph, meanings: Mapping[str,
             raise DerivationError(f"'{symbol.name}' has no meaning here")
         values[symbol] = meanings[symbol.name]
     own: dict[str, Callable[..., Any]] = {"pi": lambda: graph.pi, "select": graph.select}
-    own |= {name: partial(graph.call, name) for name in ("less", "less_equal")}
+    own |= {name: partial(graph.call, name) for name in ("less", "less_equal", "sampled")}
     onto = Arithmetic("graph", lambda c: c, _RING | _FUNCTIONS | own, _refused)
     return tuple(evaluate(tuple(scalars), values, onto))
 

@@ -8,25 +8,36 @@ from pathlib import Path
 from eomgen import pipeline
 from eomgen.codegen.files import Emitted, write_files
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.codegen.targets.base import REACTIONS, Description
+from eomgen.codegen.targets.base import INVERSE, REACTIONS, Description
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.mechanics.named_reactions import named_reactions
 from eomgen.model.parts import Model
+from eomgen.running import pulling
 from eomgen.verbs.outcome import Outcome, listed
 from eomgen.version import __version__
 
 
-def codegen(model: Model, *, stem: str, origin: str, target: str, directory: str) -> Outcome:
-    """The right-hand side and the reactions as files that compile as they are, with test vectors."""
+def codegen(
+    model: Model, *, stem: str, origin: str, target: str, directory: str, inverse: bool = False,
+    actuated: tuple[str, ...] = (), baumgarte: tuple[float, float] | None = None,
+) -> Outcome:  # fmt: skip
+    """The right-hand side and the reactions as files that compile as they are, with test vectors.
+
+    Args:
+        inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
+        baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
+    """
     equations = pipeline.derive(model)
+    equations = equations if baumgarte is None else pulling(equations, baumgarte)
     program, rhs = equations.program, equations.rhs("numpy")
     source = f"{origin} ({model.source})" if model.source else origin
     description = Description(model.name, f"Made by eomgen {__version__} from {source}.", _remarks(model),
                               vectors(program, x0=rhs.x0, p0=rhs.p0))  # fmt: skip
     reactions, note = _reactions(equations, description, rhs)
+    moved = _inverse(equations, description, rhs, actuated) if inverse or actuated else None
     paths = [str(path) for path in write_files(stem, program, description, target=target, directory=Path(directory),
-                                               reactions=reactions)]  # fmt: skip
+                                               reactions=reactions, inverse=moved)]  # fmt: skip
     payload = {
         "name": model.name, "target": target, "files": paths, "operations": program.count.total,
         "hoisted_operations": program.count.hoisted, "coordinates": list(rhs.coordinates), "speeds": list(rhs.speeds),
@@ -34,6 +45,8 @@ def codegen(model: Model, *, stem: str, origin: str, target: str, directory: str
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
     }  # fmt: skip
+    if moved:
+        payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
     return Outcome("".join(f"{path}\n" for path in paths), payload, notes=(note,) if note else ())
 
 
@@ -54,6 +67,15 @@ def _reactions(
     remarks = {**description.remarks, **units}
     told = replace(description, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)
     return (program, told), note
+
+
+def _inverse(
+    equations: pipeline.Equations, description: Description, rhs: RightHandSide, actuated: tuple[str, ...]
+) -> Emitted:
+    """The program of inverse dynamics, described."""
+    found = equations.inverse_dynamics(actuated)
+    answers = vectors(found.program, x0=rhs.x0, p0=rhs.p0)
+    return found.program, replace(description, vectors=answers, role=INVERSE, outputs=found.names)
 
 
 def _remarks(model: Model) -> dict[str, str]:

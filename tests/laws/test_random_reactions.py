@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 import pytest
 from free_bodies import Tree, read
-from laws.test_random_systems import Writer
+from random_systems import Writer
 
 import eomgen
 from eomgen.mechanics.drive import drive

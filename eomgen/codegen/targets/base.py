@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.codegen.expressions import used_once
+from eomgen.codegen.expressions import Call, used_once
 from eomgen.codegen.names import identifiers
 from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.symbolic.evaluation import order
@@ -19,7 +19,7 @@ class Functions:
 
     Args:
         constants: p, an array -> what the parameters determine, p included, in a form that only `one` reads.
-        one: (t, x, constants, inputs or None) -> a new array of the outputs.
+        one: (t, x, constants, inputs or None) -> a new array of the outputs; x with a after it, where a is an argument.
         many: the same of n instants at once: t n, x n x states, p, inputs None or n x inputs -> n x outputs.
     """
 
@@ -30,7 +30,7 @@ class Functions:
 
 @dataclass(frozen=True)
 class Vector:
-    """A right answer: the result at (t, x, p), by the model's own inputs or by given ones.
+    """A right answer: the result at (t, x, p), and a where it is an argument, by the model's own inputs or given ones.
 
     Args:
         result: in the order of the program's outputs.
@@ -43,6 +43,7 @@ class Vector:
     inputs: tuple[float, ...] | None
     result: tuple[float, ...]
     tolerance: float
+    a: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ class Role:
 
 
 RHS = Role("rhs", "", "dx", "dx = f(t, x, p), the equations of motion solved for the accelerations")
+INVERSE = Role("inverse", "_inverse", "tau", "tau = f(t, x, a, p), the forces and torques that accelerations a take")
 REACTIONS = Role("reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and ties in the motion")
 
 
@@ -119,6 +121,7 @@ class Layout:
         kept: hoisted nodes that the later bodies read, in the order of the array of constants.
         once: nodes written where they are used.
         before, solve, after: the statements around the solve (None: everything is in `before`).
+        sampled: the functions through samples that are called, samples1 first, by their number in the graph.
     """
 
     program: Program
@@ -128,6 +131,14 @@ class Layout:
     before: tuple[Node, ...]
     solve: Solve | None
     after: tuple[Node, ...]
+    sampled: dict[int, str]
+
+    def calls(self, call: Call) -> Call:
+        """How functions are called, those through samples by their names here."""
+        return lambda op, arguments: call(*self._called(op, arguments))
+
+    def _called(self, op: str, arguments: list[str]) -> tuple[str, list[str]]:
+        return (self.sampled[int(float(arguments[1]))], arguments[:1]) if op == "sampled" else (op, arguments)
 
     def loads(self, symbols: Sequence[Node], used: frozenset[Node]) -> list[tuple[int, Node]]:
         """(place, symbol) of those arguments that are used."""
@@ -137,10 +148,11 @@ class Layout:
 def layout(program: Program) -> Layout:
     """The bodies of a program: constants from parameters, the inputs' own values, and the rest."""
     symbols = program.symbols
-    arguments = [*program.states, *symbols.parameters.values(), *symbols.inputs.values()]
+    arguments = [*program.moving, *symbols.parameters.values(), *symbols.inputs.values()]
     solve = next((s for s in program.statements if type(s) is Solve), None)
     unknowns = [x for x in (solve.unknowns if solve else ()) if x not in arguments]
-    words = identifiers([x.name for x in [*arguments, *unknowns]])
+    arrays = ("a", "tau") if program.accelerations else ()
+    words = identifiers([x.name for x in [*arguments, *unknowns]], arrays)
     names = {x: words[x.name] for x in [*arguments, *unknowns]} | {symbols.t: "t"}
     cut = program.statements.index(solve) if solve else len(program.statements)
     before, after = _nodes(program.statements[:cut]), _nodes(program.statements[cut + 1 :])
@@ -150,7 +162,11 @@ def layout(program: Program) -> Layout:
     kept = tuple(x for x in hoisted if x in read)
     once = used_once([(hoisted, ()), (before + after, written), (preamble, program.defaults)])
     once |= frozenset(kept) - _read(hoisted, ())  # stored where they are computed
-    return Layout(program, names, kept, once, before, solve, after)
+    acts = any(x in used_symbols(written, kept) for x in symbols.inputs.values())
+    computed = (*hoisted, *(preamble if acts else ()), *before, *after)
+    numbers = dict.fromkeys(x.args[1] for x in computed if x.op == "sampled")
+    sampled = {number: f"samples{place}" for place, number in enumerate(numbers, start=1)}
+    return Layout(program, names, kept, once, before, solve, after, sampled)
 
 
 def used_symbols(values: Sequence[Scalar], stop: Sequence[Node]) -> frozenset[Node]:
@@ -173,7 +189,8 @@ def header(program: Program, description: Description) -> list[str]:
     symbols, result = program.symbols, description.role.result
     lines = [f"{description.title}: {description.role.about}", ""]
     lines += [description.origin, ""]
-    groups = {"x": program.states, "p": symbols.parameters.values(), "inputs": symbols.inputs.values()}
+    groups = {"x": program.states, "a": program.accelerations, "p": symbols.parameters.values(),
+              "inputs": symbols.inputs.values()}  # fmt: skip
     for array, members in groups.items():
         for place, x in enumerate(members):
             remark = description.remarks.get(x.name, "")

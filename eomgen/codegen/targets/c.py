@@ -1,6 +1,7 @@
 """Program -> C99: `void NAME_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)`.
 
-The reactions alike: `NAME_reactions(..., double *out)`.
+The reactions alike: `NAME_reactions(..., double *out)`; inverse dynamics has the accelerations after x:
+`NAME_inverse(double t, const double *x, const double *a, ..., double *tau)`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Rol
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 from eomgen.codegen.targets.c_solving import solving_text
+from eomgen.codegen.targets.parts import Parts, parts_of
+from eomgen.codegen.targets.samples import c_samples
 from eomgen.symbolic.graph import Node, Scalar
 
 _PLAIN = frozenset("sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split())
@@ -26,7 +29,12 @@ _WRITTEN = {
     "less_equal": "({0} <= {1} ? 1.0 : 0.0)",
     "select": "({0} != 0 ? {1} : {2})",
 }
-ARGUMENTS = "double t, const double *x, const double *p"
+
+
+def arguments(program: Program, many: bool = False) -> str:
+    """t, x, a where it is one, p: of one instant, or arrays over many."""
+    arrays = ["x", "a", "p"] if program.accelerations else ["x", "p"]
+    return ", ".join(["const double *t" if many else "double t", *(f"const double *{name}" for name in arrays)])
 
 
 def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
@@ -39,10 +47,11 @@ def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, 
     """
     bodies = layout(program)
     remarks = remarks or {}
-    solve = solving_text(len(bodies.solve.matrix), len(bodies.solve.border)) if bodies.solve else ""
+    solve = solving_text(bodies.solve.zeros) if bodies.solve else ""
     parts = [
         "#include <math.h>\n#include <stddef.h>\n",
         solve,
+        c_samples(bodies),
         _constants(bodies, role.others(stem), remarks),
         _evaluate(bodies, role.others(stem), role.result, remarks),
         _wrappers(bodies, stem, role),
@@ -56,26 +65,26 @@ def prototypes(program: Program, stem: str, role: Role = RHS) -> str:
     symbols, name = program.symbols, others.upper()
     size = f"#define {name}_OUTPUTS {len(program.outputs)}\n" if role is not RHS else ""
     rows = "states" if role is RHS else "outputs"
+    given = "a n x speeds, " if program.accelerations else ""
     return (
         f"#define {name}_STATES {len(program.states)}\n"
         f"#define {name}_PARAMETERS {len(symbols.parameters)}\n"
         f"#define {name}_INPUTS {len(symbols.inputs)}\n"
         f"#define {name}_CONSTANTS {len(bodies.kept)}\n{size}\n"
         f"/* {result} at (t, x, p); inputs NULL: the model's own. */\n"
-        f"void {role.main(stem)}({ARGUMENTS}, const double *inputs, double *{result});\n\n"
+        f"void {role.main(stem)}({arguments(program)}, const double *inputs, double *{result});\n\n"
         f"/* The same in two steps: c once for given p, then as often as one likes. */\n"
         f"void {others}_constants(const double *p, double *c);\n"
-        f"void {others}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *{result});\n\n"
-        f"/* n instants at once: t n, x n x states, inputs NULL or n x inputs, {result} n x {rows}. */\n"
-        f"void {others}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
-        f"double *{result});\n"
+        f"void {others}_evaluate({arguments(program)}, const double *c, const double *inputs, double *{result});\n\n"
+        f"/* n instants at once: t n, x n x states, {given}inputs NULL or n x inputs, {result} n x {rows}. */\n"
+        f"void {others}_many(size_t n, {arguments(program, many=True)}, const double *inputs, double *{result});\n"
     )
 
 
 def _constants(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
     """What the parameters alone determine."""
     nodes = [s.node for s in bodies.program.hoisted]
-    writer = Writer(_call, bodies.names)
+    writer = Writer(bodies.calls(_call), bodies.names)
     used = used_symbols(bodies.kept, ())
     lines = _loads(bodies, "p", list(bodies.program.symbols.parameters.values()), used, remarks)
     lines += _assignments(writer, nodes, bodies.once)
@@ -90,29 +99,72 @@ def _evaluate(bodies: Layout, stem: str, result: str, remarks: Mapping[str, str]
     program, solve = bodies.program, bodies.solve
     symbols = program.symbols
     written = (*(solve.entries if solve else ()), *program.outputs)
-    used = used_symbols(written, bodies.kept)
-    inputs = [x for x in symbols.inputs.values() if x in used]
-    loaded = used | (used_symbols(program.defaults, bodies.kept) if inputs else frozenset())
-    writer = Writer(_call, _names(bodies))
+    inputs = [x for x in symbols.inputs.values() if x in used_symbols(written, bodies.kept)]
+    parts = parts_of(bodies)
+    elsewhere = parts.names("between")
+    loaded = used_symbols([*written, *(program.defaults if inputs else ()), *inputs], [*bodies.kept, *elsewhere])
+    loaded |= frozenset(inputs)
+    writer = Writer(bodies.calls(_call), _names(bodies) | elsewhere)
     lines = _loads(bodies, "x", program.states, loaded, remarks)
+    lines += _loads(bodies, "a", program.accelerations, loaded, remarks)
     lines += _loads(bodies, "p", list(symbols.parameters.values()), loaded, remarks)
     lines += _inputs(bodies, inputs, remarks)
-    lines += _assignments(writer, bodies.before, bodies.once)
+    lines += [f"double between[{len(elsewhere)}];"] if parts.all else []
+    lines += [f"{elsewhere[x]} = {bodies.names[x]};" for x in inputs if x in elsewhere]
+    lines += _run(parts, 0, len(parts.before), program) or _assignments(writer, bodies.before, bodies.once)
     if solve:
-        lines += _solve(solve, writer, bodies.names)
-    lines += _assignments(writer, bodies.after, bodies.once)
+        lines += _solve(solve, writer, elsewhere)
+    lines += _run(parts, len(parts.before), len(parts.all), program) or _assignments(writer, bodies.after, bodies.once)
     lines += [f"{result}[{place}] = {writer.value(x)};" for place, x in enumerate(program.outputs)]
-    head = f"void {stem}_evaluate({ARGUMENTS}, const double *c, const double *inputs, double *{result})"
-    return _function(head, [*_silenced(bodies, loaded, inputs, result), *lines])
+    head = f"void {stem}_evaluate({arguments(program)}, const double *c, const double *inputs, double *{result})"
+    whole = _function(head, [*_silenced(bodies, loaded, inputs, result, parts), *lines])
+    return "\n".join([*_functions_of_parts(bodies, parts), whole])
+
+
+def _run(parts: Parts, first: int, last: int, program: Program) -> list[str]:
+    """Parts one after the other, by their addresses: a compiler would make one function of them again."""
+    if first == last:
+        return []
+    a = ", a" if program.accelerations else ""
+    return [f"for (int i = {first}; i < {last}; i++) parts[i](t, x{a}, p, c, between);"]
+
+
+def _functions_of_parts(bodies: Layout, parts: Parts) -> list[str]:
+    """A function of every part, and the list of them."""
+    if not parts.all:
+        return []
+    program = bodies.program
+    takes = f"{arguments(program)}, const double *c, double *between"
+    texts = [_function(f"static void part{i}({takes})", _part(bodies, parts, part)) for i, part in enumerate(parts.all)]
+    names = ", ".join(f"part{i}" for i in range(len(parts.all)))
+    return [*texts, f"static void (*const parts[])({takes}) = {{ {names} }};\n"]
+
+
+def _part(bodies: Layout, parts: Parts, nodes: Sequence[Node]) -> list[str]:
+    """What one part computes; what is read elsewhere goes into the array."""
+    program, others = bodies.program, parts.names("between", without=nodes)
+    stored = {x: text for x, text in parts.names("between").items() if x not in others}
+    writer = Writer(bodies.calls(_call), _names(bodies) | others)
+    used = used_symbols([a for x in nodes for a in x.args], [*nodes, *bodies.kept, *others])
+    arrays = {"x": program.states, "a": program.accelerations, "p": tuple(program.symbols.parameters.values())}
+    lines = [f"(void)t; (void)x; {'(void)a; ' if program.accelerations else ''}(void)p; (void)c; (void)between;"]
+    for array, symbols in arrays.items():
+        lines += _loads(bodies, array, symbols, used, {})
+    lines += _assignments(writer, nodes, bodies.once - stored.keys())
+    return [*lines, *(f"{text} = {writer.value(x)};" for x, text in stored.items())]
 
 
 def _names(bodies: Layout) -> dict[Node, str]:
     return bodies.names | {x: f"c[{place}]" for place, x in enumerate(bodies.kept)}
 
 
-def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], result: str) -> list[str]:
+def _silenced(
+    bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], result: str, parts: Parts
+) -> list[str]:
     """(void) for arguments that this program does not need."""
     program = bodies.program
+    if parts.all:
+        return [] if inputs else ["(void)inputs;"]
     needed = {
         "t": program.symbols.t in loaded,
         "x": any(x in loaded for x in program.states),
@@ -121,6 +173,8 @@ def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], r
         "inputs": bool(inputs),
         result: bool(program.outputs),
     }
+    if program.accelerations:
+        needed["a"] = any(x in loaded for x in program.accelerations)
     return [f"(void){name};" for name, is_needed in needed.items() if not is_needed]
 
 
@@ -151,7 +205,7 @@ def _inputs(bodies: Layout, inputs: Sequence[Node], remarks: Mapping[str, str]) 
     if not inputs:
         return []
     program, places = bodies.program, {x: i for i, x in enumerate(bodies.program.symbols.inputs.values())}
-    writer = Writer(_call, _names(bodies), prefix="i")
+    writer = Writer(bodies.calls(_call), _names(bodies), prefix="i")
     own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
     lines = [f"double {bodies.names[x]};{_remark(x.name, bodies.names[x], remarks)}" for x in inputs]
     lines += ["if (inputs != NULL) {"]
@@ -165,18 +219,20 @@ def _assignments(writer: Writer, nodes: Sequence[Node], once: frozenset[Node]) -
     return [f"const double {variable} = {text};" for variable, text in writer.assignments(nodes, once)]
 
 
-def _solve(solve: Solve, writer: Writer, names: Mapping[Node, str]) -> list[str]:
-    """Fill the arrays, solve, name the unknowns."""
+def _solve(solve: Solve, writer: Writer, elsewhere: Mapping[Node, str]) -> list[str]:
+    """Fill the arrays, solve, name the unknowns, and leave them where other functions read them."""
     n, k = len(solve.matrix), len(solve.border)
     lines = [f"double solve_M[{n * n}] = {{0}}, solve_f[{n}];"]
     lines += [f"double solve_J[{k * n}] = {{0}}, solve_g[{k}];"] if k else []
-    lines += _filled("solve_M", [(i * n + j, solve.matrix[i][j]) for i in range(n) for j in range(i + 1)], writer)
+    lines += _filled("solve_M", [(j * n + i, solve.matrix[i][j]) for i in range(n) for j in range(i + 1)], writer)
     lines += _filled("solve_J", [(m * n + i, solve.border[m][i]) for m in range(k) for i in range(n)], writer)
     lines += [f"solve_f[{i}] = {writer.value(solve.right[i])};" for i in range(n)]
     lines += [f"solve_g[{m}] = {writer.value(solve.right[n + m])};" for m in range(k)]
-    lines += [f"solve({n}, {k}, solve_M, solve_J, solve_f, solve_g);" if k else f"solve({n}, solve_M, solve_f);"]
+    lines += ["solve(solve_M, solve_J, solve_f, solve_g);" if k else "solve(solve_M, solve_f);"]
     for place, x in enumerate(solve.unknowns):
-        writer.define(x, f"solve_f[{place}]" if place < n else f"solve_g[{place - n}]")
+        text = f"solve_f[{place}]" if place < n else f"solve_g[{place - n}]"
+        lines += [f"{elsewhere[x]} = {text};"] if x in elsewhere else []
+        writer.define(x, text)
     return lines
 
 
@@ -186,25 +242,27 @@ def _filled(array: str, entries: Sequence[tuple[int, Scalar]], writer: Writer) -
 
 
 def _wrappers(bodies: Layout, stem: str, role: Role) -> str:
-    others, result = role.others(stem), role.result
+    others, result, program = role.others(stem), role.result, bodies.program
     size = max(len(bodies.kept), 1)
+    a = ", a" if program.accelerations else ""
+    each = f", a + i*{len(program.accelerations)}" if a else ""
     states, inputs, outputs = (
         len(bodies.program.states),
         len(bodies.program.symbols.inputs),
         len(bodies.program.outputs),
     )
-    one = [f"double c[{size}];", f"{others}_constants(p, c);", f"{others}_evaluate(t, x, p, c, inputs, {result});"]
+    one = [f"double c[{size}];", f"{others}_constants(p, c);", f"{others}_evaluate(t, x{a}, p, c, inputs, {result});"]
     many = [
         f"double c[{size}];",
         f"{others}_constants(p, c);",
         "for (size_t i = 0; i < n; i++)",
-        f"    {others}_evaluate(t[i], x + i*{states}, p, c, inputs ? inputs + i*{inputs} : NULL, "
+        f"    {others}_evaluate(t[i], x + i*{states}{each}, p, c, inputs ? inputs + i*{inputs} : NULL, "
         f"{result} + i*{outputs});",
     ]
-    head = f"void {others}_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, "
+    head = f"void {others}_many(size_t n, {arguments(program, many=True)}, const double *inputs, "
     return "\n".join(
         [
-            _function(f"void {role.main(stem)}({ARGUMENTS}, const double *inputs, double *{result})", one),
+            _function(f"void {role.main(stem)}({arguments(program)}, const double *inputs, double *{result})", one),
             _function(f"{head}double *{result})", many),
         ]
     )
@@ -215,7 +273,7 @@ def _function(head: str, lines: Sequence[str]) -> str:
 
 
 def _call(op: str, arguments: list[str]) -> str:
-    if op in _PLAIN:
+    if op in _PLAIN or op.startswith("samples"):
         return f"{op}({', '.join(arguments)})"
     return _WRITTEN[op].format(*arguments)
 

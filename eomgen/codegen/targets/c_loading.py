@@ -35,12 +35,14 @@ class _Constants:
 
 def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: int) -> Functions:
     """The functions of `c_text` as Python's; the number of constants is that of its layout."""
-    states, outputs = len(program.states), len(program.outputs)
+    states, given, outputs = len(program.states), len(program.accelerations), len(program.outputs)
+    arrays = 6 if given else 5
     make, evaluate, many = (getattr(library, f"{stem}_{what}") for what in ("constants", "evaluate", "many"))
     make.argtypes, make.restype = [_ADDRESS] * 2, None
-    evaluate.argtypes, evaluate.restype = [ctypes.c_double, *[_ADDRESS] * 5], None
-    many.argtypes, many.restype = [ctypes.c_size_t, *[_ADDRESS] * 5], None
-    buffers = _Buffers(states, outputs)
+    evaluate.argtypes, evaluate.restype = [ctypes.c_double, *[_ADDRESS] * arrays], None
+    many.argtypes, many.restype = [ctypes.c_size_t, *[_ADDRESS] * arrays], None
+    buffers = _Buffers(states + given, outputs)
+    after = states * ctypes.sizeof(ctypes.c_double)  # a stands after x
 
     def constants_of(p: np.ndarray) -> _Constants:
         p, c = np.array(p, dtype=float), np.zeros(constants)
@@ -50,15 +52,19 @@ def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: i
     def one(t: float, x: Any, known: _Constants, inputs: Any) -> np.ndarray:
         own = buffers
         own.x[:] = x
-        given = None if inputs is None else np.array(inputs, dtype=float)
-        at = None if given is None else given.ctypes.data
-        evaluate(t, own.x_at, known.p_at, known.c_at, at, own.dx_at)
+        acting = None if inputs is None else np.array(inputs, dtype=float)
+        at = None if acting is None else acting.ctypes.data
+        if given:
+            evaluate(t, own.x_at, own.x_at + after, known.p_at, known.c_at, at, own.dx_at)
+        else:
+            evaluate(t, own.x_at, known.p_at, known.c_at, at, own.dx_at)
         return own.dx.copy()
 
     def all_of(t: np.ndarray, x: np.ndarray, p: np.ndarray, inputs: np.ndarray | None) -> np.ndarray:
         dx = np.empty((len(t), outputs))
         at = None if inputs is None else inputs.ctypes.data
-        many(len(t), t.ctypes.data, x.ctypes.data, p.ctypes.data, at, dx.ctypes.data)
+        parts = [np.ascontiguousarray(part) for part in np.hsplit(x, [states])] if given else [x]
+        many(len(t), t.ctypes.data, *(part.ctypes.data for part in parts), p.ctypes.data, at, dx.ctypes.data)
         return dx
 
     return Functions(constants_of, one, all_of)

@@ -11,7 +11,7 @@ _MAIN = """\
 #ifdef EOMGEN_SELFTEST
 #include <stdio.h>
 
-static const struct {{ double t, x[{x}], p[{p}], inputs[{inputs}], {result}[{size}], tolerance; int given; }} \
+static const struct {{ double t, x[{x}],{a} p[{p}], inputs[{inputs}], {result}[{size}], tolerance; int given; }} \
 vectors[] = {{
 {rows}
 }};
@@ -21,7 +21,7 @@ int main(void)
     int wrong = 0;
     for (size_t i = 0; i < sizeof vectors/sizeof *vectors; i++) {{
         double {result}[{size}], largest = 1;
-        {main}(vectors[i].t, vectors[i].x, vectors[i].p, vectors[i].given ? vectors[i].inputs : NULL, {result});
+        {main}(vectors[i].t, vectors[i].x,{given} vectors[i].p, vectors[i].given ? vectors[i].inputs : NULL, {result});
         for (int j = 0; j < {outputs}; j++)
             if (fabs(vectors[i].{result}[j]) > largest) largest = fabs(vectors[i].{result}[j]);
         for (int j = 0; j < {outputs}; j++)
@@ -47,7 +47,10 @@ def self_test(program: Program, stem: str, vectors: Sequence[Vector], role: Role
         "inputs": len(program.symbols.inputs),
         "size": len(program.outputs),
     }
+    a = len(program.accelerations)
     return _MAIN.format(
+        a=f" a[{a}]," if a else "",
+        given=" vectors[i].a," if a else "",
         rows=",\n".join(f"    {_row(vector)}" for vector in vectors),
         main=role.main(stem),
         result=role.result,
@@ -57,6 +60,6 @@ def self_test(program: Program, stem: str, vectors: Sequence[Vector], role: Role
 
 
 def _row(vector: Vector) -> str:
-    arrays = (vector.x, vector.p, vector.inputs or (), vector.result)
-    x, p, inputs, result = ("{" + (", ".join(map(repr, array)) or "0") + "}" for array in arrays)
-    return f"{{{vector.t!r}, {x}, {p}, {inputs}, {result}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"
+    arrays = (vector.x, *([vector.a] if vector.a else []), vector.p, vector.inputs or (), vector.result)
+    listed = ", ".join("{" + (", ".join(map(repr, array)) or "0") + "}" for array in arrays)
+    return f"{{{vector.t!r}, {listed}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"

@@ -11,6 +11,7 @@ from eomgen.codegen import solving
 from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
+from eomgen.codegen.targets.samples import python_samples
 from eomgen.symbolic.graph import Node
 
 SCALARS = {
@@ -36,19 +37,20 @@ ARRAYS = {
 }
 
 _SOLVED = '''
-def _solved(n, k, values):
+def _solved(values):
     """The unknowns from the lower triangle of M, J, f and g, one after the other in `values`."""
+    n, k = SIZES
     rows = n * (n + 1) // 2
     M = [values[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
     J = [values[rows + m * n : rows + (m + 1) * n] for m in range(k)]
     right = values[rows + k * n :]
-    return solve_bordered(M, J, right[:n], right[n:])
+    return solve_bordered(M, J, right[:n], right[n:], ZEROS)
 
 
-def _solved_each(n, k, values):
+def _solved_each(values):
     """The same at many states: an array of unknowns by states."""
     states = np.stack(np.broadcast_arrays(*values), axis=-1).reshape(-1, len(values))
-    return np.array([_solved(n, k, state) for state in states.tolist()]).T
+    return np.array([_solved(state) for state in states.tolist()]).T
 '''
 
 _CALLS = '''
@@ -56,16 +58,17 @@ _constants, _evaluate = _written({scalars})
 _constants_of_arrays, _evaluate_arrays = _written({arrays})
 
 
-def {main}(t, x, p, inputs=None):
+def {main}(t, x, {a}p, inputs=None):
     """{result} at one state: a list of {outputs}; inputs None: the model's own."""
-    x, p = [float(value) for value in x], [float(value) for value in p]
+    x, p = [float(value) for value in {all_x}], [float(value) for value in p]
     inputs = None if inputs is None else [float(value) for value in inputs]
     return evaluate(float(t), x, p, constants(p), inputs)
 
 
-def {others}_many(t, x, p, inputs=None):
-    """{result} at n states: t n, x n x {states}, p {parameters}, inputs None or n x {inputs} -> n x {outputs}."""
-    x, p = np.asarray(x, dtype=float), [float(value) for value in p]
+def {others}_many(t, x, {a}p, inputs=None):
+    """{result} at n states: t n, x n x {states}, {a_size}p {parameters}, inputs None or n x {inputs} -> \
+n x {outputs}."""
+    x, p = np.asarray({beside}, dtype=float), [float(value) for value in p]
     return evaluate_many(np.asarray(t, dtype=float), x, p, inputs)
 
 
@@ -100,7 +103,7 @@ np.empty((len(t), 0))
 
 def python_text(program: Program, stem: str, role: Role = RHS) -> str:
     """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many, or what the role says."""
-    bodies = layout(program)
+    bodies, given = layout(program), len(program.accelerations)
     used = sorted(_functions(program))
     written = textwrap.indent("\n".join([*_constants(bodies), "", *_evaluate(bodies)]), "    ")
     calls = _CALLS.format(
@@ -111,14 +114,18 @@ def python_text(program: Program, stem: str, role: Role = RHS) -> str:
         arrays=", ".join(ARRAYS[name] for name in used),
         outputs=len(program.outputs),
         states=len(program.states),
+        a="a, " if given else "",
+        all_x="[*x, *a]" if given else "x",
+        a_size=f"a n x {given}, " if given else "",
+        beside="np.hstack([x, a])" if given else "x",
         parameters=len(program.symbols.parameters),
         inputs=len(program.symbols.inputs),
     )
     return "\n".join(
         [
             "import math\n\nimport numpy as np\n",
-            _solving_text() if bodies.solve else "",
-            f"\ndef _written({', '.join(used)}):",
+            _solving_text(bodies.solve) if bodies.solve else "",
+            f"{python_samples(bodies)}\ndef _written({', '.join(used)}):",
             '    """The functions in the arithmetic of the functions given."""',
             "",
             written,
@@ -157,7 +164,7 @@ def files(program: Program, stem: str, description: Description) -> dict[str, st
 
 
 def _constants(bodies: Layout) -> list[str]:
-    writer = Writer(_call, bodies.names)
+    writer = Writer(bodies.calls(_call), bodies.names)
     parameters = list(bodies.program.symbols.parameters.values())
     lines = _unpacked(bodies, "p", parameters, used_symbols(bodies.kept, ())) if bodies.kept else []
     lines += _assignments(writer, [s.node for s in bodies.program.hoisted], bodies.once)
@@ -173,8 +180,8 @@ def _evaluate(bodies: Layout) -> list[str]:
     used = used_symbols(written, bodies.kept)
     given = [x for x in inputs if x in used]
     loaded = used | (used_symbols(program.defaults, bodies.kept) if given else frozenset())
-    writer = Writer(_call, _names(bodies))
-    lines = _unpacked(bodies, "x", program.states, loaded)
+    writer = Writer(bodies.calls(_call), _names(bodies))
+    lines = _unpacked(bodies, "x", program.moving, loaded)
     lines += _unpacked(bodies, "p", list(symbols.parameters.values()), loaded)
     if bodies.kept:
         lines.append(f"{_targets(_constant_names(bodies))} = c")
@@ -190,7 +197,7 @@ def _evaluate(bodies: Layout) -> list[str]:
 def _inputs(bodies: Layout, inputs: Sequence[Node]) -> list[str]:
     """All inputs from the caller, or all by the model's own expressions."""
     program = bodies.program
-    writer = Writer(_call, _names(bodies), prefix="i")
+    writer = Writer(bodies.calls(_call), _names(bodies), prefix="i")
     own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
     own += [f"{bodies.names[x]} = {writer.value(d)}" for x, d in zip(inputs, program.defaults, strict=True)]
     given = f"{_targets([bodies.names[x] for x in inputs])} = inputs"
@@ -202,7 +209,7 @@ def _solve(solve: Solve, writer: Writer, bodies: Layout) -> list[str]:
     for x in solve.unknowns:
         writer.define(x, bodies.names[x])
     unknowns = _targets([bodies.names[x] for x in solve.unknowns])
-    return [f"{unknowns} = solve({len(solve.matrix)}, {len(solve.border)}, [{values}])"]
+    return [f"{unknowns} = solve([{values}])"]
 
 
 def _unpacked(bodies: Layout, array: str, symbols: Sequence[Node], used: frozenset[Node]) -> list[str]:
@@ -242,9 +249,11 @@ def _call(op: str, arguments: list[str]) -> str:
     return f"{op}({', '.join(arguments)})"
 
 
-def _solving_text() -> str:
+def _solving_text(solve: Solve) -> str:
     text = inspect.getsource(solving)
-    return text[text.index("DEPENDENT") :] + _SOLVED
+    sizes = f"SIZES = {len(solve.matrix)}, {len(solve.border)}  # accelerations, multipliers"
+    zeros = f"ZEROS = {solve.lists!r}  # what may not be zero in the factors: (partners, reach, rows)"
+    return "\n".join([text[text.index("DEPENDENT") :], "", sizes, zeros, _SOLVED])
 
 
 TARGET = Target("numpy", python_text, files, load)

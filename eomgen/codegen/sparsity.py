@@ -1,0 +1,84 @@
+"""M, J -> Zeros: which entries of the factors of M and of J take part in a solve.
+
+M = L D L^T has entries of L where M has them and where elimination fills them in; L^-1 J^T has entries
+in a row where J has them and, along the partners, in all columns that they reach.
+Source: Davis, Direct Methods for Sparse Linear Systems (2006), chapters 3 and 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.symbolic.graph import Scalar, is_zero
+
+Row = Sequence[Scalar]
+Places = tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
+class Zeros:
+    """Where the factors are not zero.
+
+    Args:
+        partners: of each column j of L the rows i > j.
+        reach: of each row of J the columns of its row of L^-1 J^T.
+    """
+
+    partners: Places
+    reach: Places
+
+    @cached_property
+    def rows(self) -> Places:
+        """Of each column the rows of J that reach it."""
+        return tuple(tuple(m for m, row in enumerate(self.reach) if j in row) for j in range(len(self.partners)))
+
+    @property
+    def operations(self) -> int:
+        """Of M = L D L^T, L^-1 J^T and J M^-1 J^T, of that one factored, and of two solutions and what they leave."""
+        degrees = [len(partners) for partners in self.partners]
+        k = len(self.reach)
+        factor = sum(d * d + 2 * d for d in degrees)
+        border = sum(2 * degrees[j] + 5 for row in self.reach for j in row)
+        multipliers = sum(len(rows) * (len(rows) + 2) for rows in self.rows) + sum(d * d + 3 * d for d in range(k))
+        once = sum(4 * d + 2 for d in degrees) + (k and border + 2 * k * k)
+        again = (k and 2 * sum(2 * d + 1 for d in degrees) + 4 * sum(map(len, self.reach))) + once if k else 0
+        return factor + (k and border + multipliers) + once + again
+
+
+def zeros_of(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
+    """Where the factors of M, eliminated in the order of its rows, and L^-1 J^T are not zero.
+
+    Args:
+        M: symmetric, n x n; structural zeros are the number 0.
+        J: k x n.
+    """
+    n = len(M)
+    later = [{i for i in range(j + 1, n) if not is_zero(M[j][i])} for j in range(n)]
+    return _filled(later, _touched(J))
+
+
+def zeros_with_ties(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
+    """The same of M + J^T W J with any diagonal W."""
+    n, touched = len(M), _touched(J)
+    later = [{i for i in range(j + 1, n) if not is_zero(M[j][i])} for j in range(n)]
+    for row in touched:
+        for j in row:
+            later[j] |= {i for i in row if i > j}
+    return _filled(later, touched)
+
+
+def _touched(J: Sequence[Row]) -> list[set[int]]:
+    return [{i for i, x in enumerate(row) if not is_zero(x)} for row in J]
+
+
+def _filled(later: list[set[int]], reach: list[set[int]]) -> Zeros:
+    """Eliminating column j joins its partners to one another; a row that has j has its partners too."""
+    for j, partners in enumerate(later):
+        for i in partners:
+            later[i] |= {other for other in partners if other > i}
+        for row in reach:
+            if j in row:
+                row |= partners
+    return Zeros(tuple(tuple(sorted(p)) for p in later), tuple(tuple(sorted(row)) for row in reach))

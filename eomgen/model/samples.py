@@ -1,0 +1,119 @@
+"""A function of time given by samples: `{ samples = [[0, 0.1], [0.5, 0.2]], between = "cubic", ends = "rest" }`."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from eomgen.errors import ExpressionError, ModelError, Problem
+from eomgen.model.fields import FormulaRule, TextRule
+from eomgen.model.findings import Finding, Path, shown, unknown_keys
+from eomgen.symbolic.expressions import Expression, as_expression
+from eomgen.symbolic.scalar_operations import is_exact
+from eomgen.symbolic.splines import ENDS, WAYS, Sampled, spline_of
+
+MOST = 10_000  # samples of one function: more make code that is long to compile
+KEYS = ("samples", "between", "ends")
+EXAMPLE = "like samples = [[0, 0.1], [0.5, 0.2]], each time with its value"
+
+
+@dataclass(frozen=True)
+class TimeLawRule(FormulaRule):
+    """A function of time: a number, the text of an expression, or samples.
+
+    Args:
+        ways: how the function may go between samples: what is differentiated twice must be smooth.
+    """
+
+    ways: tuple[str, ...] = WAYS
+
+    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+        if isinstance(raw, Mapping) and "samples" in raw:
+            return self._sampled(raw, path, found)
+        return FormulaRule.read(self, raw, path, found)
+
+    def _sampled(self, raw: Mapping, path: Path, found: list[Finding]) -> Expression | None:
+        unknown_keys(raw, KEYS, path, found, "samples")
+        way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
+        ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
+        if way in self.ways and way != "cubic" and "ends" in raw:
+            found.append(Finding((*path, "ends"), f"'ends' is for cubics, not for {way}", "leave it out"))
+        pairs = _pairs(raw["samples"], (*path, "samples"), found)
+        if pairs is None or way is None or ends is None:
+            return None
+        times, values = zip(*pairs, strict=True)
+        text = f"{way} through {len(pairs)} samples from {_short(times[0])} to {_short(times[-1])} s"
+        return Expression.through_samples(Sampled("f(t)", spline_of(times, values, way, ends)), text)
+
+    def schema(self, definitions: dict) -> dict:
+        pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+        samples = {
+            "type": "object", "required": ["samples"], "additionalProperties": False,
+            "properties": {
+                "samples": {"type": "array", "items": pair, "minItems": 2, "maxItems": MOST},
+                "between": {"enum": list(self.ways)}, "ends": {"enum": list(ENDS)},
+            },
+        }  # fmt: skip
+        return {"anyOf": [FormulaRule.schema(self, definitions), samples]}
+
+
+def samples(times: Iterable[Any], values: Iterable[Any], between: str = "cubic", ends: str = ENDS[0]) -> Expression:
+    """A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome.
+
+    Raises:
+        ModelError: times that do not ascend, too few or too many of them, what is no number.
+    """
+    found: list[Finding] = []
+    pairs = [[_plain(t), _plain(value)] for t, value in zip(times, values, strict=True)]
+    law = TimeLawRule().read({"samples": pairs, "between": between, **_given_ends(ends)}, (), found)
+    if found:
+        raise ModelError(tuple(Problem(".".join(["samples", *map(str, f.path)]), f.what, mend=f.mend) for f in found))
+    return law
+
+
+def _given_ends(ends: str) -> dict[str, str]:
+    return {} if ends == ENDS[0] else {"ends": ends}
+
+
+def _plain(value: Any) -> Any:
+    """A number of an array as Python's own."""
+    return value.item() if hasattr(value, "item") else value
+
+
+def _pairs(raw: Any, path: Path, found: list[Finding]) -> list[tuple[Fraction, Fraction]] | None:
+    """The samples as exact numbers, times ascending."""
+    if not isinstance(raw, (list, tuple)) or not 2 <= len(raw) <= MOST:
+        told = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
+        found.append(Finding(path, f"a list of 2 to {MOST} samples is needed here, not {told}", EXAMPLE))
+        return None
+    pairs: list[tuple[Fraction, Fraction]] = []
+    for i, pair in enumerate(raw):
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+            found.append(Finding((*path, i), f"a time and a value are needed here, not {shown(pair)}", EXAMPLE))
+            return None
+        time, value = (_number(x, (*path, i, j), found) for j, x in enumerate(pair))
+        if time is None or value is None:
+            return None
+        if pairs and time <= pairs[-1][0]:
+            what = f"the times of samples ascend, but {_short(time)} comes after {_short(pairs[-1][0])}"
+            found.append(Finding((*path, i, 0), what))
+            return None
+        pairs.append((time, value))
+    return pairs
+
+
+def _number(raw: Any, path: Path, found: list[Finding]) -> Fraction | None:
+    value: Any = None
+    try:
+        value = None if isinstance(raw, bool) else as_expression(raw).evaluate({})
+    except ExpressionError as error:
+        found.append(Finding(path, error.what, "samples are plain numbers", error.column, error.length, raw=raw))
+        return None
+    if not is_exact(value):
+        found.append(Finding(path, f"samples are plain numbers, not {shown(raw)}"))
+        return None
+    return Fraction(value)
+
+
+def _short(a: Fraction) -> str:
+    return f"{float(a):g}"

@@ -1,0 +1,78 @@
+"""`--follow theta=run.csv`: a motion or an input through the samples of a file, in place of the model's own."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+from eomgen.errors import ModelError, UsageError
+from eomgen.model.part import altered
+from eomgen.model.parts import Coordinate, Input, Model
+from eomgen.model.samples import samples
+from eomgen.model.table import Table
+from eomgen.symbolic.expressions import Expression
+from eomgen.verbs.given import assignments, nearest
+
+EXAMPLE = "--follow theta=run.csv"
+LAWS = ("motion", "rate", "acceleration")
+
+
+def following(model: Model, given: Sequence[str]) -> Model:
+    """The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`.
+
+    Args:
+        given: NAME=FILE each; a CSV with the times in its first column and the values, in SI, in the column NAME, or
+            in its second.
+    Raises:
+        UsageError: no coordinate or input of that name, a dependent one, or a file without samples.
+    """
+    coordinates, inputs = dict(model.coordinates), dict(model.inputs)
+    for name, path in assignments(given, EXAMPLE):
+        if name in inputs:
+            inputs[name] = altered(inputs[name], value=_read(path, name))
+        elif name in coordinates:
+            coordinates[name] = _driven(coordinates[name], name, _read(path, name))
+        else:
+            mend = nearest(name, [*coordinates, *inputs])
+            raise UsageError(f"--follow: there is no coordinate or input '{name}'", mend=mend)
+    return altered(model, coordinates=Table[Coordinate](coordinates), inputs=Table[Input](inputs))
+
+
+def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
+    if part.dependent:
+        raise UsageError(f"--follow: coordinate '{name}' is dependent, the ties move it", mend="drive another one")
+    (way,) = [way for way in LAWS if getattr(part, way) is not None] or ["motion"]
+    own = {} if way != "motion" else {"start": None, "speed": None}
+    return altered(part, **{way: law}, **own)
+
+
+def _read(path: str, name: str) -> Expression:
+    """The samples of a file.
+
+    Raises:
+        UsageError: it cannot be read, or holds no samples.
+    """
+    try:
+        with Path(path).open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise UsageError(f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}", path) from error
+    heads = [word.strip() for word in rows.pop(0)] if rows and not _is_number(rows[0][0]) else []
+    if name not in heads and len(heads) > 2:
+        raise UsageError(f"--follow: there is no column '{name}'", path, nearest(name, heads[1:]))
+    column = heads.index(name) if name in heads else 1
+    if any(len(row) <= column for row in rows):
+        raise UsageError(f"--follow: a row has no column {column + 1}", path, mend="write a time and a value a row")
+    try:
+        return samples([row[0].strip() for row in rows], [row[column].strip() for row in rows])
+    except ModelError as error:
+        raise UsageError(f"--follow: {error.problems[0].what}", path, mend=error.problems[0].mend) from error
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,175 @@
+"""The solve along what is not zero, and long programs cut into functions: the same numbers as without."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hand_made import assembly, spring_row, symbols
+
+import eomgen
+from eomgen.codegen.program import Solve, bordered, program_of, right_hand_side
+from eomgen.codegen.rhs import compiled
+from eomgen.codegen.solving import solve_bordered
+from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
+from eomgen.codegen.targets import ALL
+from eomgen.codegen.targets.base import layout
+from eomgen.codegen.targets.parts import LONG, parts_of
+from eomgen.codegen.vectors import vectors
+from eomgen.mechanics.assembly import Assembly
+from eomgen.symbolic.functions import cos, sin
+from eomgen.symbolic.graph import is_zero
+
+each_target = pytest.mark.parametrize("target", [target.name for target in ALL])
+
+
+def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> Assembly:
+    """A plate of three coupled coordinates on legs of two each; two rows tie each leg to it, `twice` says all twice."""
+    names = [f"p{i}" for i in range(3)] + [f"l{i}{j}" for i in range(legs) for j in range(2)]
+    s = symbols(" ".join(names), "m", ties=2 * legs * (2 if twice else 1))
+    (m,), q, n = s.parameters.values(), s.q, len(names)
+    M = [[0] * n for _ in range(n)]
+    for i in range(3):
+        for j in range(3):
+            M[i][j] = 5 * m if i == j else m * cos(q[i] - q[j]) if i > j else m * cos(q[j] - q[i])
+    for i in range(3, n):
+        M[i][i] = 0 if massless else m * (2 + sin(q[i]))
+    rows = []
+    for leg in range(legs):
+        for j in range(2):
+            row = [0] * n
+            row[:3] = [sin(q[0] + leg + j), cos(q[1] * (leg + 1)), 1 + j * q[2]]
+            row[3 + 2 * leg + j] = -1 - q[3 + 2 * leg] ** 2
+            row[3 + 2 * leg + 1 - j] = q[3 + 2 * leg + j] / 4
+            rows.append(row)
+    rows += [[3 * x for x in row] for row in rows] if twice else []
+    gamma = [sum((x * u * u for x, u in zip(row, s.u, strict=True) if not is_zero(x)), start=0) for row in rows]
+    force = [-x - u / 3 for x, u in zip(q, s.u, strict=True)]
+    return assembly(s, M, [0] * n, force, J=rows, gamma=gamma)
+
+
+CASES = {
+    "legs": {"legs": 4},
+    "massless legs": {"legs": 4, "massless": True},
+    "every tie said twice": {"legs": 3, "twice": True},
+    "massless legs, every tie said twice": {"legs": 3, "massless": True, "twice": True},
+}
+each_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+
+
+def at(made: Assembly, t: float, x: tuple[float, ...], p: tuple[float, ...]):
+    """M, J, forcing and -gamma as arrays."""
+    values = [*(e for row in made.M for e in row), *(e for row in made.J for e in row), *made.forcing, *made.gamma]
+    found = compiled(program_of(values, made.symbols), "numpy")(t, x, p)
+    n, k = len(made.M), len(made.J)
+    M, J, f, gamma = np.split(found, np.cumsum([n * n, k * n, n]))
+    return M.reshape(n, n), J.reshape(k, n), f, -gamma
+
+
+@each_target
+@each_case
+def test_accelerations_are_those_of_the_whole_system(target, case):
+    """[[M, -J^T], [J, 0]] [a; lam] = [f; g] by numpy's least squares, no zeros used."""
+    made = legs_under_a_plate(**case)
+    n, k = len(made.M), len(made.J)
+    rhs = compiled(right_hand_side(made), target)
+    for seed in range(5):
+        x = np.random.default_rng(seed).uniform(-0.6, 0.6, size=2 * n)
+        M, J, f, g = at(made, 0.0, x, [1.7])
+        whole = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+        a = np.linalg.lstsq(whole, np.concatenate([f, g]), rcond=1e-11)[0][:n]
+        assert rhs(0.0, x, [1.7])[n:] == pytest.approx(a, rel=1e-8, abs=1e-8)
+
+
+@each_target
+@each_case
+def test_emitted_solves_agree_with_fifty_digits(target, case):
+    """dx of every case."""
+    program = right_hand_side(legs_under_a_plate(**case))
+    function = compiled(program, target)
+    for v in vectors(program):
+        assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
+
+
+@each_case
+def test_nothing_is_lost_along_the_lists(case):
+    """A solve that knows its zeros and one that knows none give the same a, whichever of the two factors it takes."""
+    made = legs_under_a_plate(**case)
+    solve = bordered(made)
+    x = np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
+    M, J, f, g = at(made, 0.0, x, [0.9])
+    order = [made.symbols.a.index(a) for a in solve.unknowns[: len(f)]]
+    lower = [[M[i, j] for j in order[: row + 1]] for row, i in enumerate(order)]
+    arguments = lower, J[:, order].tolist(), f[order].tolist(), g.tolist()
+    known, unknown = solve_bordered(*arguments, solve.lists), solve_bordered(*arguments)
+    assert known[: len(f)] == pytest.approx(unknown[: len(f)], rel=1e-10, abs=1e-10)
+
+
+def test_the_lists_hold_what_elimination_fills_in():
+    """L of M = L D L^T and L^-1 J^T, by numpy at random numbers, are not zero there, and nowhere else."""
+    rng = np.random.default_rng(4)
+    mask = rng.random((9, 9)) < 0.2
+    mask = np.tril(mask | mask.T, -1)
+    touched = rng.random((3, 9)) < 0.25
+    M = [[int(i == j or mask[max(i, j), min(i, j)]) for j in range(9)] for i in range(9)]
+    rows = touched.astype(int).tolist()
+    half = np.where(mask, rng.uniform(0.1, 1, (9, 9)), 0)
+    for zeros, W in ((zeros_of(M, rows), 0.0), (zeros_with_ties(M, rows), 1.0)):
+        J = np.where(touched, rng.uniform(0.1, 1, (3, 9)), 0)
+        numbers = half + half.T + 20 * np.eye(9) + W * J.T @ J
+        C = np.linalg.cholesky(numbers)
+        found = [tuple(i for i in range(j + 1, 9) if abs(C[i, j]) > 1e-14) for j in range(9)]
+        reach = [tuple(np.flatnonzero(np.abs(row) > 1e-14)) for row in np.linalg.solve(C, J.T).T]
+        assert zeros.partners == tuple(found) and zeros.reach == tuple(reach)
+
+
+def test_a_leg_more_costs_what_a_leg_costs():
+    """Legs meet only in the plate: L fills in nowhere, and without the multipliers the operations grow in step."""
+    degrees = [sum(map(len, bordered(legs_under_a_plate(n)).zeros[0].partners)) for n in (2, 4, 8)]
+    assert degrees == [3, 3, 3]
+    assert [len(reach) for reach in bordered(legs_under_a_plate(4)).zeros[0].reach] == [5] * 8
+
+
+def long_row(n: int) -> Assembly:
+    """A full row of springs whose forces are long: solved in a loop, with more than LONG operations before it."""
+    made = spring_row(n)
+    q, u = made.symbols.q, made.symbols.u
+    x, forces = q[0], []
+    for i in range(LONG // 4):
+        x = sin(x + i) * cos(q[i % n]) + u[i % n] / 7
+        forces.append(x)
+    forcing = tuple(f + sum(forces[i::n], start=0) for i, f in enumerate(made.forcing))
+    return assembly(made.symbols, made.M, [0] * n, forcing)
+
+
+@each_target
+@pytest.mark.parametrize("n", [3, 20], ids=["written out", "solve"])
+def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):
+    """Parts hand each other what they share: dx against 50 digits."""
+    program = right_hand_side(long_row(n))
+    assert len(parts_of(layout(program)).all) > 2
+    assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
+    function = compiled(program, target)
+    for v in vectors(program, count=2):
+        assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
+
+
+def test_a_tree_of_twenty_bodies_in_space_is_cut_and_runs():
+    """Twenty hinged bodies, axes of all directions: C = numpy, with inputs given or not."""
+    text = ["eomgen = 1", 'space = "space"', "parameters = { g = 9.81, l = 0.3 }", "[inputs]", 'F = "sin(t)"']
+    text += ["[coordinates]", *(f"q{i} = {0.1 * (i % 7) - 0.3:.1f}" for i in range(20))]
+    for i in range(20):
+        on = f'on = "b{(2 * i) // 3}.end", ' if i else ""
+        axis = ([1, 0, 0], [0, 1, 0], [1, 2, 2])[i % 3]
+        drive = ', torque = "F"' if i == 12 else ""
+        text += [f"[bodies.b{i}]", f"mass = {1 + i % 3}", 'center = [0.02, 0, "l/2"]', "inertia = [0.02, 0.03, 0.01]",
+                 'points = { end = [0, 0, "l"] }',
+                 f'joint = {{ kind = "revolute", {on}axis = {axis}, angle = "q{i}"{drive} }}']  # fmt: skip
+    text += ["[forces.weight]", 'kind = "gravity"', 'acceleration = [0, 0, "-g"]']
+    equations = eomgen.derive(eomgen.loads("\n".join(text)))
+    assert parts_of(layout(equations.program)).all
+    in_c, in_numpy = equations.rhs("c"), equations.rhs("numpy")
+    x = in_c.x0 + np.random.default_rng(3).normal(size=40) / 3
+    for inputs in ((), (0.7,)):
+        found, right = in_c(0.4, x, in_c.p0, inputs), in_numpy(0.4, x, in_c.p0, inputs)
+        assert np.abs(found - right).max() <= 1e-10 * np.abs(right).max()
+    assert np.abs(in_c(0.4, x, in_c.p0) - in_c(0.4, x, in_c.p0, (0.7,))).max() > 1e-3
