@@ -5,6 +5,7 @@
     equations.certify().ok                    # Certificate: the proof
     equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
+    eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
     eomgen.statics(model)                     # Statics: reactions by virtual work and by equilibrium, diagrams
     eomgen.kinematics(model, at="t = 2")      # Kinematics: centres of rotation, velocities, accelerations, plot
@@ -37,8 +38,10 @@ _HOMES = {
         "Unknown",
     ),
     "model.reader": ("load", "loads"),
+    "model.samples": ("samples",),
+    "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
-    "pipeline": ("derive", "simulate"),
+    "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),
     "report.statics.result": ("Statics", "statics"),

@@ -12,6 +12,7 @@ from eomgen.shell import Verbs, deliver, reading
 from eomgen.version import __version__
 
 if TYPE_CHECKING:
+    from eomgen.model.parts import Model
     from eomgen.verbs.outcome import Outcome
 
 FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
@@ -19,6 +20,17 @@ FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
+
+
+FOLLOW = click.option("--follow", multiple=True, metavar="NAME=FILE",
+                      help="Drive a coordinate or an input through the samples of a CSV file.")  # fmt: skip
+
+
+def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
+    """The model, coordinates and inputs through the samples of files."""
+    from eomgen.verbs.follow import following
+
+    return following(declared, follow) if follow else declared
 
 
 def _common(function: Callable[..., int]) -> Callable[..., int]:
@@ -94,12 +106,13 @@ def derive(
 
 @main.command()
 @_common
-def solve(model: str, wants_json: bool, output: str | None) -> int:
+@FOLLOW
+def solve(model: str, wants_json: bool, output: str | None, follow: tuple[str, ...]) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve as solved
 
     with reading(model) as declared:
-        outcome = solved(declared)
+        outcome = solved(_followed(declared, follow))
     return deliver(outcome, wants_json, output)
 
 
@@ -108,9 +121,11 @@ def solve(model: str, wants_json: bool, output: str | None) -> int:
 @click.option("--at", metavar="EQUATION",
               help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".')  # fmt: skip
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
+@FOLLOW
 def reactions(
-    model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...]
-) -> int:
+    model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...],
+    follow: tuple[str, ...],
+) -> int:  # fmt: skip
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
@@ -119,7 +134,7 @@ def reactions(
     from eomgen.verbs.reactions import reactions as found
 
     with reading(model) as declared:
-        outcome = found(declared, at=at, from_rest=from_rest)
+        outcome = found(_followed(declared, follow), at=at, from_rest=from_rest)
     return deliver(outcome, wants_json, output)
 
 
@@ -174,7 +189,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 
 @main.command()
 @_written
-@click.option("--about", type=click.Choice(["equilibrium", "start"]),
+@click.option("--about", type=click.Choice(["equilibrium", "start", "steady"]),
               help="The nearest place of rest, or the start, a steady motion.  [default: see [linearize]]")  # fmt: skip
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
@@ -198,17 +213,33 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
 @click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
 @click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of a step.")
 @click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of a step.")
+@click.option("--method", default="DOP853", show_default=True, metavar="NAME",
+              help="DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.")  # fmt: skip
+@click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
+@click.option("--stabilize", type=click.Choice(["projection", "baumgarte", "none"]), default="projection",
+              show_default=True, help="What keeps ties closed.")  # fmt: skip
+@click.option("--project-every", type=click.IntRange(min=1), metavar="STEPS",
+              help="Project at each so many steps.  [default: where a tie opens by atol/10]")  # fmt: skip
+@click.option("--baumgarte", nargs=2, type=float, default=(10.0, 10.0), show_default=True, metavar="ALPHA BETA",
+              help="Rates of Baumgarte's rows [1/s].")  # fmt: skip
+@FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
-def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -> int:
+def simulate(
+    model: str, wants_json: bool, output: str | None, method: str, rtol: float, atol: float, stabilize: str,
+    project_every: int | None, baumgarte: tuple[float, float], follow: tuple[str, ...], **options: Any,
+) -> int:  # fmt: skip
     """Integrate the motion from the start values.
 
-    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns.
+    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns. Ties are
+    kept closed, and how well, and how well energy is kept, is said.
     """
+    from eomgen.simulation.stepping import Stepping
     from eomgen.verbs.simulate import simulate as simulated
 
+    options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=baumgarte)
     with reading(model) as declared:
-        outcome = simulated(declared, output=output, **options)
+        outcome = simulated(_followed(declared, follow), output=output, **options)
     if output and not wants_json:
         click.echo(outcome.text, err=True, nl=False)
         return deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)
@@ -220,13 +251,23 @@ def simulate(model: str, wants_json: bool, output: str | None, **options: Any) -
 @JSON
 @click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True, help="Language.")
 @click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
-def codegen(model: str, wants_json: bool, target: str, output: str) -> int:
+@FOLLOW
+@click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
+@click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
+@click.option("--baumgarte", nargs=2, type=float, metavar="ALPHA BETA",
+              help="Closing rows that pull back what has opened, with these rates [1/s].")  # fmt: skip
+def codegen(
+    model: str, wants_json: bool, target: str, output: str, inverse: bool, actuated: str | None,
+    follow: tuple[str, ...], baumgarte: tuple[float, float] | None,
+) -> int:  # fmt: skip
     """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem
+    names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
     with reading(model) as declared:
-        outcome = generated(declared, stem=stem, origin=Path(model).name, target=target, directory=output)
+        outcome = generated(_followed(declared, follow), stem=stem, origin=Path(model).name, target=target,
+                            directory=output, inverse=inverse, actuated=names, baumgarte=baumgarte)  # fmt: skip
     return deliver(outcome, wants_json)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,17 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.certificate import Certificate, certify
+from eomgen.codegen.inverse import InverseDynamics
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.inverse import inverse_of
 from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
+from eomgen.symbolic.growing import growing
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
@@ -83,7 +86,8 @@ class Equations:
             ModelError: a free coordinate moves no mass.
         """
         refuse_massless(self.graph)
-        return right_hand_side(with_accelerations(self.system, self.graph), self.system.inputs)
+        with growing():
+            return right_hand_side(with_accelerations(self.system, self.graph), self.system.inputs)
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -126,6 +130,18 @@ class Equations:
         """
         names, program = self.reactions_program
         return ReactionFunction(names, compiled(program, target))
+
+    def inverse_dynamics(self, actuated: Sequence[str] = ()) -> InverseDynamics:
+        """The forces and torques that given accelerations take, as expressions and as code.
+
+        Args:
+            actuated: coordinates, speeds, inputs, or bodies in their joint, one for each degree of freedom; () for all
+                speeds of a system without closing ties.
+        Raises:
+            UsageError: an unknown name; too few or too many actuators.
+            DerivationError: Coulomb friction; an input that does not act linearly.
+        """
+        return InverseDynamics(inverse_of(self.system, actuated))
 
     @cached_property
     def derivation(self) -> Derivation:

@@ -17,7 +17,7 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
 from eomgen.mechanics.places import Located
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.ties import holds_identically
@@ -97,19 +97,30 @@ class Journey:
     @cached_property
     def numbers(self) -> dict[Node, float]:
         """t, q and u at the start; {} where parameters are missing."""
-        symbols = self.situation.system.symbols
+        symbols, found = self.situation.system.symbols, self._consistent
+        if found is None:
+            return {}
+        return {symbols.t: 0.0} | {node: found.values[node.name] for node in (*symbols.q, *symbols.u)}
+
+    @cached_property
+    def _consistent(self) -> Start | None:
+        """The start at which the ties hold; None where parameters are missing."""
+        system = self.situation.system
         try:
             numeric_parameters(self.model)
-            values = start_state(self.situation.system, start={u.name: 0.0 for u in symbols.u} if self.at_rest else {})
+            return start_of_motion(system, start={u.name: 0.0 for u in system.symbols.u} if self.at_rest else {})
         except MissingValues:
-            return {}
-        return {symbols.t: 0.0} | {node: values[node.name] for node in (*symbols.q, *symbols.u)}
+            return None
 
     @cached_property
     def start(self) -> dict[Node, Scalar]:
         """t, q and u at the start as scalars of the parameters; {} where a coordinate has no closed form there."""
-        known = placed(self.situation, start_of(self.situation, at_rest=self.at_rest), self.numbers)
-        return known if all(q in known for q in self.situation.system.symbols.q) else {}
+        symbols, found = self.situation.system.symbols, self._consistent
+        moved = {change.name for change in found.changes} if found is not None else set()
+        exact = start_of(self.situation, at_rest=self.at_rest)
+        exact = {x: value for x, value in exact.items() if x.name not in moved}
+        known = placed(self.situation, exact, self.numbers)
+        return known if all(x in known for x in (*symbols.q, *symbols.u)) else {}
 
     # -- on the way ------------------------------------------------------------------------------
 

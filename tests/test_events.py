@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from eomgen.simulation.events import Events
-from eomgen.simulation.stepping import METHODS, Run, Stepping, march
+from eomgen.simulation.solvers import METHODS
+from eomgen.simulation.stepping import Run, Stepping, march
 
 G = 9.81
 

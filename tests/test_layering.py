@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
     ("version", "errors"), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
     ("proof",), ("certificate", "instants", "situation"), ("moments",), ("journey",), ("answers", "velocities"),
-    ("equations",), ("pipeline",), ("verbs", "notebook"), ("shell",), ("cli",), ("__main__",),
+    ("equations",), ("running",), ("pipeline",), ("verbs", "notebook"), ("shell",), ("cli",), ("__main__",),
 )  # fmt: skip
 RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}
 

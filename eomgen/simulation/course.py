@@ -14,6 +14,7 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
+from eomgen.mechanics.stabilization import Rates
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
@@ -70,9 +71,9 @@ class Course:
         return _decided(self, crossing.t, values, pieces, before=stage.configuration, ended=ended)
 
 
-def course_of(model: Model, p: np.ndarray, target: str | None = None) -> Course:
-    """The stages of a model, none of them made yet."""
-    return Course(model, Stages(model, p, target))
+def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: Rates | None = None) -> Course:
+    """The stages of a model, none of them made yet; rates: of Baumgarte's rows."""
+    return Course(model, Stages(model, p, target, rates))
 
 
 def at_start(

@@ -119,11 +119,16 @@ def _dip(value: Callable[[float], float], t: np.ndarray, g: np.ndarray) -> tuple
 
 
 def _root(value: Callable[[float], float], before: float, after: float) -> float:
-    """Where the function is zero between two instants."""
+    """Where the function is zero between two instants, or just past it: never where it is still above."""
     from scipy.optimize import brentq
 
     if not value(before) > 0:
         return before
     if not value(after) < 0:
         return after
-    return float(brentq(value, before, after, xtol=1e-12 * (after - before), rtol=RELATIVE))
+    xtol = 1e-12 * (after - before)
+    root = float(brentq(value, before, after, xtol=xtol, rtol=RELATIVE))
+    step = float(xtol + RELATIVE * abs(root))
+    while root < after and value(root) > 0:
+        root, step = min(float(after), root + step), 2 * step
+    return root

@@ -36,7 +36,29 @@ class Independence:
         listed = ", ".join(f"'{name}'" for name in names)
         return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
 
+    def least(self, t: np.ndarray, x: np.ndarray, lengths: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """(the same singular value at n states, n x 1, the greatest lengths of the rows, which it is against).
+
+        Args:
+            lengths: the greatest so far, k x 1.
+        """
+        J = self.J(t, x)
+        greatest: np.ndarray = np.maximum(lengths, _lengths(J))
+        return np.linalg.svd(J / _divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
+
+    def J(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """J at n states, n x k x nu; 0 where it has no value."""
+        return np.nan_to_num(self.rows(t, x)).reshape(len(t), len(self.ties), -1)
+
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
-        J = np.nan_to_num(self.rows(t, x)).reshape(len(t), len(self.ties), -1)
-        lengths = np.max(np.linalg.norm(J, axis=2, keepdims=True), axis=0, initial=0.0)
-        return J / np.where(lengths > 0, lengths, 1.0)
+        J = self.J(t, x)
+        return J / _divisor(_lengths(J))
+
+
+def _lengths(J: np.ndarray) -> np.ndarray:
+    found: np.ndarray = np.max(np.linalg.norm(J, axis=2, keepdims=True), axis=0, initial=0.0)
+    return found
+
+
+def _divisor(lengths: np.ndarray) -> np.ndarray:
+    return np.where(lengths > 0, lengths, 1.0)

@@ -10,7 +10,10 @@ import numpy as np
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
 from eomgen.simulation.events import Events
-from eomgen.simulation.stepping import METHODS, MOST_STEPS, Stepping, march
+from eomgen.simulation.passages import Flow, Nearness, Passage, march_across
+from eomgen.simulation.projection import Projection
+from eomgen.simulation.solvers import METHODS, Slope
+from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Stepping, march
 from eomgen.simulation.trajectory import Phase, Trajectory
 
 SAMPLES = 1001
@@ -35,6 +38,12 @@ def integrate(
     gaps: Function | None = None,
     events: Events | None = None,
     most_steps: int = MOST_STEPS,
+    projection: Projection | None = None,
+    stabilization: str = "projection",
+    every: int | None = None,
+    slope: Slope | None = None,
+    nearness: Nearness | None = None,
+    knots: tuple[float, ...] = (),
 ) -> Trajectory:
     """The motion from a start, x' = rhs(t, x, p).
 
@@ -48,22 +57,31 @@ def integrate(
         samples: how many instants, evenly spaced; the instants themselves; or None: the integrator's own steps.
         energy: (t n, x n x states) -> (T, V), n each [J].
         conservative: whether T + V should stay; if not, no drift is reported.
-        gaps: (t n, x n x states) -> phi of the closing ties, n x k.
+        gaps: (t n, x n x states) -> phi of the closing ties, n x k; not needed beside a projection.
         events: functions that end the run where they fall to zero.
-        most_steps: after so many it gives up.
+        most_steps, stabilization, every: as of Stepping.
+        projection: onto the ties; by it these are also measured.
+        slope: (t, x) -> df/dx for the implicit methods; None: by differences.
+        knots: instants across which no step goes, ascending.
+        nearness: to singular positions, across which the motion is carried; None: nobody looks.
     Raises:
         UsageError: a start, parameter, tolerance, method or time that is missing or makes no sense.
     """
     start, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
     x0, p = _vector("x0", rhs.x0 if x0 is None else x0), _vector("p", rhs.p0 if p is None else p)
-    _check(start, end, rtol, atol, method)
+    how = Stepping(method, rtol, atol, most_steps, stabilization, every, knots=knots)
+    check(start, end, how)
     instants = instants_of(samples, start, end)
 
-    def f(t: float, x: np.ndarray) -> np.ndarray:
-        return rhs(t, x, p) if inputs is None else rhs(t, x, p, inputs(t))
-
-    how = Stepping(method, rtol, atol, most_steps)
-    run = march(f, (start, end), x0, how=how, instants=instants, events=events, spheres=rhs.spheres)
+    rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
+    f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
+    flow, passages = Flow(f, how, rhs.spheres, projection, slope), tuple[Passage, ...]()
+    if nearness is None:
+        run = march(f, (start, end), x0, how=how, instants=instants, events=events, spheres=rhs.spheres,
+                    projection=projection, slope=slope)  # fmt: skip
+    else:
+        run, passages = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
+    gap, gap_rate = _open(run.t, run.x, projection, gaps)
     T, V = (None, None) if energy is None else _rows(energy(run.t, run.x), run.t)
     return Trajectory(
         t=run.t,
@@ -72,13 +90,25 @@ def integrate(
         speeds=rhs.speeds,
         energy=None if T is None or V is None else T + V,
         drift=None if T is None or V is None or not conservative else drift_of(T, V),
-        gap=None if gaps is None else float(np.max(np.abs(gaps(run.t, run.x)), initial=0.0)),
+        gap=gap,
+        gap_rate=gap_rate,
         phases=(Phase(start, run.end, run.message, (0, len(run.t))),),
         status=run.status,
         message=run.message,
         steps=run.steps,
         evaluations=run.evaluations,
+        passages=tuple((passage.start, passage.end) for passage in passages),
     )
+
+
+def _open(
+    t: np.ndarray, x: np.ndarray, projection: Projection | None, gaps: Function | None
+) -> tuple[float | None, float | None]:
+    """The largest |phi| and |J u + sigma|; None where nothing closes or nobody measures it."""
+    if projection is not None:
+        gap, gap_rate = np.max(projection.open(t, x), axis=0, initial=0.0)
+        return float(gap), float(gap_rate) if projection.speeds else None
+    return None if gaps is None else float(np.max(np.abs(gaps(t, x)), initial=0.0)), None
 
 
 def drift_of(T: np.ndarray, V: np.ndarray) -> float:
@@ -122,10 +152,20 @@ def _vector(what: str, values: Any) -> np.ndarray:
     return vector
 
 
-def _check(start: float, end: float, rtol: float, atol: float, method: str) -> None:
+def check(start: float, end: float, how: Stepping) -> None:
+    """Refuses what makes no sense.
+
+    Raises:
+        UsageError: the time, a tolerance, the method, or how ties are kept closed.
+    """
     if not (np.isfinite(start) and np.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
-    if not (rtol > 0 and atol > 0 and np.isfinite(rtol) and np.isfinite(atol)):
-        raise UsageError(f"tolerances must be positive, not rtol = {rtol:g}, atol = {atol:g}")
-    if method not in METHODS:
-        raise UsageError(f"unknown method '{method}'", mend=f"methods are {', '.join(METHODS)}")
+    if not (how.rtol > 0 and how.atol > 0 and np.isfinite(how.rtol) and np.isfinite(how.atol)):
+        raise UsageError(f"tolerances must be positive, not rtol = {how.rtol:g}, atol = {how.atol:g}")
+    if how.method not in METHODS:
+        raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join(METHODS)}")
+    if how.stabilization not in STABILIZATIONS:
+        raise UsageError(f"unknown way to keep ties closed: '{how.stabilization}'",
+                         mend=f"ways are {', '.join(STABILIZATIONS)}")  # fmt: skip
+    if how.every is not None and how.every < 1:
+        raise UsageError(f"projection at every {how.every} steps makes no sense", mend="give 1 or more")

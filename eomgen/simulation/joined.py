@@ -14,12 +14,8 @@ from eomgen.simulation.stretch import Stretch
 from eomgen.simulation.trajectory import Phase, Trajectory
 
 
-def joined(course: Course, stretches: Sequence[Stretch], samples: int | Sequence[float] | None) -> Trajectory:
-    """The motion through all phases; a coordinate that a phase does not have is 0 in it.
-
-    Args:
-        samples: as they were asked for: instants, a number of them, or None.
-    """
+def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
+    """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
     coordinates, speeds = _union(stretches)
     columns = [stretch.stage.columns(stretch.run.t, stretch.run.x) for stretch in stretches]
     tables = [
@@ -28,14 +24,16 @@ def joined(course: Course, stretches: Sequence[Stretch], samples: int | Sequence
     ]  # fmt: skip
     energies = [stretch.stage.energies(stretch.run.t, stretch.run.x) for stretch in stretches]
     ends = np.cumsum([0, *(len(stretch.run.t) for stretch in stretches)])
-    full = Trajectory(
+    gap, gap_rate = _open(stretches)
+    return Trajectory(
         t=np.concatenate([stretch.run.t for stretch in stretches]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
         energy=np.concatenate([T + V for T, V in energies]),
         drift=_drift(stretches, energies),
-        gap=_gap(stretches),
+        gap=gap,
+        gap_rate=gap_rate,
         phases=tuple(Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.stage)
                      for s, first, last in zip(stretches, ends[:-1], ends[1:], strict=True)),
         status=stretches[-1].run.status,
@@ -43,7 +41,6 @@ def joined(course: Course, stretches: Sequence[Stretch], samples: int | Sequence
         steps=sum(stretch.run.steps for stretch in stretches),
         evaluations=sum(stretch.run.evaluations for stretch in stretches),
     )  # fmt: skip
-    return full if samples is None or isinstance(samples, (int, np.integer)) else _at(full, np.asarray(samples))
 
 
 def _union(stretches: Sequence[Stretch]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -59,18 +56,38 @@ def _drift(stretches: Sequence[Stretch], energies: Sequence[np.ndarray]) -> floa
     return max(kept, default=None)
 
 
-def _gap(stretches: Sequence[Stretch]) -> float | None:
-    found = [s.stage.gaps(s.run.t, s.run.x) for s in stretches if s.stage.system.ties.closing]
-    return max(found, default=None)
+def _open(stretches: Sequence[Stretch]) -> tuple[float | None, float | None]:
+    """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
+    found = [s.stage.projection.open(s.run.t, s.run.x) for s in stretches if s.stage.projection is not None]
+    if not found:
+        return None, None
+    gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)
+    return float(gap), float(gap_rate)
 
 
-def _at(full: Trajectory, instants: np.ndarray) -> Trajectory:
-    """The rows at the instants asked for, and where the run ended early also its last."""
-    kept = np.isin(full.t, instants) | (np.arange(len(full.t)) == len(full.t) - 1 if not full.ok else False)
+def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajectory:
+    """The motion with one row an instant, at the instants asked for; one that ended early keeps its last row.
+
+    Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
+    """
+    if not len(full.t):
+        return full
+    kept = np.append(np.diff(full.t) > 0, True)
+    if samples is not None and not isinstance(samples, (int, np.integer)):
+        kept &= np.isin(full.t, np.asarray(samples))
+        kept[-1] |= full.status != "finished"
     before = np.concatenate([[0], np.cumsum(kept)])
-    phases = tuple(replace(p, rows=(int(before[p.rows[0]]), int(before[p.rows[1]]))) for p in full.phases)
+    columns = full.columns()
+
+    def of(phase: Phase) -> Phase:
+        begin, end = phase.rows
+        first, last = ({n: float(c[i]) for n, c in columns.items()} if end > begin else {} for i in (begin, end - 1))
+        return replace(phase, rows=(int(before[begin]), int(before[end])), first=first, last=last)
+
     energy = None if full.energy is None else full.energy[kept]
-    return replace(full, t=full.t[kept], x=full.x[kept], energy=energy, phases=phases)
+    reactions = {name: column[kept] for name, column in full.reactions.items()}
+    return replace(full, t=full.t[kept], x=full.x[kept], energy=energy, reactions=reactions,
+                   phases=tuple(map(of, full.phases)))  # fmt: skip
 
 
 def told(course: Course, stretch: Stretch) -> str:

@@ -17,7 +17,7 @@ from eomgen.simulation.trajectory import Trajectory
 AGREE = 1e-7  # of the motion's size: a difference between both integrations that is none
 STEPS = 100  # tolerances of one step by which they may differ
 NEAR = 0.02  # of a determinant's largest value: how small a minimum may be the sign of a zero
-LAST = 1e-2  # of a determinant, against its rows: where it is larger, the end of a run has another reason
+LAST = 1e-2  # of a determinant's largest value: where it is larger, the end of a run has another reason
 
 Determinants = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Again = Callable[[float, np.ndarray, float], np.ndarray]
@@ -30,7 +30,7 @@ def ended_where_singular(
     """The run, cut where a vanishing determinant led it astray.
 
     Args:
-        determinants: (t n, x n x states) -> n x k, against the lengths of their rows.
+        determinants: (t n, x n x states) -> n x k.
         what: of each determinant, what is not determined where it vanishes: "'pin' does not determine 'phi'".
         again: (t0, x0, t1) -> x there, by a much finer integration; nan where it does not get there.
         rtol: of the run.
@@ -40,11 +40,14 @@ def ended_where_singular(
         return run
     with np.errstate(all="ignore"):
         values = np.nan_to_num(np.reshape(determinants(run.t, run.x), (len(run.t), len(what))))
+    largest = np.max(np.abs(values), axis=0)
+    values = values / np.where(largest > 0, largest, 1.0)
     allowed = max(AGREE, STEPS * rtol)
-    for i, number in sorted((i, k) for k in range(len(what)) for i in _zeros(values[:, k])):
+    zeros = sorted((i, k) for k in range(len(what)) for i in _zeros(values[:, k]) if not _carried(run, i))
+    for i, number in zeros:
         if not _passed(run, i, again, allowed):
             return _cut(run, i, _instant(run.t, values[:, number], i), what[number], place)
-    if run.ok or run.status == "interrupted":
+    if run.ok or run.status in ("interrupted", "singular"):
         return run
     k = int(np.argmin(abs(values[-1])))
     flipped = np.any(np.diff(np.sign(values[-3:, k])))
@@ -60,6 +63,12 @@ def _zeros(values: np.ndarray) -> list[int]:
     inner = size[1:-1]
     minima = np.flatnonzero((inner <= size[:-2]) & (inner < size[2:]) & (inner < NEAR * np.max(size, initial=0)))
     return sorted({*flips.tolist(), *minima.tolist()})
+
+
+def _carried(run: Trajectory, i: int) -> bool:
+    """Whether the motion after the i-th instant was carried across a singular position."""
+    start, end = float(run.t[i]), float(run.t[min(i + 2, len(run.t) - 1)])
+    return any(first <= end and last >= start for first, last in run.passages)
 
 
 def _passed(run: Trajectory, i: int, again: Again, allowed: float) -> bool:

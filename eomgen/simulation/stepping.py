@@ -3,31 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.spheres import Places, on_spheres
+from eomgen.codegen.spheres import Places
 from eomgen.simulation.events import Crossing, Events, Watch
+from eomgen.simulation.holding import Hold
+from eomgen.simulation.knots import step
+from eomgen.simulation.projection import Projection
+from eomgen.simulation.solvers import NotFinite, Rate, Slope, put, solver_of
 from eomgen.simulation.trajectory import Status
 
-METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 MOST_STEPS = 10_000_000
+LOOKED_OUT = -1  # the index of a crossing that a lookout found
+SHARE = 0.1  # of the tolerances of a run: those of one step
+LEAST = 2.3e-14  # rtol, below which rounding is larger
+STABILIZATIONS = ("projection", "baumgarte", "none")
 
-Rate = Callable[[float, np.ndarray], np.ndarray]
 Dense = Callable[[], Callable[[Any], np.ndarray]]
 
 
 @dataclass(frozen=True)
 class Stepping:
-    """How an integrator goes: its method, its tolerances of one step, and after how many steps it gives up."""
+    """How an integrator goes.
+
+    Args:
+        method: one of METHODS.
+        rtol, atol: tolerances of one step.
+        most_steps: after so many it gives up.
+        stabilization: what keeps the ties closed, one of STABILIZATIONS: "projection" puts states back onto them,
+            "baumgarte" lets the equations pull towards them, "none" leaves them alone.
+        every: project at each so many steps; None: where a tie is open by more than atol.
+        rates: alpha and beta of Baumgarte's rows [1/s].
+        knots: instants across which no step goes, ascending [s].
+    """
 
     method: str = "DOP853"
     rtol: float = 1e-9
     atol: float = 1e-9
     most_steps: int = MOST_STEPS
+    stabilization: str = "projection"
+    every: int | None = None
+    rates: tuple[float, float] = (10.0, 10.0)
+    knots: tuple[float, ...] = ()
+
+    def of_one_step(self) -> Stepping:
+        """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
+        return replace(self, rtol=max(SHARE * self.rtol, LEAST), atol=SHARE * self.atol)
+
+    def hold(self, spheres: Sequence[Places], projection: Projection | None) -> Hold:
+        """What keeps the states of one run where they belong; the norms of quaternions always."""
+        return Hold(spheres, projection if self.stabilization == "projection" else None, self.atol, self.every)
 
 
 @dataclass(frozen=True)
@@ -51,8 +80,25 @@ class Run:
     crossing: Crossing | None = None
 
 
-class _NotFinite(ArithmeticError):
-    """An implicit method met a right-hand side without a value."""
+class Lookout(Protocol):
+    """What ends a run by the state at the end of each step, without a look into the step where all is calm."""
+
+    def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Dense) -> Crossing | None:
+        """A crossing of index LOOKED_OUT in the step; `dense()` gives the state at instants in it."""
+
+
+@dataclass(frozen=True)
+class _Watches:
+    """Both kinds of what ends a run."""
+
+    watch: Watch | None
+    lookout: Lookout | None
+
+    def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Dense) -> Crossing | None:
+        """The first crossing in a step."""
+        one = None if self.watch is None else self.watch.step(t_old, t_new, dense())
+        other = None if self.lookout is None else self.lookout.step(t_old, t_new, x_new, dense)
+        return min((each for each in (one, other) if each is not None), key=lambda each: each.t, default=None)
 
 
 @dataclass(frozen=True)
@@ -60,6 +106,7 @@ class _Rows:
     """The rows of a run as they come: at the instants asked for, or (None) at the integrator's own steps."""
 
     instants: np.ndarray | None
+    hold: Hold
     t: list[np.ndarray]
     x: list[np.ndarray]
 
@@ -70,8 +117,9 @@ class _Rows:
             return
         first, last = np.searchsorted(self.instants, span, side="right")
         if last > first:
-            self.t.append(self.instants[first:last])
-            self.x.append(dense()(self.instants[first:last]).T)
+            t = self.instants[first:last]
+            self.t.append(t)
+            self.x.append(self.hold.rows(t, dense()(t).T))
 
     def close(self, t: float, x: np.ndarray) -> None:
         """The state in which a run ended early, unless it is there."""
@@ -85,72 +133,65 @@ class _Rows:
 
 def march(
     f: Rate, span: tuple[float, float], x0: np.ndarray, *, how: Stepping, instants: np.ndarray | None = None,
-    events: Events | None = None, spheres: Sequence[Places] = (),
+    events: Events | None = None, spheres: Sequence[Places] = (), projection: Projection | None = None,
+    slope: Slope | None = None, lookout: Lookout | None = None,
 ) -> Run:  # fmt: skip
     """Step from the first instant of the span to the second, or to an event, or until it goes no further.
 
     Args:
         instants: where states are wanted, in order; None: at the integrator's own steps.
         spheres: the places of quaternions in x: each is put back to norm 1 after every step.
+        projection: onto the ties, which keep at the states between the steps too.
+        slope: (t, x) -> df/dx for implicit methods.
     """
     start, end = span
-    x0 = on_spheres(x0, spheres)
+    hold = how.hold(spheres, projection)
+    x0 = hold.at(start, x0)
     if not np.all(np.isfinite(f(start, x0))):
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
-    rows = _Rows(instants, [np.array([start])[:asked]], [x0[None, :][:asked]])
-    solver = _solver(f, span, x0, how)
+    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]])
+    solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
     watch = Watch(events, start, x0) if events is not None else None
-    status, message, steps, crossing = _stepped(f, solver, rows, watch, how.most_steps, spheres)
+    status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how)
     t, x = (float(solver.t), solver.y) if crossing is None else (crossing.t, crossing.x)
     if status != "finished":
         rows.close(t, x)
-    times, states = np.concatenate(rows.t), on_spheres(np.concatenate(rows.x), spheres)
-    return Run(times, states, t, on_spheres(x, spheres), status, message or _reached(end), steps, solver.nfev, crossing)
+    message = " ".join(part for part in (message or _reached(end), hold.remark) if part)
+    times, states = np.concatenate(rows.t), np.concatenate(rows.x)
+    return Run(times, states, t, x, status, message, steps, solver.nfev, crossing)
 
 
 def _stepped(
-    f: Rate, solver: Any, rows: _Rows, watch: Watch | None, most_steps: int, spheres: Sequence[Places]
+    f: Rate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping
 ) -> tuple[Status, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
-    steps = 0
+    steps, hold, end = 0, rows.hold, solver.t_bound
     while solver.status == "running":
-        if steps == most_steps:
+        if steps == how.most_steps:
             return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s.", steps, None
         try:
             with np.errstate(all="ignore"):
-                solver.step()
-        except (_NotFinite, KeyboardInterrupt) as stop:
+                step(solver, how.knots, end)
+        except (NotFinite, KeyboardInterrupt) as stop:
             return *_stopped(stop, solver.t), steps, None
         if solver.status == "failed":
             return *_failed(f, solver), steps, None
         steps += 1
         dense = cache(solver.dense_output)
-        crossing = None if watch is None else watch.step(solver.t_old, solver.t, dense())
+        crossing = watches.step(solver.t_old, solver.t, solver.y, dense)
         if crossing is not None:
+            crossing = replace(crossing, x=hold.at(crossing.t, crossing.x))
             rows.add((solver.t_old, crossing.t), crossing.x, dense)
             return "event", f"Stopped by an event at t = {crossing.t:.6g} s.", steps, crossing
-        rows.add((solver.t_old, solver.t), solver.y, dense)
-        solver.y = on_spheres(solver.y, spheres)
+        x, moved = hold.step(solver.t, solver.y)
+        rows.add((solver.t_old, solver.t), x, dense)
+        if moved:
+            put(solver, x)
     return "finished", "", steps, None
-
-
-def _solver(f: Rate, span: tuple[float, float], x0: np.ndarray, how: Stepping) -> Any:
-    import scipy.integrate
-
-    def finite(t: float, x: np.ndarray) -> np.ndarray:
-        dx = f(t, x)
-        if not np.all(np.isfinite(dx)):
-            raise _NotFinite
-        return dx
-
-    explicit = how.method in ("DOP853", "RK45", "RK23")  # these shrink the step where a trial has no value
-    kind = getattr(scipy.integrate, how.method)
-    with np.errstate(all="ignore"):
-        return kind(f if explicit else finite, span[0], x0, span[1], rtol=how.rtol, atol=how.atol)
 
 
 def _failed(f: Rate, solver: Any) -> tuple[Status, str]:

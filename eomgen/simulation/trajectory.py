@@ -7,7 +7,7 @@ import html
 import io
 import os
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -27,8 +27,10 @@ class Phase:
     Args:
         start, end: its times [s].
         ended_by: what ended it, in words.
-        rows: its first row in the trajectory, and the one after its last.
+        rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
+            that of the other, in the state after.
         stage: its equations, contacts and reactions, where contacts are that change; else None.
+        first, last: every column at its beginning and at its end, where contacts are that change; else empty.
     """
 
     start: float
@@ -36,6 +38,8 @@ class Phase:
     ended_by: str
     rows: tuple[int, int] = (0, 0)
     stage: Any = field(default=None, repr=False, compare=False)
+    first: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
+    last: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,12 +47,13 @@ class Trajectory:
     """A motion. One that ended early holds what there is, and says why.
 
     Args:
-        t: times, n [s].
+        t: times, n [s], one row each: strictly later from row to row.
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
         energy: T + V, n [J]; None where nobody gave it.
         drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
-        gap: largest |phi| of the closing ties; None where none closes.
+        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close, at the instants given; None where none
+            closes.
         phases: in order.
         status: "finished" or what stopped it.
         message: the same as a sentence.
@@ -56,6 +61,8 @@ class Trajectory:
         reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
         units: of the reactions, by name.
         remark: what is missing among them, and why; or "".
+        passages: the start and the end of each passage through a singular position (a change point, a dead centre).
+        assembled: what was changed of the start values so that the ties hold there, and of which; or "".
     """
 
     t: np.ndarray
@@ -73,11 +80,14 @@ class Trajectory:
     reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     remark: str = ""
+    gap_rate: float | None = None
+    passages: tuple[tuple[float, float], ...] = ()
+    assembled: str = ""
 
     @property
     def ok(self) -> bool:
-        """True where the end was reached."""
-        return self.status == "finished"
+        """True where the end was reached, or the condition that was to end it."""
+        return self.status in ("finished", "event")
 
     def __len__(self) -> int:
         return len(self.t)
@@ -136,12 +146,15 @@ class Trajectory:
     def summary(self) -> str:
         """How it went, in a line or two."""
         parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]
+        if self.passages:
+            parts.append(f"Carried across {_singular_positions(self.passages)}.")
         if len(self.phases) > 1:
             parts.append(f"{len(self.phases)} phases.")
         if self.drift is not None:
             parts.append(f"Energy drift {self.drift:.1e} of the energy that moves.")
         if self.gap is not None:
-            parts.append(f"Ties open by at most {self.gap:.1e}.")
+            speed = "" if self.gap_rate is None else f", their velocities by {self.gap_rate:.1e}"
+            parts.append(f"Ties open by at most {self.gap:.1e}{speed}.")
         return " ".join(parts if self.reactions or not self.remark else [*parts, self.remark])
 
     def __repr__(self) -> str:
@@ -155,6 +168,13 @@ class Trajectory:
         rows = ("".join(f"<td>{column[i]:.6g}</td>" for column in columns.values()) for i in shown)
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         return f"<p>{html.escape(self.summary())}</p><table><tr>{head}</tr>{body}</table>"
+
+
+def _singular_positions(passages: Sequence[tuple[float, float]]) -> str:
+    """"a singular position at t = 0.7 s", or how many, and when the first."""
+    first = f"{sum(passages[0]) / 2:.6g} s"
+    many = len(passages)
+    return f"a singular position at t = {first}" if many == 1 else f"{many} singular positions, first at t = {first}"
 
 
 def _write(path: Path, fill: Callable[[IO[bytes]], object]) -> None:

@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from eomgen import pipeline
+from eomgen import pipeline, running
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
+from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.expressions import parse
 from eomgen.verbs.given import assignments, nearest
@@ -20,16 +21,16 @@ MOST_TOLD = 20  # phases in the text
 
 
 def simulate(
-    model: Model, *, time: float, given: tuple[str, ...], start: tuple[str, ...], rtol: float, atol: float,
-    target: str | None, samples: int | None, output: str | None, plot: str | None,
+    model: Model, *, time: float, given: tuple[str, ...], start: tuple[str, ...], how: Stepping,
+    target: str | None, samples: int | None, until: str | None, output: str | None, plot: str | None,
 ) -> Outcome:  # fmt: skip
     """The motion from the start; trajectory and picture are written where they are asked for."""
     parameters = _parameters(model, given)
     _check_ending(output)
     equations = pipeline.derive(model)
-    run = pipeline.simulated(
+    run = running.run(
         equations, time=time, parameters=parameters, start=_start(equations, parameters, start), target=target,
-        samples=samples, tolerances=(rtol, atol),
+        samples=samples, how=how, until=until,
     )  # fmt: skip
     files = [path for path in (output, plot) if path]
     if output:
@@ -39,7 +40,8 @@ def simulate(
 
         units = {q: part.unit.si for q, part in model.coordinates.items() if part.unit is not None}
         plot_trajectory(run, prepared(plot), title=model.name, units=units)
-    notes = (run.remark,) if run.reactions and run.remark else ()
+    told = f"The start was {run.assembled}." if run.assembled else ""
+    notes = tuple(note for note in (told, run.remark if run.reactions else "") if note)
     return Outcome(_run_text(model, run), _run_payload(model, run, files), "" if run.ok else run.message, notes)
 
 
@@ -88,8 +90,9 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "name": model.name, "status": run.status, "message": run.message, "time": _finite(run.phases[-1].end),
         "start": {name: column[0] for name, column in columns.items() if column},
         "end": {name: column[-1] for name, column in columns.items() if column},
-        "energy_drift": _finite(run.drift), "gap": _finite(run.gap),
+        "energy_drift": _finite(run.drift), "gap": _finite(run.gap), "gap_rate": _finite(run.gap_rate),
         "steps": run.steps, "evaluations": run.evaluations, "remark": run.remark, "files": files,
+        "assembled": run.assembled, "passages": [{"start": first, "end": last} for first, last in run.passages],
         "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],
     }  # fmt: skip
     return payload if files else payload | {"trajectory": columns}

@@ -1,0 +1,225 @@
+"""Equations, Stepping -> Trajectory: the motion, kept on its ties, ended where these do not say how it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import bordered, program_of
+from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
+from eomgen.equations import Equations
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.edges import edges_of
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.friction import with_friction
+from eomgen.mechanics.gimbal import locks_of
+from eomgen.mechanics.stabilization import stabilized
+from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.wellposed import is_conservative
+from eomgen.simulation.conditions import Condition, condition_of
+from eomgen.simulation.contacts import has_phases
+from eomgen.simulation.events import Events
+from eomgen.simulation.independence import Independence
+from eomgen.simulation.integrate import SAMPLES, check, integrate
+from eomgen.simulation.joined import thinned
+from eomgen.simulation.knots import knots_of
+from eomgen.simulation.passages import Nearness
+from eomgen.simulation.phases import MET, run_phases
+from eomgen.simulation.projection import Projection, projection_of
+from eomgen.simulation.reaction_columns import with_reactions
+from eomgen.simulation.singular import ended_where_singular
+from eomgen.simulation.slopes import slope_of
+from eomgen.simulation.solvers import IMPLICIT
+from eomgen.simulation.stepping import Stepping
+from eomgen.simulation.trajectory import Trajectory
+
+EDGE = 1e-5  # of what vanishes at an edge: a run ends there
+CHOOSE = "declare other speeds"
+STEPS_AGAIN = 10_000  # of the finer integration across one instant
+LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
+
+
+def run(
+    equations: Equations, *, time: float, parameters: Mapping[str, float] | None = None,
+    start: Mapping[str, float] | None = None, target: str | None = None, samples: int | Sequence[float] | None = None,
+    how: Stepping | None = None, until: str | None = None,
+) -> Trajectory:  # fmt: skip
+    """The motion by equations that are derived already.
+
+    Args:
+        time: how long [s].
+        parameters, start: values, start values and speeds that replace the model's.
+        target: of the emitted code.
+        samples: as of `integrate`.
+        how: the integrator's way; its tolerances are those of the run, and a step takes a tenth of them.
+        until: an equation: the run ends where it first holds after the start.
+    Raises:
+        MissingValues: parameters without a value, all named.
+        UsageError: what is asked makes no sense.
+    """
+    how, samples = how or Stepping(), SAMPLES if samples is None else samples
+    p = parameter_vector(equations.model, parameters)
+    condition = None if until is None else condition_of(equations.model, until)
+    check(0.0, time, how)
+    how = replace(how.of_one_step(), knots=knots_of(equations.model))
+    if has_phases(equations.model):
+        found = run_phases(equations.model, time=time, p=p, parameters=parameters, start=start, target=target,
+                           samples=samples, how=how, until=condition)  # fmt: skip
+        rhs = equations.rhs(target)
+    else:
+        begun = start_of_motion(equations.system, parameters, start)
+        x0 = np.array(list(begun.values.values()))
+        rhs, found = _one_phase(equations, time, x0, p, how=how, target=target, samples=samples, condition=condition)
+        found = replace(found, assembled=begun.words)
+    found = with_reactions(_told(found, until), lambda: equations.reactions, rhs, p)
+    return thinned(found, samples) if has_phases(equations.model) else found
+
+
+def _one_phase(
+    equations: Equations, time: float, x0: np.ndarray, p: np.ndarray, *, how: Stepping, target: str | None,
+    samples: int | Sequence[float], condition: Condition | None,
+) -> tuple[RightHandSide, Trajectory]:  # fmt: skip
+    """(the right-hand side, the motion) of a model whose contacts do not change."""
+    equations = pulling(equations, how.rates) if how.stabilization == "baumgarte" else equations
+    system, assembly, rhs = equations.system, equations.graph, equations.rhs(target)
+    projection, energies = projection_of(system, p, target), _along(equations, (assembly.T, assembly.V), p)
+    found = integrate(
+        rhs,
+        time=time,
+        x0=x0,
+        p=p,
+        energy=lambda t, x: energies(t, x).T,
+        conservative=is_conservative(system, assembly),
+        projection=projection,
+        samples=samples,
+        method=how.method,
+        rtol=how.rtol,
+        atol=how.atol,
+        stabilization=how.stabilization,
+        every=how.every,
+        most_steps=how.most_steps,
+        events=_events(equations, assembly, p, condition),
+        slope=slope_of(system, assembly, p, target) if how.method in IMPLICIT else None,
+        nearness=_nearness(equations, p),
+        knots=how.knots,
+    )
+    found = _at_edge(equations, found, p)
+    return rhs, found if found.status == "singular" else _watched(equations, found, rhs, p, how, projection)
+
+
+def _nearness(equations: Equations, p: np.ndarray) -> Nearness | None:
+    """How near a motion is to positions in which the ties do not determine it; None without ties."""
+    elimination = equations.system.elimination
+    blocks = () if elimination is None else elimination.blocks
+    determinants = _along(equations, tuple(block.determinant for block in blocks), p) if blocks else None
+    rows = _independence(equations, p)
+    what = tuple(map(str, blocks))
+    return None if determinants is None and rows is None else Nearness(determinants, rows, what)
+
+
+def _independence(equations: Equations, p: np.ndarray) -> Independence | None:
+    """How independent the rows are that close by multipliers; None without such."""
+    ties = equations.system.ties
+    rank = rank_of_ties(ties)
+    if not rank:
+        return None
+    J = _along(equations, tuple(x for row in equations.graph.J for x in row), p)
+    return Independence(J, tuple(row.tie for row in ties.closing), rank)
+
+
+def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
+    """The equations with rows that pull back what has opened, after Baumgarte.
+
+    Args:
+        rates: alpha, beta [1/s].
+    Raises:
+        UsageError: see `stabilized`.
+    """
+    system = equations.system
+    return replace(equations, graph=with_friction(system, stabilized(system, recursive.assemble(system), rates)))
+
+
+def _events(
+    equations: Equations, assembly: Assembly, p: np.ndarray, condition: Condition | None
+) -> Events | None:
+    """The edges of the ties, and last the condition; None without any."""
+    system = equations.system
+    solve = bordered(assembly) if system.symbols.u else None
+    values = [edge.vanishes - Fraction(EDGE) for edge in edges_of(system.motion)]
+    asked = [] if condition is None else [condition(system)]
+    if not values and not asked:
+        return None
+    function = compiled(program_of((*values, *asked), system.symbols, inputs=system.inputs, solve=solve), "numpy")
+    last = (len(values),) if asked else ()
+    return Events(lambda t, x: function.many(t, x, p), np.full(len(values) + len(asked), MET), either=last)
+
+
+def _at_edge(equations: Equations, found: Trajectory, p: np.ndarray) -> Trajectory:
+    """The run; where it came to an edge of a tie, that is why it ended."""
+    edges = edges_of(equations.system.motion)
+    if found.status != "event" or not edges:
+        return found
+    left = _along(equations, tuple(edge.vanishes for edge in edges), p)(found.t[-1:], found.x[-1:])[0]
+    k = int(np.argmin(left))
+    if left[k] > 2 * EDGE:
+        return found
+    message = f"Stopped at t = {found.t[-1]:.6g} s: {edges[k].words}, and how it goes on is not determined."
+    phases = (*found.phases[:-1], replace(found.phases[-1], ended_by=message))
+    return replace(found, status="singular", message=message, phases=phases)
+
+
+def _told(found: Trajectory, until: str | None) -> Trajectory:
+    """The run, its message in the words of the condition."""
+    if until is None or found.status not in ("event", "finished"):
+        return found
+    end = found.phases[-1].end
+    met = f"{until} at t = {end:.6g} s." if found.status == "event" else f"{found.message} '{until}' did not come."
+    return replace(found, message=met, phases=(*found.phases[:-1], replace(found.phases[-1], ended_by=met)))
+
+
+def _watched(
+    equations: Equations, found: Trajectory, rhs: RightHandSide, p: np.ndarray, how: Stepping,
+    projection: Projection | None,
+) -> Trajectory:  # fmt: skip
+    """The run, ended where dependent coordinates or closing ties do not say how it goes on, and it went astray."""
+    system = equations.system
+    rtol, atol = (max(tolerance / 1000, 1e-13) for tolerance in (how.rtol, how.atol))
+
+    def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
+        finer = integrate(rhs, time=(start, end), x0=x, p=p, rtol=rtol, atol=atol, samples=2, projection=projection,
+                          most_steps=STEPS_AGAIN)  # fmt: skip
+        return finer.x[-1] if finer.ok else np.full_like(x, np.nan)
+
+    def ended(run: Trajectory, determinants: Any, what: Sequence[str], **told: str) -> Trajectory:
+        return ended_where_singular(run, determinants, what, again, rtol=how.rtol, **told)
+
+    if system.elimination is not None:
+        blocks = system.elimination.blocks
+        determinants = _along(equations, tuple(block.determinant for block in blocks), p)
+        found = ended(found, determinants, [str(block) for block in blocks])
+    if system.declared:
+        determinants = _along(equations, tuple(solved.determinant for solved in system.declared), p)
+        found = ended(found, determinants, list(map(str, system.declared)), place=CHOOSE)
+    locks = locks_of(system.motion)
+    if locks:
+        determinants = _along(equations, tuple(lock.determinant for lock in locks), p)
+        found = ended(found, determinants, list(map(str, locks)), place=LOCKED)
+    rows = _independence(equations, p)
+    if rows is not None and len(found.t):
+        found = ended(found, rows, [rows.words(found.t, found.x)])
+    return found
+
+
+def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:
+    """(t n, x n x states) -> the outputs at each state, n x outputs."""
+    function = compiled(program_of(outputs, equations.graph.symbols, inputs=equations.system.inputs), "numpy")
+
+    def along(t: Any, x: Any) -> np.ndarray:
+        return function(t[0], x[0], p)[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
+
+    return along

@@ -1,0 +1,62 @@
+"""System, Assembly -> d(x')/dx, exactly: what implicit integrators ask for.
+
+x' = (N u + nu, a), with a and lam from  M a - J^T lam = forcing,  J a = -gamma. The derivative of that solution comes
+from the same matrix, nothing is inverted in symbols:
+
+    [[M, -J^T], [J, 0]] [da; dlam] = - d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eomgen.codegen.program import bordered, kinematics, program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.system import System
+from eomgen.simulation.solvers import Slope
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.graph import Scalar
+
+LONG = 60_000  # operations from which on differences are cheaper than the derivative
+SHORT = 400  # operations up to which a function is not worth a compiler
+DEPENDENT = 1e-12  # of the largest singular value: rows that follow from others
+
+
+def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | None = None) -> Slope | None:
+    """(t, x) -> d(x')/dx; None where the derivative is so long that differences are cheaper.
+
+    Args:
+        p: the parameters' values.
+        target: in which language a long function is run.
+    """
+    states = assembly.symbols.q + assembly.symbols.u
+    n, k, m = len(assembly.M), len(assembly.J), len(states)
+    parts = (jacobian(kinematics(assembly), states), jacobian(_residual(assembly), states), assembly.M, assembly.J)
+    entries = tuple(x for rows in parts for row in rows for x in row)
+    program = program_of(entries, system.symbols, inputs=system.inputs, solve=bordered(assembly) if n else None)
+    if program.count.total > LONG:
+        return None
+    function = compiled(program, target if program.count.total > SHORT else "numpy")
+    ends = np.cumsum([len(assembly.N) * m, (n + k) * m, n * n])
+
+    def slope(t: float, x: np.ndarray) -> np.ndarray:
+        rates, residual, M, J = np.split(np.asarray(function(t, x, p)), ends)
+        M, J = M.reshape(n, n), J.reshape(k, n)
+        matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=DEPENDENT)[0]
+        return np.vstack([rates.reshape(-1, m), solved[:n]])
+
+    return slope
+
+
+def _residual(assembly: Assembly) -> tuple[Scalar, ...]:
+    """M a - J^T lam - forcing, J a + gamma"""
+    a, lam = assembly.symbols.a, assembly.symbols.lam
+    found: list[Scalar] = []
+    for i, (row, force) in enumerate(zip(assembly.M, assembly.forcing, strict=True)):
+        inertia = sum((x * y for x, y in zip(row, a, strict=True)), start=-force)
+        found.append(sum((-row[i] * y for row, y in zip(assembly.J, lam, strict=True)), start=inertia))
+    for row, bias in zip(assembly.J, assembly.gamma, strict=True):
+        found.append(sum((x * y for x, y in zip(row, a, strict=True)), start=bias))
+    return tuple(found)
