@@ -16,7 +16,7 @@ def linearize(
     Args:
         format: text, latex, markdown or json.
         plot: a picture's file.
-        about: "equilibrium" or "start".
+        about: "equilibrium", "start" or "steady".
         coordinates: only these.
     """
     return told(found_in(model, about, coordinates), format=format, plot=plot)

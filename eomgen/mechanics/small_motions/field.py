@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
 from typing import Any, Protocol
 
 from eomgen.symbolic.derivative import substituted
@@ -70,18 +71,24 @@ class Exact:
         state: everything but the parameters, as scalars of them.
         positive: parameters that are positive numbers.
         trial: values of the parameters, with 50 digits, by which pivots are chosen.
+        known: the forms of entries that were tidied before.
     """
 
     state: Mapping[Node, Scalar]
     positive: Collection[Node]
     trial: Mapping[Node, Any]
+    known: dict[Scalar, Scalar] = dataclass_field(default_factory=dict, compare=False, repr=False)
 
     def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
         return [self.tidy(x) for x in substituted(tuple(scalars), self.state)]
 
     def tidy(self, x: Entry) -> Entry:
-        found = simplest(x, WORK, self.positive)
-        return 0 if is_zero(found) or vanishes(found) else found
+        if type(x) is not Node or x.op == "symbol":
+            return x
+        if x not in self.known:
+            found = simplest(x, WORK, self.positive)
+            self.known[x] = self.known[found] = 0 if is_zero(found) or vanishes(found) else found
+        return self.known[x]
 
     def size(self, x: Entry) -> float:
         return abs(float(evaluate((x,), self.trial, fifty_digits())[0]))

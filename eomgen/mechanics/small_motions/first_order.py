@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from random import Random
+from typing import Any
 
 import numpy as np
 
@@ -19,10 +21,14 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.symbolic import dense
 from eomgen.symbolic.derivative import depends_on, jacobian
+from eomgen.symbolic.evaluation import fifty_digits
 from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.graph import Node, Scalar
 
+NOISE = 1e-14  # of a row, below which an entry is what is left of 0 at a place that is known in numbers
 RANK = 1e-9  # of balanced rows, below which one follows from others
+OWN = 0.2  # of what a column adds to those chosen, against the best
+SAME = 1e-12  # of a coefficient, here and elsewhere, against the largest
 
 Rows = Sequence[Sequence[Scalar]]
 
@@ -99,6 +105,7 @@ def first_order_of(system: System) -> FirstOrder:
     scope = system.scope
     start = {q: start_value(scope, scope.model.coordinates[q.name]) for q in scope.symbols.q}
     relations = [x for x in position_equations(system, start) if depends_on(x, scope.symbols.q)]
+    relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
     return FirstOrder(system, tuple(relations))
 
 
@@ -121,33 +128,69 @@ def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) ->
     symbols, coordinates = first.system.symbols, reference.system.scope.model.coordinates
     dependent = {name for name, part in coordinates.items() if part.dependent}
 
-    def late(name: str, rows: Rows, k: int) -> tuple[int, bool]:
-        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay."""
-        stays = not any(depends_on(row[k], symbols.q) for row in rows)
-        return 0 if name in wanted else 2 if name in dependent else 1, stays
+    turning = {e.name: abs(float(reference.numbers[e])) for four in first.system.scope.quaternions for e in four}
 
-    G, J = first.derivatives["G"], first.assembly.J
-    relations, dq = _determined(_floats(at(field, G), len(symbols.q)),
-                                [late(q.name, G, k) for k, q in enumerate(symbols.q)])  # fmt: skip
-    ties, du = _determined(_floats(at(field, J), len(symbols.u)),
-                           [late(u.name.removesuffix("'"), J, k) for k, u in enumerate(symbols.u)])  # fmt: skip
+    def late(name: str, stays: bool) -> tuple[int, float]:
+        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay.
+
+        Of a quaternion the largest of its four.
+        """
+        return 0 if name in wanted else 2 if name in dependent else 1, turning.get(name, float(stays))
+
+    G, J = (_floats(at(field, rows), len(columns)) for rows, columns in _rows(first))
+    elsewhere = Numbers(_elsewhere(reference))
+    G_there, J_there = (_floats(at(elsewhere, rows), len(columns)) for rows, columns in _rows(first))
+    relations, dq = _determined(G, [late(q.name, stays) for q, stays in zip(symbols.q, _same(G, G_there), strict=True)])
+    ties, du = _determined(J, [late(u.name.removesuffix("'"), stays)
+                               for u, stays in zip(symbols.u, _same(J, J_there), strict=True)])  # fmt: skip
     q = tuple(k for k in range(len(symbols.q)) if k not in dq)
     u = tuple(k for k in range(len(symbols.u)) if k not in du)
     return Choice(q, dq, relations, u, du, ties)
+
+
+def _rows(first: FirstOrder) -> tuple[tuple[Rows, Sequence[Node]], ...]:
+    """The rows between positions, and those between speeds, with what their columns stand for."""
+    symbols = first.system.symbols
+    return (first.derivatives["G"], symbols.q), (first.assembly.J, symbols.u)
+
+
+def _elsewhere(reference: Reference) -> dict[Node, Any]:
+    """The state with other coordinates."""
+    rng, number = Random(4), fifty_digits().number(1)
+    return {**reference.numbers, **{
+        q: reference.numbers[q] + number * rng.uniform(0.01, 0.1) for q in reference.system.symbols.q
+    }}  # fmt: skip
+
+
+def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
+    """Of each column whether it is the same in both."""
+    return np.all(abs(A - B) <= SAME * abs(A).max(initial=0), axis=0)
 
 
 def _floats(A: Matrix, columns: int) -> np.ndarray:
     return np.array(A, dtype=float).reshape(len(A), columns)
 
 
-def _determined(A: np.ndarray, late: Sequence[tuple[int, bool]]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """(independent rows, columns that they determine): of those first that are late, the last of them first."""
+def _determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """(independent rows, columns that they determine): of those first that are late, the last of them first.
+
+    A column that the others nearly make up, against the best of those as late, waits for these.
+    """
     if not len(A):
         return (), ()
     scaled = dense.balanced(A)[0]
     rows = dense.independent_rows(scaled, RANK)
+    left = scaled[rows].copy()
     chosen: list[int] = []
-    for k in sorted(range(A.shape[1]), key=lambda k: (late[k], k), reverse=True):
-        if len(chosen) < len(rows) and dense.rank(scaled[rows][:, [*chosen, k]].T, smallest=RANK) > len(chosen):
+    for rank in sorted({*late}, reverse=True):
+        waiting = [k for k in reversed(range(A.shape[1])) if late[k] == rank]
+        while waiting and len(chosen) < len(rows):
+            sizes = np.linalg.norm(left[:, waiting], axis=0)
+            if max(sizes) <= RANK:
+                break
+            k = next(k for k, size in zip(waiting, sizes, strict=True) if size >= OWN * max(sizes))
+            waiting.remove(k)
             chosen.append(k)
+            direction = left[:, k] / np.linalg.norm(left[:, k])
+            left -= np.outer(direction, direction @ left)
     return tuple(rows), tuple(sorted(chosen))

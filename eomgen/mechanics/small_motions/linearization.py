@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.small_motions.field import Exact, Numbers
+from eomgen.mechanics.small_motions.field import Exact, Field, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
 from eomgen.mechanics.small_motions.forms import (
     NOTHING,
@@ -22,7 +22,16 @@ from eomgen.mechanics.small_motions.forms import (
     restricted,
 )
 from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing
-from eomgen.mechanics.small_motions.reference import START, Reference, at_the_start, place_of_rest, relative_rest
+from eomgen.mechanics.small_motions.reference import (
+    START,
+    STEADY,
+    Reference,
+    at_the_start,
+    place_of_rest,
+    relative_rest,
+)
+from eomgen.mechanics.small_motions.steady import steady_start
+from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
 from eomgen.symbolic import dense
@@ -45,12 +54,14 @@ class SmallMotions:
         reference: the place of rest or the steady motion.
         numbers: the equations in floats; where parameters have no values, at values to try.
         exact: the same as scalars of the parameters; None where the reference is not known so, or it is too much work.
+        whole: those in floats of every coordinate and speed, of which `numbers` are a part.
         left_out: coordinates on which nothing depends, and which have no speed of their own.
     """
 
     reference: Reference
     numbers: LinearEquations
     exact: LinearEquations | None
+    whole: LinearEquations
     left_out: tuple[Node, ...]
 
     @property
@@ -61,9 +72,7 @@ class SmallMotions:
     @cached_property
     def state_matrix(self) -> np.ndarray:
         """A of x' = A x + B w, x = (q_i, u_i)."""
-        e = self.numbers
-        M, C, K = (floats(x) for x in (e.M, e.C, e.K))
-        return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+        return state_matrix_of(self.numbers)
 
     @cached_property
     def input_matrix(self) -> np.ndarray:
@@ -74,13 +83,19 @@ class SmallMotions:
         return np.vstack([np.zeros((n, w)), below])
 
 
+def state_matrix_of(e: LinearEquations) -> np.ndarray:
+    """A of x' = A x, x = (q_i, u_i)."""
+    M, C, K = (floats(x) for x in (e.M, e.C, e.K))
+    return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+
+
 def small_motions_of(
     system: System, about: str, wanted: Sequence[str] = (), guess: Mapping[str, float] | None = None
 ) -> SmallMotions:
     """The equations of small motions of a system.
 
     Args:
-        about: "equilibrium" or "start".
+        about: "equilibrium", "start" or "steady".
         wanted: the coordinates in which they are asked; () for all.
         guess: values of coordinates in place of `near` and `start`.
     Raises:
@@ -88,13 +103,13 @@ def small_motions_of(
             move by themselves.
     """
     refuse_motion(system.scope.model)
-    reference, first = _balanced(system, about, guess)
+    reference, first = _balanced(system, about, guess, wanted)
     if not first.system.symbols.u:
         raise DerivationError("nothing is free to move: there are no small motions")
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError("the ties leave no freedom: there are no small motions")
-    raw = Reducing(first, choice, Numbers(reference.numbers)).equations()
+    raw = _equations(first, choice, reference)
     kept = carrying(raw, wanted)
     _refuse_unsteady(first, choice, reference, raw, kept)
     _refuse_singular(raw)
@@ -103,10 +118,32 @@ def small_motions_of(
     field = _exact_field(reference, first, choice)
     exact = None
     if field is not None:
-        whole = over_coordinates(field, Reducing(first, choice, field).equations(), kept)
+        whole = over_coordinates(field, _reduced(first, choice, reference, field), kept)
         exact = restricted(field, whole, wanted, decided)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
-    return SmallMotions(reference, numbers, exact, left)
+    return SmallMotions(reference, numbers, exact, raw, left)
+
+
+def _reduced(first: FirstOrder, choice: Choice, reference: Reference, field: Field) -> LinearEquations:
+    """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
+    equations = Reducing(first, choice, field).equations()
+    return over_turns(field, first.system, equations, spinning(reference, choice))
+
+
+def _equations(first: FirstOrder, choice: Choice, reference: Reference) -> LinearEquations:
+    """The equations in numbers.
+
+    Raises:
+        DerivationError: they have no value there: rates that declared speeds do not determine are named.
+    """
+    try:
+        return _reduced(first, choice, reference, Numbers(reference.numbers))
+    except (NoValue, ZeroDivisionError) as error:
+        solved, value = reference.system.declared, Numbers(reference.numbers).of
+        lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
+        what = lost[0] if lost else "the equations of motion have no value"
+        mend = "describe the motion by coordinates and speeds that are regular there"
+        raise DerivationError(f"{what} at the place of reference", "linearize", mend) from error
 
 
 def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exact | None:
@@ -135,17 +172,20 @@ def _refuse_singular(equations: LinearEquations) -> None:
 # -- whether it is a reference ---------------------------------------------------------------------------------
 
 
-def _balanced(system: System, about: str, guess: Mapping[str, float] | None) -> tuple[Reference, FirstOrder]:
+def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wanted: Sequence[str]
+              ) -> tuple[Reference, FirstOrder]:  # fmt: skip
     """The reference, at which forces and inertia balance, and the equations of its system.
 
     Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
     """
-    if about == START:
+    if about in (START, STEADY):
         reference = at_the_start(system, at_rest=False)
         first = first_order_of(system)
+        if about == STEADY:
+            reference = at_the_start(system, at_rest=False, given=steady_start(first, reference, wanted))
         if wrong := _accelerated(first, reference):
             raise DerivationError(f"the start is no steady motion: '{wrong}' is accelerated there", "linearize.about",
-                                  'start from a steady motion, or linearize about = "equilibrium"')  # fmt: skip
+                                  'start from a steady motion, or let it be sought: about = "steady"')  # fmt: skip
         return reference, first
     try:
         reference = place_of_rest(system, guess)
@@ -192,6 +232,9 @@ def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, ra
     t = first.system.symbols.t
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
     shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in TIMES]
+    turns = spinning(reference, choice)
+    for shift in shifts:
+        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
     changes = _changed(first, choice, reference, raw, kept)
     if not any(map(changes, shifts)):
         return
@@ -212,7 +255,7 @@ def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: Linea
         shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
         reducing = Reducing(first, choice, Numbers(shifted))
         try:
-            there = list(_compared(reducing.equations(), kept))
+            there = list(_compared(_reduced(first, choice, reference, reducing.field), kept))
             forces = [*reducing.forces, *Numbers(shifted).of(first.assembly.forcing)]
         except (NoValue, ZeroDivisionError):
             return True

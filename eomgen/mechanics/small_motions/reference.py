@@ -27,7 +27,7 @@ from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
 STILL = 1e-12  # of a rate, below which a coordinate stands still
-EQUILIBRIUM, START = "equilibrium", "start"
+EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
 
 
 @dataclass(frozen=True)
@@ -126,16 +126,18 @@ def _place(place: Equilibrium) -> Reference:
     return _with_inputs(Reference(system, EQUILIBRIUM, exact, numbers, place))
 
 
-def at_the_start(system: System, *, at_rest: bool) -> Reference:
+def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | None = None) -> Reference:
     """The start of the model, without its speeds where it is to be a place of rest.
 
+    Args:
+        given: coordinates and speeds in place of the model's.
     Raises:
         DerivationError: a tie that does not hold there.
     """
     symbols, scope, model = system.symbols, system.scope, system.scope.model
     trial = values_of_parameters(scope, Random(3))
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
-    state = start_state(system, parameters)
+    state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
     sought = fixed_by_position(system)
     exact: dict[Node, Scalar] = {symbols.t: 0}

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.mechanics.small_motions.forms import floats
-from eomgen.mechanics.small_motions.linearization import SmallMotions
+from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, START
 from eomgen.symbolic.graph import Node
 
@@ -122,14 +122,12 @@ def _undamped(small: SmallMotions) -> list[Mode]:
     largest = abs(squares).max()
     modes = []
     for square, v in zip(squares, vectors.T, strict=True):
-        shape = _shape(small, v.astype(complex))
+        rate = math.sqrt(abs(square))
         if abs(square) <= SQUARE_ZERO * largest:
-            modes.append(Mode(0j, True, shape))
-        elif square > 0:
-            modes.append(Mode(complex(0, math.sqrt(square)), True, shape))
+            values, pair = [0j], True
         else:
-            rate = math.sqrt(-square)
-            modes += [Mode(complex(rate, 0), False, shape), Mode(complex(-rate, 0), False, shape)]
+            values, pair = ([complex(0, rate)], True) if square > 0 else ([complex(rate, 0), complex(-rate, 0)], False)
+        modes += [Mode(value, pair, _shape(small, v.astype(complex), value)) for value in values]
     return modes
 
 
@@ -143,8 +141,9 @@ def _general(small: SmallMotions) -> list[Mode]:
     n = len(small.numbers.coordinates)
     modes, zeros = [], []
     for value, x in zip(values, vectors.T, strict=True):
-        shape = _shape(small, x[:n])
-        if abs(value) <= ZERO * largest or largest == 0:
+        still = abs(value) <= ZERO * largest or largest == 0
+        shape = _shape(small, x[:n], 0 if still else value)
+        if still:
             zeros.append(shape)
         elif abs(value.imag) <= STILL * largest:
             modes.append(Mode(complex(value.real, 0), False, shape))
@@ -161,16 +160,34 @@ def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -
     return rigid + [Mode(0j, False, shape) for shape in shapes[2 * pairs :]]
 
 
-def _shape(small: SmallMotions, v: np.ndarray) -> dict[Node, complex]:
+def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node, complex]:
     """The coordinates of the whole model, the largest 1; noise taken out."""
-    whole = floats(small.numbers.P) @ v
+    whole = floats(small.whole.P) @ _with_others(small, v, eigenvalue)
     largest = whole[np.argmax(abs(whole) * (1 - 1e-9 * np.arange(len(whole))))] if len(whole) else 0
     whole = whole / largest if largest else whole
 
     def clean(x: complex) -> complex:
         return complex(0 if abs(x.real) < 1e-10 else x.real, 0 if abs(x.imag) < 1e-10 else x.imag)
 
-    return {q: clean(x) for q, x in zip(small.numbers.all, whole, strict=True)}
+    return {q: clean(x) for q, x in zip(small.whole.all, whole, strict=True)}
+
+
+def _with_others(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> np.ndarray:
+    """The independent coordinates of the whole system while those of v move in a mode.
+
+    (A - lambda) x = 0 with the part v of x known: the others follow, as the track of a wheel does. Beside a motion that
+    stays as it is they stay too.
+    """
+    every, known = small.whole.coordinates, small.numbers.coordinates
+    places = [every.index(q) for q in known]
+    others = [k for k in range(len(every)) if k not in places]
+    x = np.zeros(len(every) + len(small.whole.speeds), dtype=complex)
+    x[places] = v
+    if others and eigenvalue:
+        A = state_matrix_of(small.whole) - eigenvalue * np.eye(len(x))
+        free = [k for k in range(len(x)) if k not in places]
+        x[free] = np.linalg.lstsq(A[:, free], -A[:, places] @ v, rcond=None)[0]
+    return x[: len(every)]
 
 
 # -- stability --------------------------------------------------------------------------------------------------

@@ -233,7 +233,7 @@ def linearize(model: Model, about: str | None = None, coordinates: Sequence[str]
     """The small motions of a model about a place of rest, or about its start, a steady motion.
 
     Args:
-        about: "equilibrium" or "start"; None: as the model says.
+        about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
         coordinates: in which they are asked; (): as the model says, or all.
     Raises:
         UsageError: a coordinate that the model does not have.

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Entry, Matrix
+from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
@@ -13,6 +16,7 @@ from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
 from eomgen.report.statements import Entry as Place
+from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.text import text_size
@@ -85,6 +89,10 @@ def _equations(modes: Modes) -> Step:
         *listed(e.coordinates), " from it", ", along the ties" if tied else "", ": ", ALONG if tied else PLAIN, ".",
     ))]  # fmt: skip
     undamped = all(is_zero(x) for row in e.C for x in row)
+    turns = tuple(q for q in e.coordinates if q not in e.all)
+    if turns:
+        words = " are small turns about the axes of the body that spins, of which its speeds are the rates."
+        statements.append(Prose((*listed(turns), words)))
     if tied:
         statements.append(Prose(("The ties, differentiated, say what follows: ", FOLLOW, ".")))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
@@ -155,17 +163,41 @@ def _number(x: float) -> Law:
 
 
 def _characteristic(modes: Modes) -> tuple[Step, ...]:
-    polynomial = modes.polynomial
-    if polynomial is None or modes.small.exact is None:
+    shown = _polynomial(modes)
+    if shown is None:
         return ()
     law = DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT
-    s = laplace_variable(modes.small.exact)
-    statements = (Prose(("With displacements that go as exp(s t):",)), Formula((law, _shown(polynomial, s), 0)))
+    statements = (Prose(("With displacements that go as exp(s t):",)), Formula((law, shown, 0)))
     return (Step("characteristic", "Characteristic equation", statements),)
 
 
-def _shown(polynomial: Polynomial, s: Node) -> Side:
-    return _side(_written(polynomial, s))
+def _polynomial(modes: Modes) -> Side | None:
+    """Exact where that is short enough to print, else in numbers; None where there are neither."""
+    small = modes.small
+    if modes.polynomial is not None and small.exact is not None:
+        exact = _written(modes.polynomial, laplace_variable(small.exact))
+        if text_size(exact) <= LONG or not small.reference.valued:
+            return _side(exact)
+    if not small.reference.valued or len(small.state_matrix) > MOST_SHOWN:
+        return None
+    scale = np.linalg.det(floats(small.numbers.M))
+    return _in_numbers(scale * np.poly(small.state_matrix))
+
+
+def _in_numbers(coefficients: np.ndarray) -> Law:
+    """The highest power first."""
+    n = len(coefficients) - 1
+    largest = abs(coefficients).max()
+    terms = [(f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k) for k, x in enumerate(coefficients)
+             if abs(x) > 1e-12 * largest]  # fmt: skip
+    plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
+    latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]
+    return Law(*(" + ".join(x).replace("+ -", "- ") for x in (plain, latex)))
+
+
+def _latex_number(text: str) -> str:
+    mantissa, _, power = text.partition("e")
+    return rf"{mantissa} \cdot 10^{{{power}}}" if power else text
 
 
 def _written(polynomial: Polynomial, s: Node) -> Scalar:
@@ -231,8 +263,16 @@ def _stability(modes: Modes) -> tuple[Step, ...]:
     if modes.conditions:
         statements.append(Prose(("By Routh and Hurwitz all motions fade where these are positive:",)))
         for k, x in enumerate(modes.conditions, start=1):
-            statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _side(x))))
+            statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _or_number(modes, x))))
     return (Step("stability", "Stability", tuple(statements)),) if statements else ()
+
+
+def _or_number(modes: Modes, x: Scalar) -> Side:
+    """A formula, or its value where it is too long to print."""
+    reference = modes.small.reference
+    if text_size(x) <= LONG or not reference.valued:
+        return _side(x)
+    return _number(float(evaluate((x,), {p: float(v) for p, v in reference.trial.items()}, FLOAT)[0]))
 
 
 def _transfers(modes: Modes) -> tuple[Step, ...]:

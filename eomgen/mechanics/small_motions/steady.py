@@ -1,0 +1,182 @@
+"""Reference near the start -> the speeds and places of a steady motion, by Newton's method.
+
+A motion is steady where the independent speeds stay and the coordinates on which anything depends stand still:
+
+    Z^T (M a - forcing) = 0  at  a_i = 0,      q_k' = 0 of the coordinates that are seen in K or F
+
+Steady motions come in families (a top precesses at many angles). What the model states at the start is held where that
+leaves enough to move: `start` of a coordinate without `near`, `speed` of a coordinate without `near`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.closure import closed
+from eomgen.mechanics.small_motions.field import Matrix, Numbers, product
+from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
+from eomgen.mechanics.small_motions.forms import floats
+from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing
+from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+
+STEPS = 40
+LONGEST = 0.3  # of one step, against what has moved or 1
+REACHED = 1e-13  # of a step, against what has moved or 1
+BALANCED = 1e-10  # of a force that is left, against the largest
+UNSEEN = 1e-9  # of a coefficient, against the largest of its matrix
+
+State = Mapping[Node, Any]
+
+
+def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] = ()) -> dict[str, float]:
+    """Coordinates and speeds of the steady motion nearest to the start, by name.
+
+    Args:
+        reference: the start.
+        wanted: coordinates that are to stay independent.
+    Raises:
+        DerivationError: none was found near the start.
+    """
+    choice = choice_of(first, reference, wanted)
+    for mask in (_unstated(first, choice), np.ones(len(choice.q) + len(choice.u), dtype=bool)):
+        found = _sought(first, choice, reference.numbers, mask) if np.any(mask) else None
+        if found is not None:
+            symbols = first.system.symbols
+            return {x.name: float(found[x]) for x in (*symbols.q, *symbols.u)}
+    raise DerivationError("no steady motion was found near the start", "linearize.about",
+                          "start nearer to one; `near` marks what may change, with its speed")  # fmt: skip
+
+
+def _unstated(first: FirstOrder, choice: Choice) -> np.ndarray:
+    """Which of the independent coordinates and speeds the model leaves open."""
+    symbols, model = first.system.symbols, first.system.scope.model
+    places = [model.coordinates[symbols.q[k].name] for k in choice.q]
+    open_places = [not part.driven and (part.start is None or part.near is not None) for part in places]
+    speeds = [symbols.u[k].name for k in choice.u]
+    owners = [model.coordinates.get(name.removesuffix("'")) for name in speeds]
+    open_speeds = [
+        model.speeds[name].start is None if part is None else part.speed is None or part.near is not None
+        for name, part in zip(speeds, owners, strict=True)
+    ]
+    return np.array([*open_places, *open_speeds], dtype=bool)
+
+
+def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -> State | None:
+    """The state with all residuals zero, by steps of least size in what the mask frees; None where none is near."""
+    state = start
+    for _ in range(STEPS):
+        try:
+            here = _Here(first, choice, Reducing(first, choice, Numbers(state)))
+            step = np.zeros(len(mask))
+            step[mask] = np.linalg.lstsq(here.slopes[:, mask], -here.residuals, rcond=1e-10)[0]
+            size = float(np.max(abs(step) / here.sizes))
+            if size <= REACHED:
+                return state if here.is_balanced else None
+            moved = here.moved(step * min(1.0, LONGEST / size))
+        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            return None
+        if moved is None:
+            return None
+        state = moved
+    return None
+
+
+def _shows(A: Matrix) -> np.ndarray:
+    """Where an entry is more than rounding."""
+    sizes = abs(floats(A))
+    return sizes > UNSEEN * max(1.0, sizes.max(initial=0))
+
+
+@dataclass(frozen=True)
+class _Here:
+    """One state of the search."""
+
+    first: FirstOrder
+    choice: Choice
+    reducing: Reducing
+
+    @property
+    def state(self) -> State:
+        field = self.reducing.field
+        assert isinstance(field, Numbers)
+        return field.state
+
+    @cached_property
+    def equations(self) -> LinearEquations:
+        return self.reducing.equations()
+
+    @cached_property
+    def still(self) -> list[int]:
+        """The independent coordinates that must not move: those seen in K, and those on which their rates depend."""
+        K, F = map(_shows, (self.equations.K, self.equations.F))
+        found: set[int] = set()
+        seen = {int(j) for j in np.flatnonzero(np.any(K, axis=0))}
+        while seen - found:
+            found |= seen
+            seen = {int(j) for j in np.flatnonzero(np.any(F[sorted(found)], axis=0))}
+        return sorted(found)
+
+    @cached_property
+    def rates(self) -> np.ndarray:
+        """q_i' of the independent coordinates."""
+        found = evaluate(self.first.system.scope.rates, self.state, fifty_digits())
+        return np.array([float(found[k]) for k in self.choice.q])
+
+    @property
+    def residuals(self) -> np.ndarray:
+        return np.array([*map(float, self.reducing.unbalanced), *self.rates[self.still]])
+
+    @property
+    def slopes(self) -> np.ndarray:
+        """Their derivatives by (q_i, u_i) along the ties."""
+        e = self.equations
+        upper = np.hstack([floats(e.K), floats(e.C)])
+        return np.vstack([upper, np.hstack([floats(e.F), floats(e.E)])[self.still]])
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """What counts as a change of 1: the speeds by how fast it moves."""
+        symbols = self.first.system.symbols
+        speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.u]
+        return np.array([1.0] * len(self.choice.q) + [max(1.0, *speeds, 0.0)] * len(self.choice.u))
+
+    @property
+    def is_balanced(self) -> bool:
+        forces = [abs(float(x)) for x in self.reducing.forces]
+        scale = max([1e-12, *forces, *(abs(float(x)) for x in self._forcing)])
+        return bool(np.all(abs(self.residuals) <= BALANCED * max(scale, 1.0)))
+
+    @property
+    def _forcing(self) -> list[Any]:
+        return self.reducing.field.of(self.first.assembly.forcing)
+
+    def moved(self, step: np.ndarray) -> State | None:
+        """The state after a step of the independent ones, the others following; None where the ties do not close."""
+        symbols, number = self.first.system.symbols, fifty_digits().number(1)
+        n = len(self.choice.q)
+        dq = floats(self.equations.P) @ step[:n]
+        state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(symbols.q, dq, strict=True)}}
+        state |= {symbols.u[k]: state[symbols.u[k]] + number * d for k, d in zip(self.choice.u, step[n:], strict=True)}
+        following = [symbols.q[k] for k in self.choice.dq]
+        found = closed(self.first.system.ties, state, following) if following else state
+        return None if found is None else self._with_speeds(found)
+
+    def _with_speeds(self, state: State) -> State:
+        """The dependent speeds by J u + sigma = 0."""
+        if not self.choice.ties:
+            return state
+        symbols, number = self.first.system.symbols, fifty_digits().number(1)
+        there = Reducing(self.first, self.choice, Numbers(state))
+        independent = [[state[symbols.u[k]]] for k in self.choice.u]
+        sigma = there.field.of([self.first.assembly.sigma[i] for i in self.choice.ties])
+        pushed = product(there.field, [[row[k] for k in self.choice.u] for row in there.J], independent)
+        found = there.following([[x[0] + s] for x, s in zip(pushed, sigma, strict=True)])
+        return {**state, **{symbols.u[k]: number * found[k][0] for k in self.choice.du}}

@@ -1,0 +1,104 @@
+"""Steady motions are found from near the start: precession, conical motion, turns of rolling bodies."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eomgen
+
+MODELS = Path(__file__).parents[2] / "models"
+
+
+def found(text: str) -> dict[str, float]:
+    small = eomgen.linearize(eomgen.loads(text), about="steady")
+    return {name: entry["value"] for name, entry in small.as_dict()["state"].items()}
+
+
+@pytest.mark.parametrize(("guess", "which"), [("start = 0,", 0), ("near = 0, speed = 200,", 1)])
+def test_a_heavy_top_has_a_slow_and_a_fast_precession(guess, which):
+    """I_t cos(theta) phi'^2 - I_3 w_3 phi' + m g d = 0,  w_3 = psi' + phi' cos(theta)"""
+    text = (MODELS / "heavy_top.toml").read_text().replace("phi = { start = 0,", f"phi = {{ {guess}")
+    state = found(text)
+    m, d, I_t, I_3, g, theta, psi_d = 0.1, 0.04, 2.5e-4, 5e-5, 9.81, np.pi / 6, 250
+    rates = np.roots([(I_t - I_3) * np.cos(theta), -I_3 * psi_d, m * g * d])
+    assert state["theta"] == pytest.approx(theta) and state["psi'"] == psi_d
+    assert state["phi'"] == pytest.approx(sorted(rates)[which], rel=1e-12)
+
+
+DISC = """eomgen = 1
+name = "disc"
+space = "space"
+[parameters]
+m = 2
+r = 0.3
+[coordinates]
+x = {}
+y = {}
+z = { near = "r" }
+psi = { speed = 2 }
+theta = 1.3
+phi = { near = 0, speed = -4 }
+[bodies.disc]
+shape = { kind = "disc", mass = "m", radius = "r" }
+joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxz", angles = ["psi", "theta", "phi"] }
+[constraints.floor]
+kind = "rolling"
+body = "disc"
+axis = [0, 0, 1]
+plane = { at = [0, 0, 0], normal = [0, 0, 1] }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+
+
+def test_a_disc_rolls_in_a_circle():
+    """g cos(theta) + r W sin(theta) (5/4 W cos(theta) + 3/2 w) = 0, W of the heading, w about its axis
+
+    Source: O'Reilly, The dynamics of rolling disks and sliding disks, Nonlinear Dynamics 10 (1996) 287-305.
+    """
+    state = found(DISC)
+    W, w, theta = state["psi'"], state["phi'"], state["theta"]
+    assert (theta, W) == pytest.approx((1.3, 2))
+    couple = 0.3 * W * np.sin(theta) * (1.25 * W * np.cos(theta) + 1.5 * w)
+    assert 9.81 * np.cos(theta) + couple == pytest.approx(0, abs=1e-9)
+
+
+def test_a_bicycle_turns_hands_free():
+    """What is found stays so along the run: lean, steer and the rates of wheels and yaw"""
+    text = (MODELS / "whipple_bicycle.toml").read_text()
+    for old, new in (
+        ('x = { unit = "m", about = "of the centre of the rear wheel", speed = "v" }', 'x = { unit = "m" }'),
+        ('z = { start = "-r_R",', 'z = { near = "-r_R",'), ('phi = { about', "phi = { start = 0.1, about"),
+        ("delta = { about", "delta = { near = 0.1, about"), ("theta_R = { speed", "theta_R = { near = 0, speed"),
+        ('theta_F = { speed = "-v/r_F", ', "theta_F = { "),
+    ):  # fmt: skip
+        assert old in text
+        text = text.replace(old, new)
+    state = found(text)
+    assert state["phi"] == pytest.approx(0.1) and state["psi'"] > 0.1 and state["delta"] > 0.01
+    model = eomgen.loads(text)
+    run = eomgen.simulate(model, time=1, start=state)
+    names = [*run.coordinates, *run.speeds]
+    for name in ("phi", "delta", "theta", "z", "psi'", "theta_R'", "theta_F'"):
+        assert np.allclose(run.x[:, names.index(name)], state[name], atol=1e-7), name
+
+
+def test_a_motion_that_cannot_be_steady_is_said_to_be_none():
+    """a block that slides down an incline goes faster and faster"""
+    model = eomgen.loads("""eomgen = 1
+name = "block"
+space = "plane"
+[coordinates]
+x = { speed = 1 }
+[bodies.block]
+mass = 1
+inertia = 1
+joint = { kind = "prismatic", axis = [1, -1], displacement = "x" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+""")
+    with pytest.raises(eomgen.DerivationError, match="no steady motion was found near the start"):
+        eomgen.linearize(model, about="steady")
