@@ -214,11 +214,27 @@ class _Solver:
         method = situation.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         if self._not_at_rest:
             raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
-        answer = self._started(situation.simple(self._in_unit(scalar, output)), method)
+        answer = self._regular(self._started(situation.simple(self._in_unit(scalar, output)), method), output)
         failure = self.journeys[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         return answer
+
+    def _regular(self, answer: Answer, output: Output) -> Answer:
+        """The answer with the value that it has where its closed form divides by what vanishes at the start."""
+        situation = self.situation
+        if not situation.system.ties.closing or not situation.needs_equations(output.value):
+            return answer
+        symbols = situation.system.symbols
+        try:
+            state = start_state(situation.system)
+            numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+            found = situation.number(output.value, {**known_parameters(situation.system.scope), **numbers})
+        except (KeyError, MissingValues):
+            return answer
+        value = found if output.unit is None else float(output.unit.from_si(found, math.pi))
+        message = None if answer.value is None else answer.message
+        return _valued(replace(answer, value=None, message=message), value, "at the start")
 
     @cached_property
     def _not_at_rest(self) -> str:

@@ -17,6 +17,7 @@ from eomgen.codegen.factorization import solved
 from eomgen.errors import MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.balance_solution import values_at_a_state
+from eomgen.mechanics.closure import number as precise
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
@@ -36,7 +37,7 @@ from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
 from eomgen.symbolic import cramer, linear
 from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
@@ -44,6 +45,7 @@ from eomgen.symbolic.normal_form import legible, readable_all
 
 WORK = 50_000  # products of terms for making one formula readable
 LONG = 400  # characters from which a formula is no easier to read than it came
+SAME = 1e-9  # between a value in floats and one with 50 digits, where nothing vanishes in between
 State = Mapping[Node, Scalar]
 
 
@@ -148,11 +150,22 @@ class Situation:
         values = dict(numbers)
         for name, node in inputs.items():
             values[node] = evaluate((self.system.inputs[name],), values, FLOAT)[0]
-        found = evaluate((self.eliminated(self.raw(formula)),), values, FLOAT)[0]
-        if math.isfinite(found):
+        closed = (self.eliminated(self.raw(formula)),)
+        found = evaluate(closed, values, FLOAT)[0]
+        if math.isfinite(found) and self._agrees(found, closed, values):
             return found
         scalar = self.at(formula, exact_numbers(numbers))  # a pivot vanishes there: solved anew
         return evaluate((scalar,), values, FLOAT)[0]
+
+    def _agrees(self, found: float, closed: tuple[Scalar], values: Mapping[Node, float]) -> bool:
+        """Whether a form that divides by what may vanish there has the same value with 50 digits."""
+        if not self.system.ties.closing:
+            return True
+        try:
+            sharp = evaluate(closed, {x: precise(value) for x, value in values.items()}, fifty_digits())[0]
+        except (NoValue, ZeroDivisionError):
+            return False
+        return math.isclose(found, float(sharp), rel_tol=SAME, abs_tol=SAME)
 
     def at(self, formula: Expression, state: State) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.
