@@ -85,8 +85,17 @@ class ClosedInstant:
         others = (*self.system.symbols.u, self.system.symbols.t)
         equations = [x for x in equations if not depends_on(x, others)]
         places = self._agreeing(places_of(equations, self.system.symbols.q, self.located))
-        rates = self._rates(places)
-        return {**places, **self._agreeing(rates)}
+        rates = self._agreeing(self._there(speeds, places))
+        if len(rates) < len(self.system.symbols.u):  # the place may be one where the functions have no value
+            rates |= self._agreeing(self._rates(places))
+        return {**places, **rates}
+
+    def _there(self, speeds: State, places: State) -> State:
+        """The speeds as functions of the coordinates, at the places that are known."""
+        try:
+            return dict(zip(speeds, substituted(tuple(speeds.values()), places), strict=True))
+        except DerivationError:  # a division by 0 at this place
+            return {}
 
     def _rates(self, at: State) -> State:
         """The speeds as functions of the coordinates that are not in `at`."""
@@ -121,11 +130,13 @@ class ClosedInstant:
 def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Node]:
     """The largest sums in the scalars that hold none of the moving symbols, and some symbol."""
     found: list[Node] = []
+    seen: set[Node] = set()
     stack: list[Scalar] = list(scalars)
     while stack:
         x = stack.pop()
-        if type(x) is not Node or x in found or x.op == "symbol":
+        if type(x) is not Node or x in seen or x.op == "symbol":
             continue
+        seen.add(x)
         if x.op in ("add", "sub") and not depends_on(x, moving) and symbols_of((x,)):
             found.append(x)
         else:

@@ -115,14 +115,17 @@ def _norms(ties: Ties) -> tuple[Scalar, ...]:
     return tuple(sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
 
 
-def closed(ties: Ties, state: State, free: Sequence[Node]) -> State | None:
+def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | None = None) -> State | None:
     """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
+
+    Args:
+        sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
 
     Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
     also where rows are redundant, and does not leap along directions that only an open loop resists.
     Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
     """
-    gaps = (*gaps_of(ties), *_norms(ties))
+    gaps, scale = (*gaps_of(ties), *_norms(ties)), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     try:
         for _ in range(STEPS):
@@ -131,9 +134,10 @@ def closed(ties: Ties, state: State, free: Sequence[Node]) -> State | None:
             if size < CLOSED:
                 return state
             slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
+            slope = slope * scale
             damped = np.vstack([slope, min(float(size), 1.0) * np.eye(len(free))])
             right = np.array([-float(x / size) for x in phi] + [0.0] * len(free))  # phi may be below what floats add
-            step = np.linalg.lstsq(damped, right, rcond=None)[0]
+            step = scale * np.linalg.lstsq(damped, right, rcond=None)[0]
             state = state | {q: state[q] + size * float(d) for q, d in zip(free, step, strict=True)}
     except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
         return None

@@ -23,7 +23,6 @@ from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations
-from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
@@ -37,8 +36,7 @@ class Block:
 
     Args:
         coordinates, ties: their names.
-        determinant: of the rows' coefficients of these rates, against the lengths of the rows; where it vanishes they
-            are not determined.
+        determinant: of the rows' coefficients of these rates; where it vanishes they are not determined.
     """
 
     coordinates: tuple[str, ...]
@@ -198,10 +196,5 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
 
 
 def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> Block:
-    own = [rows[i] for i in block.equations]
-    size: Scalar = 1
-    for i in own:
-        size = size * sqrt(sum((x * x for x in ties.J[i]), start=0))
-    owners = dict.fromkeys(ties.closing[i].tie for i in own)
-    determinant = over(cramer.determinant(block.matrix), size)
-    return Block(tuple(names[j] for j in block.unknowns), tuple(owners), determinant)
+    owners = dict.fromkeys(ties.closing[rows[i]].tie for i in block.equations)
+    return Block(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))

@@ -8,6 +8,7 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -19,7 +20,9 @@ from eomgen.model.trusses import in_parts
 from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.graph import Graph, Node, Scalar
+from eomgen.symbolic.scalar_operations import through_samples
 from eomgen.symbolic.spatial import Vector, vector_of
+from eomgen.symbolic.splines import Sampled
 from eomgen.symbolic.symbols import Symbols
 
 
@@ -153,13 +156,24 @@ def with_speeds_named(scope: Scope) -> Scope:
 
 def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str) -> Scalar:
     """The rate of a driven coordinate: f' for `motion`, f for `rate`, speed + integral of f for `acceleration`."""
+    name = where.rpartition(".")[2]
     if coordinate.motion is not None:
-        return tangent((coordinate.motion.evaluate(names),), {t: 1})[0]
+        return tangent((coordinate.motion.named(name).evaluate(names),), {t: 1})[0]
     if coordinate.rate is not None:
-        return coordinate.rate.evaluate(names)
+        return coordinate.rate.named(f"{name}'").evaluate(names)
     assert coordinate.acceleration is not None
     start = 0 if coordinate.speed is None else coordinate.speed.evaluate(names)
+    if (sampled := coordinate.acceleration.sampled) is not None:
+        return _speed_by_samples(sampled.named(f"{name}''"), start, t)
     return start + integral_from_zero(coordinate.acceleration.evaluate(names), t, where)
+
+
+def _speed_by_samples(acceleration: Sampled, start: Scalar, t: Node) -> Scalar:
+    """start + the integral of samples from 0 to t: one function, where the start is as plain a number as they are."""
+    change = acceleration.integral()
+    if type(start) is not Node and not change.pi_power:
+        return through_samples(change.raised(Fraction(start)), t)
+    return start + through_samples(change.named(f"integral({acceleration.name})"), t)
 
 
 def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:

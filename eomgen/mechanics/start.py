@@ -1,7 +1,8 @@
 """System -> the state at the start: dependent coordinates where the ties put them, and the ties found to hold.
 
-Coordinates of their own stay as given. Of the dependent ones those that position ties fix are sought from `near`,
-else from `start`; those that only velocity ties move really start at `start`.
+Of the dependent coordinates those that position ties fix are sought from `near`, else from `start`; those that only
+velocity ties move really start at `start`. Other coordinates and speeds stay as given where the ties hold there. Where
+these do not, the nearest values are taken at which they do (`consistency`), and what has changed is told.
 """
 
 from __future__ import annotations
@@ -9,13 +10,16 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.closure import closed, gaps_of, number
+from eomgen.mechanics.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row
+from eomgen.mechanics.ties import Row, Ties
+from eomgen.model.contacts import contacts_of
 from eomgen.model.values import first_guesses, numeric_parameters, start_values
 from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits, order
@@ -27,9 +31,57 @@ NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so litt
 State = dict[Node, Any]
 
 
+@dataclass(frozen=True)
+class Change:
+    """A coordinate or speed that does not start as it was written.
+
+    Args:
+        given: whether somebody gave it; else it is a guess, or 0.
+    """
+
+    name: str
+    before: float
+    after: float
+    given: bool
+
+    def __str__(self) -> str:
+        return f"{self.name} = {self.after:.9g}" + f" (not {self.before:.6g})" * self.given
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a motion begins.
+
+    Args:
+        values: of every coordinate and independent speed; all ties hold.
+        changes: of those that are not dependent, so that the ties hold.
+        ties: the names of the ties that did not hold at the values given.
+    """
+
+    values: dict[str, float]
+    changes: tuple[Change, ...] = ()
+    ties: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
+        if not self.changes:
+            return ""
+        names, how = _listed(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
+        hold = "holds" if len(self.ties) == 1 else "hold"
+        return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
+
+
 def start_state(
     system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
 ) -> dict[str, float]:
+    """The values of `start_of_motion`, with its arguments and errors."""
+    return start_of_motion(system, parameters, start).values
+
+
+def start_of_motion(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> Start:
     """Every coordinate and independent speed at the start, at which all ties hold.
 
     Args:
@@ -38,19 +90,77 @@ def start_state(
     Raises:
         UsageError: a name in `start` that is no coordinate and no speed.
         MissingValues: a start value, or a tie, needs parameters without values.
-        DerivationError: a tie that does not close there.
+        DerivationError: a tie that does not close near there.
     """
     values = _given(system, parameters, start or {})
-    ties = system.ties
-    if all(row.identical for row in ties.rows):
-        return values
-    state = _numbers(system, values, parameters)
+    if all(row.identical for row in system.ties.rows):
+        return Start(values)
+    before = _numbers(system, values, parameters)
     sought = fixed_by_position(system)
-    if sought:
-        state = closed(ties, state, sought) or state
+    state = (closed(system.ties, before, sought) or before) if sought else before
+    state, open_gaps = _with_gaps_closed(system, state, start or {})
     _refuse_open_gaps(system, state)
+    state, open_rates = _with_rates_closed(system, state, start or {})
     _refuse_open_rates(system, state)
-    return {node.name: float(state[node]) for node in (*system.symbols.q, *system.symbols.u)}
+    names = tuple(dict.fromkeys((*open_gaps, *open_rates)))
+    found = {node.name: float(state[node]) for node in (*system.symbols.q, *system.symbols.u)}
+    return Start(found, _changes(system, values, found, start or {}) if names else (), names)
+
+
+# -- values at which the ties hold -------------------------------------------------------------------
+
+
+def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which positions agree with the ties, the ties that did not hold)."""
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    apart = _apart(((row, row.gap) for row in rows if row.gap is not None), system.symbols.q, state)
+    ties = _that_stay(system, apart)
+    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    if not opened:
+        return state, ()
+    model, standing = system.scope.model, set(symbols_of(gaps_of(ties)))
+    sought = fixed_by_position(system)
+    own = [q for q in system.symbols.q if q in standing and q not in sought and not model.coordinates[q.name].driven]
+    called = [q for q in own if q.name in start]
+    silent = [q for q in own if q not in called and is_guess(model, q.name)]
+    tiers = ([*sought, *silent], [q for q in own if q not in called and q not in silent], called)
+    return nearest_places(ties, state, tiers, (*sought, *silent)) or state, opened
+
+
+def _with_rates_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
+    u, model = system.symbols.u, system.scope.model
+    apart = _apart(((row, row.velocity) for row in system.ties.closing), u, state)
+    ties = _that_stay(system, apart)
+    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    if not opened:
+        return state, ()
+    called = [node for node in u if node.name in start]
+    silent = [node for node in u if node not in called and is_guess(model, node.name)]
+    tiers = (silent, [node for node in u if node not in called and node not in silent], called)
+    return nearest_speeds(ties, state, tiers) or state, opened
+
+
+def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
+    """The ties whose scalars ought to be zero and are not."""
+    return tuple(dict.fromkeys(row.tie for row, x in pairs if _excess(x, symbols, state)))
+
+
+def _that_stay(system: System, apart: Sequence[str]) -> Ties:
+    """All ties but the contacts that are open and may be so."""
+    ending = [contact.name for contact in contacts_of(system.scope.model) if contact.unilateral]
+    return bilateral(system.ties, ending, [name for name in ending if name not in apart])
+
+
+def _changes(
+    system: System, before: Mapping[str, float], after: Mapping[str, float], start: Mapping[str, float]
+) -> tuple[Change, ...]:
+    """What differs, dependent coordinates left out."""
+    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
+    return tuple(
+        Change(x.name, before[x.name], after[x.name], x.name in start or not is_guess(system.scope.model, x.name))
+        for x in own if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
+    )  # fmt: skip
 
 
 def start_speeds(system: System) -> dict[Node, Scalar]:

@@ -45,7 +45,7 @@ class System:
     @property
     def inputs(self) -> dict[str, Scalar]:
         """The model's own expression of each input, in t and parameters."""
-        return {name: self.scope.value(part.value) for name, part in self.scope.model.inputs.items()}
+        return {name: self.scope.value(part.value.named(name)) for name, part in self.scope.model.inputs.items()}
 
     @property
     def symbols(self) -> Symbols:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from eomgen.errors import EomgenError
+from eomgen.mechanics.branches import Branches, branches_of_loops
+from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.mechanics.instant.snapshot import mobility_of
+from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.statics.structure import Structure, structure_of
 from eomgen.mechanics.system import system_of
@@ -11,7 +15,10 @@ from eomgen.model.parts import Model, Truss
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.course import modes_at_start
+from eomgen.symbolic.text import to_text
 from eomgen.verbs.outcome import Outcome, listed
+
+MOST_TOLD = 5  # other ways to close the loops
 
 
 def check(model: Model) -> Outcome:
@@ -33,6 +40,9 @@ def check(model: Model) -> Outcome:
     mobility = mobility_of(model) if still else None
     structure = structure_of(system_of(model, modes_at_rest(model))) if still else None
     lines += _freedom_lines(model, freedom)
+    begun, branches = _start_of_loops(model, modes, freedom)
+    lines += [f"start {begun.words}"] if begun is not None and begun.words else []
+    lines += _branch_lines(branches)
     lines += [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
     lines += [] if structure is None else [f"structure: {_held(structure)}"]
     lines += [f"open at the start: {listed(away)}"] if away else []
@@ -45,9 +55,39 @@ def check(model: Model) -> Outcome:
         "indeterminacy": None if structure is None else structure.indeterminacy, "unknowns": list(model.unknowns),
         "open_at_start": away, "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
+        "position_freedoms": _positions(freedom), "velocity_rows": _velocity_rows(freedom),
+        "start": None if begun is None else begun.values,
+        "start_changed": [{"name": c.name, "from": c.before, "to": c.after, "given": c.given}
+                          for c in (begun.changes if begun is not None else ())],
+        "branches": [] if branches is None else [
+            {"values": dict(each.values), "sign": each.sign} for each in (branches.here, *branches.others)],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip
     return Outcome("\n".join(lines) + "\n", payload)
+
+
+def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> tuple[Start | None, Branches | None]:
+    """(the start at which loops close, the ways in which they do); None where nothing closes or a value is missing."""
+    if not freedom.closing or not model.coordinates:
+        return None, None
+    try:
+        system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
+        begun = start_of_motion(system)
+        return begun, branches_of_loops(system, begun.values)
+    except EomgenError:  # said by the verbs that need a start
+        return None, None
+
+
+def _branch_lines(branches: Branches | None) -> list[str]:
+    if branches is None:
+        return []
+    lines = [f"loops at the start: {branches.here}"]
+    others = listed(str(each) for each in branches.others[:MOST_TOLD])
+    more = len(branches.others) - MOST_TOLD
+    kept = f" with the same {listed(branches.kept)}" if branches.kept else ""
+    if branches.others:
+        lines.append(f"they also close{kept} at {others}" + f", and {more} more ways" * (more > 0))
+    return lines
 
 
 def _truss(name: str, truss: Truss) -> str:
@@ -71,10 +111,35 @@ def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:
     lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(model, freedom)]
     lines += [f"ties that close: {listed(freedom.closing)}"] if freedom.closing else []
     lines += [f"ties that only react: {listed(freedom.identical)}"] if freedom.identical else []
+    lines += _velocity_lines(freedom)
     for row in freedom.redundant:
         others = f", it follows from {listed(row.others)}" if row.others else ""
         lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
     return lines
+
+
+def _velocity_lines(freedom: Freedom) -> list[str]:
+    """Of ties that are velocities: which of them are holonomic, what they keep, and how many freedoms in position."""
+    found = freedom.integrability
+    if found is None:
+        return []
+    lines = []
+    for row in found.rows:
+        kept = "" if row.integral is None else f": {to_text(row.integral)} = 0"
+        what = "integrable (holonomic)" if row.integrable else "not integrable (nonholonomic)"
+        lines.append(f"{what}: row {row.number} of tie '{row.tie}'{kept}")
+    more = found.positions != freedom.by_rank
+    return [*lines, f"degrees of freedom in position: {found.positions}"] if more else lines
+
+
+def _positions(freedom: Freedom) -> int | None:
+    return freedom.by_rank if freedom.integrability is None else freedom.integrability.positions
+
+
+def _velocity_rows(freedom: Freedom) -> list[dict]:
+    rows = () if freedom.integrability is None else freedom.integrability.rows
+    return [{"tie": r.tie, "row": r.number, "integrable": r.integrable,
+             "integral": None if r.integral is None else to_text(r.integral)} for r in rows]  # fmt: skip
 
 
 def _formula_line(model: Model, freedom: Freedom) -> str:

@@ -1,0 +1,160 @@
+"""Ties, a rough state -> the nearest state at which they hold, and what had to change for it.
+
+Positions:   phi(q) = 0        with the least sum of (s_k dq_k)^2
+Speeds:      J u + sigma = 0   with the least sum of (s_k du_k)^2
+
+s_k is how far a change of the k-th coordinate (speed) moves the gaps: angles and lengths count alike, whatever their
+units. Values that nobody gave move first, then those of the model, at last those that the caller gave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import EomgenError
+from eomgen.mechanics.closure import closed, gaps_of, generic_state
+from eomgen.mechanics.ties import Ties
+from eomgen.model.parts import Model
+from eomgen.symbolic.dense import rank
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar
+
+ROUNDS = 12  # of walking along the ties towards the values given
+STILL = 1e-12  # of a step of such a walk, against a turn of 1 rad
+DEPENDENT = 1e-9  # of a singular value of the balanced rows
+SPREADS = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
+FLAT = 1e-6  # of the largest slope: what moves the gaps by less counts as if it moved them by that
+
+State = dict[Node, Any]
+Tiers = Sequence[Sequence[Node]]
+
+
+def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Node]) -> State | None:
+    """The nearest state with phi = 0, moving as few kinds of values as will do; None where none is near.
+
+    Args:
+        tiers: what may move, each with those before it: values that nobody gave, those of the model, the caller's.
+        guessed: coordinates whose values are guesses: they may move far.
+    """
+    free: list[Node] = []
+    for tier in tiers:
+        free += tier
+        if tier:
+            found = _nearest(ties, state, free, guessed)
+            if found is not None:
+                return found
+    return None
+
+
+def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
+    """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none."""
+    u = ties.motion.scope.symbols.u
+    if not ties.closing or not u:
+        return state
+    entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
+    values = np.array([float(x) for x in evaluate(entries, state, fifty_digits())])
+    k = len(ties.closing)
+    J, open_rate = values[:-k].reshape(k, len(u)), values[-k:]
+    free: list[int] = []
+    for tier in tiers:
+        free += [u.index(x) for x in tier]
+        scale = 1 / _slopes(J[:, free])
+        step = scale * np.linalg.lstsq(J[:, free] * scale, -open_rate, rcond=DEPENDENT)[0]
+        size = np.max(abs(J[:, free]) @ abs(step) + abs(open_rate))
+        if np.all(abs(J[:, free] @ step + open_rate) <= DEPENDENT * size):
+            return state | {u[i]: state[u[i]] + float(d) for i, d in zip(free, step, strict=True)}
+    return None
+
+
+def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:
+    """Whether the gaps are as independent there as in a configuration that is not special."""
+    try:
+        return _rank(ties, state, free) == _rank(ties, generic_state(ties), free)
+    except EomgenError:
+        return True
+
+
+def far(ties: Ties, before: State, after: State, given: Sequence[Node]) -> bool:
+    """Whether a given coordinate moved the gaps by more than a turn of 1 rad of some coordinate does."""
+    slopes = _slopes(_slope(ties, after, given))
+    moved = [abs(float(after[q] - before[q])) for q in given]
+    return bool(np.any(slopes * np.array(moved) > np.max(slopes, initial=0.0)))
+
+
+def is_guess(model: Model, name: str) -> bool:
+    """Whether nobody gave the start of a coordinate or speed."""
+    if name in model.coordinates:
+        part = model.coordinates[name]
+        return part.start is None or part.near is not None
+    if name in model.speeds:
+        return model.speeds[name].start is None
+    return name[:-1] in model.coordinates and model.coordinates[name[:-1]].speed is None
+
+
+# -- positions ---------------------------------------------------------------------------------------
+
+
+def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
+    """By moving these alone: from where they stand, then from other guesses."""
+    given = [q for q in free if q not in guessed]
+    for start in _guesses(state, [q for q in free if q in guessed]):
+        found = _walked(ties, start, free, state)
+        if found is not None and not far(ties, state, found, given) and regular(ties, found, free):
+            return found
+    return None
+
+
+def _guesses(state: State, guessed: Sequence[Node]) -> Iterator[State]:
+    rng = Random(1)
+    for spread in SPREADS if guessed else SPREADS[:1]:
+        yield state | {q: state[q] + rng.uniform(-spread, spread) for q in guessed}
+
+
+def _walked(ties: Ties, start: State, free: Sequence[Node], wanted: Mapping[Node, Any]) -> State | None:
+    """Closed from the start, then along the ties to the point that is nearest to the wanted values.
+
+    dq = (1 - J^+ J) (q_wanted - q), and closed again, till that is nothing.
+    """
+    sizes = 1 / _slopes(_slope(ties, start, free))
+    found = closed(ties, start, free, sizes)
+    for _ in range(ROUNDS if found is not None else 0):
+        assert found is not None
+        J = _slope(ties, found, free) * sizes
+        left = np.array([float(wanted[q] - found[q]) for q in free]) / sizes
+        along = left - np.linalg.pinv(J, rcond=DEPENDENT) @ (J @ left)
+        if np.max(abs(along), initial=0.0) < STILL:
+            break
+        moved = found | {q: found[q] + float(d) for q, d in zip(free, sizes * along, strict=True)}
+        found = closed(ties, moved, free, sizes) or found
+    return found
+
+
+def _slope(ties: Ties, state: State, free: Sequence[Node]) -> np.ndarray:
+    """d phi/dq of the free coordinates."""
+    gaps: tuple[Scalar, ...] = gaps_of(ties)
+    try:
+        values = evaluate([x for row in jacobian(gaps, free) for x in row], state, fifty_digits())
+    except (NoValue, ZeroDivisionError):
+        return np.ones((len(gaps), len(free)))
+    return np.array([float(x) for x in values]).reshape(len(gaps), len(free))
+
+
+def _slopes(J: np.ndarray) -> np.ndarray:
+    """How far each column moves the gaps, none of them nothing."""
+    lengths = np.linalg.norm(J, axis=0)
+    return np.maximum(lengths, FLAT * (np.max(lengths, initial=0.0) or 1.0))
+
+
+def _rank(ties: Ties, state: State, free: Sequence[Node]) -> int:
+    return rank(_slope(ties, state, free), smallest=DEPENDENT)
+
+
+def bilateral(ties: Ties, ending: Sequence[str], holds: Sequence[str]) -> Ties:
+    """The ties without those contacts that can end and do not hold: what is open there may stay open."""
+    return replace(ties, rows=tuple(row for row in ties.rows if row.tie not in ending or row.tie in holds))
