@@ -18,7 +18,7 @@ from eomgen.model.joints.orientation import rate_matrix_of
 from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic import cramer
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted, symbols_of
-from eomgen.symbolic.functions import inner
+from eomgen.symbolic.functions import combined, inner
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 Rows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
@@ -118,8 +118,7 @@ def _quaternion_rates(scope: Scope, place: dict[str, int]) -> Rows:
 
 def _over(old: Scope, new: Scope, u: Sequence[Node], rows: Rows) -> Scope:
     """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
-    columns = list(zip(*(rows[x][0] for x in u), strict=True))
-    N = tuple(tuple(inner(row, column) for column in columns) for row in old.N)
+    N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
     nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))
     new = replace(new, N=N, nu=nu)
     rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}

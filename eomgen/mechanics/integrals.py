@@ -1,6 +1,7 @@
 """System, Assembly -> first integrals: what stays constant along every motion.
 
     T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
+    u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import EomgenError
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.constants_of_motion import jacobi
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
@@ -28,7 +30,7 @@ class Integral:
     """A function of the motion that stays constant.
 
     Args:
-        name: "energy" or "momentum(x)".
+        name: "energy", "jacobi" or "momentum(x)".
         expression: the function, of q, u, t and parameters.
         coordinate: whose momentum it is, "" of the energy.
     """
@@ -44,13 +46,17 @@ def first_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:
 
 
 def energy_integral(system: System, assembly: Assembly) -> tuple[Integral, ...]:
-    """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ()."""
+    """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
+
+    Where something moves by itself, Jacobi's integral if that stays.
+    """
     if not assembly.M:
         return ()
     for V in (assembly.V, assembly.V - work_of_constant_forces(system)):
         if is_conservative(system, replace(assembly, V=V)):
             return (Integral("energy", assembly.T + V),)
-    return ()
+    found = jacobi(system, assembly)
+    return () if found is None else (Integral("jacobi", found),)
 
 
 def work_of_constant_forces(system: System) -> Scalar:

@@ -50,7 +50,8 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
         assembly: the equations that a user gets; printed with named sub-expressions where the method's own are long.
         full: everything is printed, however long, the long and the repeated parts with names of their own.
     """
-    reader, model = Reader(full=full), system.scope.model
+    model = system.scope.model
+    reader = Reader(full=full, gathers=model.space == "space")
     letters = letters_of(system)
     steps, result = _by_method(system, reader, assembly, method, letters)
     known = method == "kinetostatic" or bool(assembly.friction)  # the table of the reactions stands further up

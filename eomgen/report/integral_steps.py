@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import groupby
+
 from eomgen.errors import EomgenError
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.constants_of_motion import Constant, momenta_of_the_whole
 from eomgen.mechanics.explicit import short_accelerations
 from eomgen.mechanics.integrals import Integral, energy_integral, momentum_integrals
 from eomgen.mechanics.laws import laws_of_motion
@@ -23,6 +27,7 @@ LONGEST_LAW = 400  # characters of a law that is printed
 
 ENERGY = Law("T + V", "T + V")
 ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
+JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
 
 
 def integral_steps(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
@@ -44,9 +49,28 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
             if each not in rates:
                 statements.append(Prose(("The momentum of the speed ", speeds[each.coordinate], " stays constant:")))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
-    for energy in energy_integral(system, assembly):
+    energies = energy_integral(system, assembly)
+    for energy in energies:
         statements += _energy(reader, assembly, energy)
+    statements += _of_the_whole(system, reader, assembly, [each.expression for each in (*cyclic, *energies)])
     return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
+
+
+def _of_the_whole(
+    system: System, reader: Reader, assembly: Assembly, known: Sequence[Scalar]
+) -> list[Statement]:
+    """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
+    statements: list[Statement] = []
+    found = momenta_of_the_whole(system, assembly, known)
+    for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
+        what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
+        statements.append(Prose((f"The {what}, in the axes of the ground, stays constant:",)))
+        statements += page(reader, [(_side(each), each.expression) for each in group])
+    return statements
+
+
+def _side(each: Constant) -> Name:
+    return Name(f"{each.letter}_{each.axis}") if each.axis else Name(each.letter, power=2)
 
 
 def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
@@ -58,7 +82,10 @@ def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
 def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statement]:
     """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
     law, words = ENERGY, ("The energy ", ENERGY, " stays constant")
-    if energy.expression is not assembly.T + assembly.V:
+    if energy.name == "jacobi":
+        law = JACOBI
+        words = ("What moves by itself does so at a steady rate, and Jacobi's integral ", JACOBI, " stays constant")
+    elif energy.expression is not assembly.T + assembly.V:
         law = ENERGY_AND_WORK
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
     if any(node.op == "select" for node in order((energy.expression,))):

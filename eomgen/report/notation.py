@@ -36,6 +36,13 @@ MEANINGS = {
     "Min_x": ("inertia couple of a body about its x axis, minus the rate of its angular momentum", "N*m"),
     "Min_y": ("inertia couple of a body about its y axis, minus the rate of its angular momentum", "N*m"),
     "Min_z": ("inertia couple of a body about its z axis, minus the rate of its angular momentum", "N*m"),
+    "P_x": ("momentum of all bodies together along x, ground axes", "kg*m/s"),
+    "P_y": ("momentum of all bodies together along y, ground axes", "kg*m/s"),
+    "P_z": ("momentum of all bodies together along z, ground axes", "kg*m/s"),
+    "L_x": ("angular momentum of all bodies together, along x, ground axes", "kg*m^2/s"),
+    "L_y": ("angular momentum of all bodies together, along y, ground axes", "kg*m^2/s"),
+    "L_z": ("angular momentum of all bodies together, along z, ground axes", "kg*m^2/s"),
+    "L": ("magnitude of the angular momentum of all bodies together", "kg*m^2/s"),
     "Delta": ("what may be added to a reaction that is indeterminate", ""),
 }
 """letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""

@@ -21,7 +21,7 @@ from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.symbolic.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.linear import solved
 from eomgen.symbolic.normal_form import readable_all, simplest
 from eomgen.symbolic.solving import vanishes
@@ -31,6 +31,7 @@ WORK = 20_000  # products of terms for one value
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
 LONGEST = 600  # characters of these equations
 PATIENCE = 2  # places without a closed form, before equations are no more tried at others
+HALF = Fraction(1, 2)
 NEAR = 1e-9  # of an angle to a quarter turn, or of a coordinate to its start, at which that is tried exactly
 
 State = Mapping[Node, Scalar]
@@ -104,10 +105,13 @@ class ClosedForms:
     def _simple(self, located: Located) -> dict[Node, Scalar]:
         """Quarter turns, zeros and start values that coordinates are near to; whether these hold is to be seen."""
         scope, found = self.statics.system.scope, dict[Node, Scalar]()
+        turning = {e for four in scope.quaternions for e in four}
         for q in self.statics.q:
             number = located.numbers[q]
             quarters = round(number / (np.pi / 2))
             candidates: list[Scalar] = [0 if quarters == 0 else Fraction(quarters, 2) * q.graph.pi]
+            if q in turning:
+                candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
             candidates.append(start_value(scope, scope.model.coordinates[q.name]))
             near = [x for x in candidates if abs(located.value(x) - number) <= NEAR * (1 + abs(number))]
             if near:
@@ -138,6 +142,11 @@ class ClosedForms:
         place = {node: simplest(x, WORK, positive) for node, x in q.items()}
         return Held({**place, **{node: x for node, x in lam.items() if node in single}},
                      {**dict.fromkeys(statics.lam, 0), **lam})  # fmt: skip
+
+
+def _round_components(graph: Graph) -> tuple[Scalar, ...]:
+    """Components of quaternions that turn by 0, 60, 90, 120 or 180 degrees."""
+    return (0, 1, HALF, HALF * graph.sqrt(2), HALF * graph.sqrt(3))
 
 
 def _entangled(statics: StaticEquations) -> int:

@@ -27,6 +27,7 @@ ASIDE = 0.0123  # by which a range is shifted: roots at round numbers do not lie
 GUESSES = 400  # of few coordinates; of more they are fewer
 FEW = 4
 MOST_PLACES = 24  # that many guesses lead to
+MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn freely
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
 SAME = 1e-6  # distance of two places that are one
@@ -82,7 +83,8 @@ class _Search:
         reduced = self._reduced
         if reduced is not None and len(statics.q) <= MOST_ISOLATED and can_isolate(reduced):
             return self._isolated(reduced)
-        found = self._descent.roots_near(self._with_multipliers(self._scattered()), MOST_PLACES)
+        most = MOST_PLACES if not statics.norms else MOST_OF_FAMILIES
+        found = self._descent.roots_near(self._with_multipliers(self._scattered()), most)
         found = [z for z in found if self._is_held(z)]
         return self._sorted(found, complete=False, where="from many guesses")
 

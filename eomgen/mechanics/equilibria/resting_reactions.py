@@ -10,6 +10,7 @@ from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
@@ -30,9 +31,15 @@ class RestingReaction:
     value: Scalar | None
 
 
+def system_at_rest(place: Equilibrium) -> System:
+    """The system over its rates: at rest declared speeds do not matter, nor whether they determine the rates."""
+    system = place.statics.system
+    return system if system.free is None or system.elimination is not None else system.free
+
+
 def state_of(place: Equilibrium) -> dict[Node, Scalar]:
     """Everything that moves, at rest there: exact, or the exact numbers that its floats are."""
-    system = place.statics.system
+    system = system_at_rest(place)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
     inputs = {x: place.statics.given[x] for x in symbols.inputs.values()}
@@ -46,7 +53,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
     Raises:
         DerivationError: a force acts at no place, so that reactions do not follow.
     """
-    system, state = place.statics.system, state_of(place)
+    system, state = system_at_rest(place), state_of(place)
     reactions = reactions_of(system, state)
     positive = positive_parameters(system.scope)
     found = []

@@ -8,7 +8,7 @@ closed form, taken where it agrees with the numbers and the equations hold exact
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from random import Random
@@ -18,6 +18,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
+from eomgen.mechanics.equilibria.families import each_once
 from eomgen.mechanics.equilibria.one_sided import pulling
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
@@ -179,6 +180,7 @@ class _Search:
 
     def equilibria(self) -> Equilibria:
         places = places_of_rest(self.statics, self.values, self.first)
+        places = replace(places, found=tuple(each_once(self.statics, places.found, self.first, self.floats)))
         for q in places.found[:1]:
             refuse_unrelated(self.statics, q[: len(self.statics.q)], self.floats)
         forms = ClosedForms(self.statics, self.values, places.turning)

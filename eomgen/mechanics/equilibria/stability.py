@@ -36,6 +36,7 @@ WORK = 20_000  # products of terms for one entry of K
 MOST_EXACT = 6  # freedoms of a K that is written exactly
 ZERO = 1e-9  # of an eigenvalue of the scaled K, or of a derivative, below which it is 0
 SINGULAR = 1e-7  # of the ties at the place: singular values below this part of the largest are 0
+ROUNDING = 1e-14  # of an entry of J against the largest of its row, below which it is 0
 
 Matrix = tuple[tuple[Any, ...], ...]
 """Of scalars, or of floats where they are not known exactly."""
@@ -129,12 +130,14 @@ class _Place:
         n = len(self.statics.q)
         if not len(J):
             return list(range(n))
-        scaled = balanced(J)[0]
+        scaled = balanced(np.where(abs(J) > ROUNDING * np.max(abs(J), axis=1, keepdims=True), J, 0))[0]
         r = int(np.linalg.matrix_rank(scaled, tol=SINGULAR))
         if r < self._generic_rank:
             return None
         own = {u.name[:-1] for u in self.statics.system.symbols.u}
-        order = sorted(range(n), key=lambda k: self.statics.q[k].name in own)
+        turning = {e: -abs(float(self.state[e])) for four in self.statics.system.scope.quaternions for e in four
+                   if e in self.statics.q}  # of a quaternion the largest follows from the others
+        order = sorted(range(n), key=lambda k: (self.statics.q[k].name in own, turning.get(self.statics.q[k], 1.0)))
         chosen: list[int] = []
         for k in order:  # columns of the dependent coordinates, one by one
             if len(chosen) < r and np.linalg.matrix_rank(scaled[:, [*chosen, k]], tol=SINGULAR) > len(chosen):
@@ -144,7 +147,7 @@ class _Place:
     @cached_property
     def _generic_rank(self) -> int:
         """Of J where the ties are not in a special position."""
-        return rank_of_ties((self.statics.system.free or self.statics.system).ties)
+        return rank_of_ties((self.statics.system.free or self.statics.system).ties) + self.statics.norms
 
     @cached_property
     def _H(self) -> Matrix:
@@ -184,6 +187,8 @@ class _Place:
             solution = linear.solved(
                 [{j: row[k] for j, k in enumerate(others)} for row in J], [-row[a] for row in J], len(others),
                 lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+            if len(solution.constants) < len(others):
+                raise NoValue("the ties do not determine the other coordinates there")
             for j, k in enumerate(others):
                 Z[k][column] = solution.constants[j]
         return Z

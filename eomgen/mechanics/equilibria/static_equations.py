@@ -3,7 +3,7 @@
     Q + J^T lam = 0,   phi = 0        at u = 0, t = 0, driven coordinates held where they start
 
 over all coordinates that are not driven, dependent ones among them. Relations between positions that a velocity row
-gives by itself (a wheel that rolls) are taken from the start.
+gives by itself (a wheel that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more tie.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError
 from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.work import generalized_forces, powered_forces
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
+from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
 from eomgen.symbolic import dense
 from eomgen.symbolic.derivative import depends_on, jacobian, substituted
@@ -51,6 +51,7 @@ class StaticEquations:
         Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
         J: of each closing row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
+        norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
     """
 
     system: System
@@ -62,6 +63,7 @@ class StaticEquations:
     J: tuple[Row, ...]
     lam: tuple[Node, ...]
     phi: Row
+    norms: int = 0
 
     @cached_property
     def forces(self) -> Row:
@@ -133,7 +135,6 @@ def static_equations(system: System) -> StaticEquations:
     scope = free.scope
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
     q = tuple(x for x in scope.symbols.q if x not in driven)
-    _refuse_other_speeds(scope, q)
     given = _given(free, driven)
     rows = [readable_all(substituted(row, given), WORK) for row in free.ties.J]
     forces = generalized_forces(free.loads)
@@ -144,8 +145,21 @@ def static_equations(system: System) -> StaticEquations:
     Q, unbalanced, phi = (readable_all(x, WORK) if x else () for x in (Q, unbalanced, phi))
     lam = free.symbols.lam
     kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
-    return StaticEquations(system, held, q, given, Q, unbalanced, tuple(rows[i] for i in kept),
-                           tuple(lam[i] for i in kept), tuple(x for x in phi if not is_zero(x)))  # fmt: skip
+    statics = StaticEquations(system, held, q, given, Q, unbalanced, tuple(rows[i] for i in kept),
+                              tuple(lam[i] for i in kept), tuple(x for x in phi if not is_zero(x)))  # fmt: skip
+    return with_norms(statics)
+
+
+def with_norms(statics: StaticEquations) -> StaticEquations:
+    """The equations with a tie for the norm of each quaternion that something holds: Q + 2 e lam = 0, e . e = 1."""
+    scope, indifferent = statics.system.scope, statics.indifferent
+    turning = [(four, part) for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True)
+               if not all(e in indifferent for e in four)]  # fmt: skip
+    rows = tuple(tuple(2 * q if q in four else 0 for q in statics.q) for four, _ in turning)
+    lam = tuple(scope.graph.symbol(f"lam(norm of {part.body}, 1)") for _, part in turning)
+    phi = tuple(sum((e * e for e in four), start=-1) for four, _ in turning)
+    return replace(statics, J=(*statics.J, *rows), lam=(*statics.lam, *lam), phi=(*statics.phi, *phi),
+                   norms=len(rows))  # fmt: skip
 
 
 def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
@@ -200,15 +214,6 @@ def _with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
         table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
     model = altered(scope.model, coordinates=Table(table))
     return system_of(model, system.modes), tuple(moved)
-
-
-def _refuse_other_speeds(scope: Scope, q: Sequence[Node]) -> None:
-    """The coordinates of quaternions, which cannot be varied one by one."""
-    turning = {e for four in scope.quaternions for e in four}
-    lacking = [x.name for x in q if x in turning]
-    if lacking:
-        raise NotYet(f"rest of a body that is turned by a quaternion is not sought yet: '{lacking[0]}'",
-                     f"coordinates.{lacking[0]}", "describe the orientation by angles")  # fmt: skip
 
 
 def _refuse_dry_friction(system: System) -> None:

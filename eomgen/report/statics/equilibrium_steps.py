@@ -50,7 +50,9 @@ def balance_step(statics: StaticEquations, reader: Reader) -> Step:
     if statics.held:
         held = [Prose((f"What the model drives is held where it starts: {', '.join(statics.held)}.",))]
     forces = _all_forces(reader, statics)
-    ties = [Formula((reader.shown(x), 0)) for x in statics.phi]
+    own = len(statics.phi) - statics.norms
+    ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
+    ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
     between = [Prose(("The ties hold the coordinates by",))] if ties else []
     return Step("balance", "Balance at rest", (*held, Prose((words, law, ".")), *forces, *between, *ties))
 

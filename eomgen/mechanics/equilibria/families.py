@@ -1,0 +1,84 @@
+"""Places of rest -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
+
+Where the second variation K vanishes in some direction, places of rest can make up a whole family: a body on a ball
+joint hangs at any angle about the vertical. Two places of one family have the same V and the same spectrum of K.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.graph import Node
+
+SAME = 1e-6  # of V and of the eigenvalues of K, against the largest
+FLAT = 1e-8  # of an eigenvalue, below which it is 0
+NOTHING = 1e-25  # of a quaternion's component, which is known to 50 digits
+NEAR = 1e-6  # distance of two places that are one
+
+
+def each_once(
+    statics: StaticEquations, found: Sequence[np.ndarray], guess: np.ndarray, floats: Mapping[Node, float]
+) -> list[np.ndarray]:
+    """The places, the nearest to the guess of those that are one, or one family.
+
+    Args:
+        found: coordinates and multipliers of each, the nearest to the guess first.
+        floats: of the parameters.
+    """
+    if not statics.norms:
+        return list(found)
+    slopes = jacobian(statics.forces, statics.q)
+    kept: list[tuple[np.ndarray, np.ndarray]] = []
+    turned = [_turned(statics, z, guess) for z in found]
+    for z in sorted(turned, key=lambda z: float(np.sum((z[: len(guess)] - guess) ** 2))):
+        values = {**floats, **dict(zip(statics.unknowns, map(float, z), strict=True))}
+        marks = _marks(statics, slopes, z, values)
+        if not any(_is_one(statics, (z, marks), other) for other in kept):
+            kept.append((z, marks))
+    return [z for z, _ in kept]
+
+
+def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.ndarray:
+    """The place with that of e and -e which is nearer to the guess, of every quaternion."""
+    z = z.copy()
+    for four in statics.system.scope.quaternions:
+        places = [statics.q.index(e) for e in four if e in statics.q]
+        if places and float(z[places] @ guess[places]) < 0:
+            z[places] = -z[places]
+        z[places] = np.where(abs(z[places]) < NOTHING, 0.0, z[places])
+    return z
+
+
+def _marks(statics: StaticEquations, slopes, z: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+    """V, and the eigenvalues of K along the ties, by size."""
+    n = len(statics.q)
+    J = statics.slopes(statics.J, z[:n], values)
+    H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)
+    _, sizes, axes = np.linalg.svd(J)
+    Z = axes[int(np.sum(sizes > FLAT * sizes[0])) :].T
+    given = {**{x: 0.0 for x in statics.system.symbols.u}, statics.system.symbols.t: 0.0}
+    (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
+    spectrum = np.linalg.eigvals(Z.T @ H @ Z)
+    return np.array([V, *sorted(spectrum.real)], dtype=float)
+
+
+def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node, float]:
+    found = evaluate(tuple(statics.given.values()), values, FLOAT)
+    return dict(zip(statics.given, map(float, found), strict=True))
+
+
+def _is_one(
+    statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]
+) -> bool:
+    """Whether two places are the same, or of one family."""
+    (z, marks), (y, others) = one, other
+    if np.all(abs(z - y)[: len(statics.q)] <= NEAR):
+        return True
+    size = 1e-300 + np.max(abs(np.concatenate([marks, others])))
+    flat = np.min(abs(marks[1:]), initial=np.inf) <= FLAT * size
+    return bool(flat and np.all(abs(marks - others) <= SAME * size))

@@ -1,0 +1,85 @@
+"""Bodies of the notes that turn in space: what `solve` answers against texts by hand and an oracle in floats."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from random import Random
+from typing import Any
+
+import pytest
+from derivations import MODELS
+from seed_answers_e import ANSWERS, UNITS
+from seed_oracle_e import ORACLES
+
+import eomgen
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.expressions import as_expression, parse
+from eomgen.symbolic.graph import Graph
+
+ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]
+MOVING = ("w1", "w2", "w3", "phi", "theta", "psi", "phi'", "theta'", "psi'")
+
+
+@cache
+def model_of(system: str, other: bool = False) -> eomgen.Model:
+    """The model file; or the same with every parameter another number."""
+    model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
+    if not other:
+        return model
+    changed = {name: replace(model.parameters[name], value=as_expression(f"{x.numerator}/{x.denominator}"))
+               for name, x in numbers_of(system, other).items()}  # fmt: skip
+    return replace(model, parameters=dict(model.parameters) | changed)
+
+
+def numbers_of(system: str, other: bool = False) -> dict[str, Fraction]:
+    """The parameters of the file; or others, close enough for moments of inertia to belong to a body."""
+    rng = Random(system)
+    file = {name: Fraction(p.value.literal) for name, p in model_of(system).parameters.items()}
+    return {name: x * Fraction(rng.randint(90, 99), 100) for name, x in file.items()} if other else file
+
+
+@cache
+def answers(system: str, other: bool = False) -> dict[str, Any]:
+    return eomgen.solve(model_of(system, other))
+
+
+@cache
+def found_by_the_oracle(system: str, other: bool) -> dict[str, float]:
+    return ORACLES[system]({name: float(x) for name, x in numbers_of(system, other).items()})
+
+
+@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
+@pytest.mark.parametrize(("system", "output"), ASKED)
+def test_the_number_is_the_oracles(system, output, other):
+    """dL/dt = torque and R' = R w~, at the file's parameters and at others."""
+    answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]
+    assert answer.value is not None, answer.message
+    assert answer.value == pytest.approx(expected, rel=1e-7, abs=1e-8)
+    assert answer.unit == UNITS.get(system, {}).get(output, "")
+
+
+@pytest.mark.parametrize(("system", "output"), BY_HAND)
+def test_the_exact_answer_is_the_one_by_hand(system, output):
+    """The text that solve gives, at random states and parameters, to 30 digits."""
+    answer, rng, digits, graph = answers(system)[output], Random(system), fifty_digits(), Graph()
+    assert answer.exact is not None, answer.message
+    assert answer.method
+    symbols = {name: graph.symbol(name) for name in (*model_of(system).parameters, *MOVING)}
+    for _ in range(2):
+        state = {x: digits.number(Fraction(rng.randint(20, 90), 30)) for x in symbols.values()}
+        texts = (answer.exact, ANSWERS[system][output])
+        read = [parse(text, references=True).evaluate(symbols | {"pi": graph.pi}) for text in texts]
+        ours, book = evaluate(read, state, digits)
+        assert abs(ours - book) <= 1e-30 * max(1, abs(book)), answer.exact
+
+
+@pytest.mark.parametrize("system", ANSWERS)
+def test_every_output_of_the_file_is_answered(system):
+    """All of them stand in the table, and have a value."""
+    found = answers(system)
+    assert [name for name, answer in found.items() if not answer.answered] == []
+    assert set(found) == set(ANSWERS[system]) == set(found_by_the_oracle(system, False))
+    assert model_of(system).source == system.replace("_", "-")
