@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,12 +15,17 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unknowns import in_loads
 from eomgen.pipeline import METHODS, Equations, derive
+from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.expressions import Call, Reference, parse
+from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Scalar
 
 MODELS = Path(__file__).parent.parent / "models"
 PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])
-LARGE = ("arm7", "chain20")
+LARGE = (
+    "arm7", "bennett", "bricard", "chain20", "delta_robot", "puma560", "space_manipulator", "stewart_platform",
+    "whipple_bicycle",
+)  # fmt: skip
 
 # closing ties, a driven coordinate, inputs, springs, and names that look alike or are special in a markup language
 LOOP = r"""
@@ -198,6 +204,15 @@ def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = 
         return graph.select(*args) if call.name == "select" else graph.call(call.name, *args)
 
     return expression.evaluate(lookup, call=called)
+
+
+def on_spheres(equations: Equations, pairs: Sequence[tuple[Scalar, Scalar]]) -> list[tuple[Scalar, Scalar]]:
+    """The pairs where every quaternion has norm 1: its points by their stereographic image."""
+    found: dict[Node, Scalar] = {}
+    for e0, *others in equations.system.scope.quaternions:
+        square = sum((e * e for e in others), start=0)
+        found |= {e0: over(1 - square, 1 + square)} | {e: over(2 * e, 1 + square) for e in others}
+    return [substituted(pair, found) for pair in pairs] if found else list(pairs)
 
 
 def free_system(equations: Equations) -> System:

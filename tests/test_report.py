@@ -8,7 +8,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from derivations import LARGE, by_every_method, derivable, equations, free_system, read_back, residuals, symbols_named
+from derivations import (
+    LARGE,
+    by_every_method,
+    derivable,
+    equations,
+    free_system,
+    on_spheres,
+    read_back,
+    residuals,
+    symbols_named,
+)
 
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
@@ -21,7 +31,7 @@ from eomgen.report.latex import symbols_in
 from eomgen.report.notation import MEANINGS, quantities
 from eomgen.report.payload import equations_payload
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Derivation, Entry, Formula, Name, Partial, Rate, Step
+from eomgen.report.statements import Derivation, Entry, Formula, Name, Partial, Prose, Rate, Step
 from eomgen.report.text import WIDTH, broken, formula_text
 from eomgen.symbolic.decimals import MOST_DIGITS
 from eomgen.symbolic.derivative import gradient, substituted
@@ -90,7 +100,7 @@ def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     assert_printed_equations_are_those_of_motion(derived, derived.derivation)
 
 
-@pytest.mark.parametrize("name", LARGE)
+@pytest.mark.parametrize("name", ["arm7", "chain20"])
 def test_a_full_derivation_of_a_large_model_reads_back_as_its_equations_of_motion(name):
     """M a + c = Q through all of z1, z2, ..., each printed once, before its use"""
     derived = equations(name)
@@ -116,7 +126,13 @@ def assert_printed_equations_are_those_of_motion(derived: Equations, derivation:
     if derived.graph.friction:
         motion = dict(zip(derived.graph.symbols.a, derived.graph.accelerations or (), strict=True))
         pairs = [substituted(pair, motion) for pair in pairs]
-    assert equal_at_random_states(pairs).equal
+    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+
+
+def is_complete(part: Step) -> bool:
+    """Whether nothing of a step is too long to print."""
+    words = [piece for s in part.statements if isinstance(s, Prose) for piece in s.pieces if isinstance(piece, str)]
+    return "too long to print" not in "".join(words)
 
 
 def by_energies(name: str) -> bool:
@@ -128,10 +144,16 @@ def by_energies(name: str) -> bool:
 def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name):
     """dT/du, d/dt dT/du and dT/dq of T = sum of the bodies' T, all as printed"""
     derived = equations(name)
-    total = next(f for f in step(derived.derivation, "kinetic_energy").statements[::-1] if isinstance(f, Formula))
-    T = read_back(to_text(total.sides[1]), derived)
+    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
+    energy = step(derived.derivation, "kinetic_energy")
     system = _printed_system(derived)
-    pairs = [(T, kinetic_energy(system.motion))]
+    for free in (*system.symbols.u, *system.symbols.a):  # rates of dependent coordinates, as they stand there
+        also.pop(free.name, None)
+    T = kinetic_energy(system.motion)
+    pairs = []
+    if is_complete(energy):
+        total = next(f for f in energy.statements[::-1] if isinstance(f, Formula))
+        pairs.append((read_back(to_text(total.sides[1]), derived, also), T))
     for formula in _derivatives(derived.derivation):
         of, x = formula.sides
         momentum = of.of if isinstance(of, Rate) else of
@@ -140,9 +162,10 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
             expected = system.scope.with_accelerations((expected,))[0]
         elif isinstance(of, Partial) and of.by in system.symbols.q:
             expected = per_speed(system.motion, gradient(T, system.symbols.q))[moved_coordinates(system).index(of.by)]
-        pairs.append((read_back(to_text(x), derived), expected))
-    assert len(pairs) == 1 + 3 * len(system.symbols.u)
-    assert equal_at_random_states(pairs).equal
+        pairs.append((read_back(to_text(x), derived, also), expected))
+    if all(map(is_complete, derived.derivation.steps)):
+        assert len(pairs) == 1 + 3 * len(system.symbols.u)
+    assert equal_at_random_states(on_spheres(derived, pairs)).equal
 
 
 def _printed_system(derived: Equations) -> System:
@@ -166,7 +189,7 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
     also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
     forces = generalized_forces(_printed_system(derived).loads)
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
-    assert equal_at_random_states(pairs).equal
+    assert equal_at_random_states(on_spheres(derived, pairs)).equal
 
 
 @pytest.mark.parametrize("name", [name for name in SMALL if not by_energies(name)])
@@ -182,7 +205,7 @@ def test_printed_balance_of_momentum_is_that_of_the_equations(name):
     known |= {Name("c", by=x): c for x, c in zip(u, graph.c, strict=True)}
     known |= {Name("Q", by=x): Q for x, Q in zip(q, graph.Q, strict=True)}
     pairs = [(read_back(to_text(printed.get(name, 0)), derived, also), x) for name, x in known.items()]
-    assert equal_at_random_states(pairs).equal
+    assert equal_at_random_states(on_spheres(derived, pairs)).equal
 
 
 @pytest.mark.parametrize("name", [name for name in SMALL if name != "loop"])
@@ -245,7 +268,7 @@ def test_the_payload_reads_back_as_the_equations(name):
     for equation, residual in zip(data["equations"], residuals(derived), strict=True):
         left, right = equation.split(" = ")
         pairs.append((read_back(left, derived, also) - read_back(right, derived, also), residual))
-    assert equal_at_random_states(pairs).equal
+    assert equal_at_random_states(on_spheres(derived, pairs)).equal
 
 
 def test_the_payload_has_the_keys_that_others_rely_on():
@@ -295,7 +318,7 @@ def test_rendering_is_the_same_on_every_run_and_stays_readable(name, format):
 def test_what_is_too_long_to_print_is_said_with_its_size(name):
     """operations, and where to get them"""
     text = rendered(equations(name).derivation, "text")
-    assert re.search(r"The equations take \d{4} operations and are too long to print here", text)
+    assert re.search(r"The equations take \d{3,5} operations and are too long to print here", text)
     assert "`eomgen derive MODEL --full`" in text
     assert equations(name).derivation.equations == ()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.assembly import Assembly
@@ -29,11 +29,13 @@ from eomgen.symbolic.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.layout import factors, products_of
-from eomgen.symbolic.normal_form import cancelled, common_factor, readable
+from eomgen.symbolic.normal_form import cancelled, common_factor, readable, simple_constants
 from eomgen.symbolic.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
+SHORTEST = "In their shortest form, what does not accelerate on the right"
+SIMPLER = (1, 0.5)  # how much shorter constants are to become where they are multiplied out one by one
 QUOTIENT = 200  # characters of a solved acceleration in one line, numerator over denominator
 
 
@@ -108,7 +110,7 @@ def _equations(
         return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
     equations, definitions = found
     statements = (
-        Prose(rule), Prose(("In their shortest form, what does not accelerate on the right, with names for parts:",)),
+        Prose(rule), Prose((f"{SHORTEST}{', with names for parts' if definitions else ''}:",)),
         *map(Formula, definitions), *printed(system, equations), *closing(reader, assembly),
     )  # fmt: skip
     return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
@@ -134,7 +136,16 @@ def _whole(reader: Reader, assembly: Assembly) -> tuple[list[Equation], tuple[tu
 def _shortest_sides(reader: Reader, assembly: Assembly) -> tuple[Scalar, ...]:
     """Left and right of M a = forcing + J^T lam, row after row."""
     rows = sides_of(assembly, assembly.M, [0] * len(assembly.M), assembly.forcing)
-    return reader.with_symbols([x for row in rows for x in (row.left, row.right)])
+    sides = [x for row in rows for x in (row.left, row.right)]
+    simple = simple_constants(sides, assembly.symbols.parameters.values())
+    forms = [sides, *(_with_shorter(sides, simple, share) for share in SIMPLER)]
+    return reader.with_symbols(min(forms, key=lambda form: operations(form).total))
+
+
+def _with_shorter(sides: Sequence[Scalar], simple: Mapping[Node, Scalar], share: float) -> tuple[Scalar, ...]:
+    """The sides with the constants that keep that share of their operations at most."""
+    size = {x: share * operations((x,)).total for x in simple}
+    return substituted(sides, {x: found for x, found in simple.items() if operations((found,)).total <= size[x]})
 
 
 def _named(

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.derivative import depends_on, substituted, tangent
-from eomgen.symbolic.evaluation import united
+from eomgen.symbolic.evaluation import order, united
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expansion import Expansion, expanded
 from eomgen.symbolic.graph import Graph, Node, Number, Scalar
@@ -24,6 +24,7 @@ from eomgen.symbolic.text import text_size
 from eomgen.symbolic.writing import Writer, is_rate
 
 LIMIT = 50_000
+CONSTANT = 1_000  # products of terms for a constant
 
 __all__ = [
     "LIMIT",
@@ -36,6 +37,7 @@ __all__ = [
     "normal_form",
     "readable",
     "readable_all",
+    "simple_constants",
     "simplest",
 ]
 
@@ -226,6 +228,18 @@ def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = (), mos
     except TooLarge:
         return x
     return rebuilt_as_written(min(forms, key=_length))
+
+
+def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) -> dict[Node, Scalar]:
+    """All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2."""
+    constant = set(parameters)
+    nodes = order(tuple(scalars))
+    for x in nodes:
+        if x.args and all(type(a) is not Node or a in constant for a in x.args):
+            constant.add(x)
+    carried = {x for x in scalars if type(x) is Node and x in constant}
+    carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
+    return {x: simplest(x, CONSTANT) for x in carried if x.args}
 
 
 def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Scalar:

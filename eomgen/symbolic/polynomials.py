@@ -115,7 +115,7 @@ class Polynomials:
 def _coprime(above: Element, below: Element) -> tuple[Element, Element]:
     """The two without their common divisor; as they are where sympy finds none."""
     try:
-        _, above, below = above.cofactors(below)
+        _, *found = above.cofactors(below)
     except TypeError:  # its heuristic takes the root of a huge integer, and gets a float
-        pass
-    return above, below
+        return above, below
+    return found[0], found[1]
