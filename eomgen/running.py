@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -12,24 +11,27 @@ import numpy as np
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.equations import Equations
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.edges import edges_of
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.edges import NEAR, edges_of, left_of, stopped_at
+from eomgen.mechanics.elimination import singular_blocks
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.gimbal import locks_of
 from eomgen.mechanics.stabilization import stabilized
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.mechanics.wellposed import is_conservative
+from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition, condition_of
 from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.events import Events
+from eomgen.simulation.endings import MET
+from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.independence import Independence
 from eomgen.simulation.integrate import SAMPLES, check, integrate
 from eomgen.simulation.joined import thinned
 from eomgen.simulation.knots import knots_of
 from eomgen.simulation.passages import Nearness
-from eomgen.simulation.phases import MET, run_phases
+from eomgen.simulation.phases import run_phases
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import with_reactions
 from eomgen.simulation.singular import ended_where_singular
@@ -37,8 +39,9 @@ from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
+from eomgen.symbolic.graph import Node
 
-EDGE = 1e-5  # of what vanishes at an edge: a run ends there
+STILL = 1e-9  # a rate or acceleration that is none, in SI
 CHOOSE = "declare other speeds"
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
@@ -66,18 +69,49 @@ def run(
     p = parameter_vector(equations.model, parameters)
     condition = None if until is None else condition_of(equations.model, until)
     check(0.0, time, how)
+    _refuse_given(equations.model, start or {})
     how = replace(how.of_one_step(), knots=knots_of(equations.model))
     if has_phases(equations.model):
         found = run_phases(equations.model, time=time, p=p, parameters=parameters, start=start, target=target,
                            samples=samples, how=how, until=condition)  # fmt: skip
-        rhs = equations.rhs(target)
+        rhs, stage = equations.rhs(target), found.phases[0].stage
+        begun = None if stage is None else start_of_motion(stage.system, parameters, start)
+        found = found if begun is None else replace(found, assembled=begun.words)
     else:
         begun = start_of_motion(equations.system, parameters, start)
         x0 = np.array(list(begun.values.values()))
+        _refuse_fork_at_rest(equations, begun, x0, p)
         rhs, found = _one_phase(equations, time, x0, p, how=how, target=target, samples=samples, condition=condition)
         found = replace(found, assembled=begun.words)
     found = with_reactions(_told(found, until), lambda: equations.reactions, rhs, p)
     return thinned(found, samples) if has_phases(equations.model) else found
+
+
+def _refuse_given(model: Model, start: Mapping[str, float]) -> None:
+    """Refuses a start of what is given at every instant.
+
+    Raises:
+        UsageError: a coordinate with a `motion`.
+    """
+    for name in start:
+        if name in model.coordinates and model.coordinates[name].motion is not None:
+            raise UsageError(f"'{name}' starts where its `motion` says", mend="give no other start")
+
+
+def _refuse_fork_at_rest(equations: Equations, begun: Start, x0: np.ndarray, p: np.ndarray) -> None:
+    """Refuses a start at rest where branches meet, unless it stays at rest.
+
+    Raises:
+        DerivationError: forces pull it away, and the ties do not say on which branch.
+    """
+    if begun.fork is None:
+        return
+    dx = equations.rhs("numpy")(0.0, x0, p)
+    rates, accelerations = np.split(np.abs(dx), [len(equations.coordinates)])
+    if np.max(rates, initial=0.0) <= STILL and np.max(accelerations, initial=0.0) > STILL:
+        what = f"it starts at rest in {begun.fork.words}: forces pull it away, on which branch nothing says"
+        raise DerivationError(what, f"constraints.{begun.fork.ties[0]}",
+                              "give it start speeds, or start beside that position")  # fmt: skip
 
 
 def _one_phase(
@@ -103,7 +137,7 @@ def _one_phase(
         stabilization=how.stabilization,
         every=how.every,
         most_steps=how.most_steps,
-        events=_events(equations, assembly, p, condition),
+        events=_events(equations, p, condition, TOUCH * how.rtol),
         slope=slope_of(system, assembly, p, target) if how.method in IMPLICIT else None,
         nearness=_nearness(equations, p),
         knots=how.knots,
@@ -114,8 +148,7 @@ def _one_phase(
 
 def _nearness(equations: Equations, p: np.ndarray) -> Nearness | None:
     """How near a motion is to positions in which the ties do not determine it; None without ties."""
-    elimination = equations.system.elimination
-    blocks = () if elimination is None else elimination.blocks
+    blocks = singular_blocks(equations.system.elimination, equations.system.scope)
     determinants = _along(equations, tuple(block.determinant for block in blocks), p) if blocks else None
     rows = _independence(equations, p)
     what = tuple(map(str, blocks))
@@ -144,19 +177,20 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
     return replace(equations, graph=with_friction(system, stabilized(system, recursive.assemble(system), rates)))
 
 
-def _events(
-    equations: Equations, assembly: Assembly, p: np.ndarray, condition: Condition | None
-) -> Events | None:
+def _events(equations: Equations, p: np.ndarray, condition: Condition | None, touch: float) -> Events | None:
     """The edges of the ties, and last the condition; None without any."""
     system = equations.system
-    solve = bordered(assembly) if system.symbols.u else None
-    values = [edge.vanishes - Fraction(EDGE) for edge in edges_of(system.motion)]
+    solve = bordered(equations.graph) if system.symbols.u else None
+    values = left_of(edges_of(system.motion))
     asked = [] if condition is None else [condition(system)]
+    if any(type(x) is not Node for x in asked):
+        raise UsageError("nothing in the condition moves: it holds always or never", mend='write "theta = pi/2"')
     if not values and not asked:
         return None
     function = compiled(program_of((*values, *asked), system.symbols, inputs=system.inputs, solve=solve), "numpy")
     last = (len(values),) if asked else ()
-    return Events(lambda t, x: function.many(t, x, p), np.full(len(values) + len(asked), MET), either=last)
+    floors = np.full(len(values) + len(asked), MET)
+    return Events(lambda t, x: function.many(t, x, p), floors, either=last, touch=touch)
 
 
 def _at_edge(equations: Equations, found: Trajectory, p: np.ndarray) -> Trajectory:
@@ -166,9 +200,9 @@ def _at_edge(equations: Equations, found: Trajectory, p: np.ndarray) -> Trajecto
         return found
     left = _along(equations, tuple(edge.vanishes for edge in edges), p)(found.t[-1:], found.x[-1:])[0]
     k = int(np.argmin(left))
-    if left[k] > 2 * EDGE:
+    if left[k] > 2 * NEAR:
         return found
-    message = f"Stopped at t = {found.t[-1]:.6g} s: {edges[k].words}, and how it goes on is not determined."
+    message = stopped_at(edges[k], found.t[-1])
     phases = (*found.phases[:-1], replace(found.phases[-1], ended_by=message))
     return replace(found, status="singular", message=message, phases=phases)
 
@@ -198,8 +232,8 @@ def _watched(
     def ended(run: Trajectory, determinants: Any, what: Sequence[str], **told: str) -> Trajectory:
         return ended_where_singular(run, determinants, what, again, rtol=how.rtol, **told)
 
-    if system.elimination is not None:
-        blocks = system.elimination.blocks
+    blocks = singular_blocks(system.elimination, system.scope)
+    if blocks:
         determinants = _along(equations, tuple(block.determinant for block in blocks), p)
         found = ended(found, determinants, [str(block) for block in blocks])
     if system.declared:
@@ -218,8 +252,9 @@ def _watched(
 def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:
     """(t n, x n x states) -> the outputs at each state, n x outputs."""
     function = compiled(program_of(outputs, equations.graph.symbols, inputs=equations.system.inputs), "numpy")
+    one = function.at(p)
 
     def along(t: Any, x: Any) -> np.ndarray:
-        return function(t[0], x[0], p)[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
+        return one(t[0], x[0])[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
 
     return along

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from eomgen.codegen.sparsity import mask_of, members
 from eomgen.errors import DerivationError
 from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Scalar, is_zero
@@ -78,14 +79,13 @@ def _partners(rows: Sequence[Row], k: int, pivots: list[int]) -> list[int]:
 def _eliminations(M: Sequence[Row]) -> list[tuple[int, int]]:
     """(pivot, number of its partners) in the order of elimination."""
     n = len(M)
-    neighbours = [{i for i in range(n) if i != k and not is_zero(M[k][i])} for k in range(n)]
+    neighbours = [mask_of(i for i in range(n) if i != k and not is_zero(M[k][i])) for k in range(n)]
     remaining = list(range(n))
     chosen = []
     while remaining:
-        k = min(remaining, key=lambda i: (len(neighbours[i]), -i))
+        k = min(remaining, key=lambda i: (neighbours[i].bit_count(), -i))
         remaining.remove(k)
-        chosen.append((k, len(neighbours[k])))
-        for i in neighbours[k]:
-            neighbours[i] |= neighbours[k] - {i}
-            neighbours[i].discard(k)
+        chosen.append((k, neighbours[k].bit_count()))
+        for i in members(neighbours[k]):
+            neighbours[i] = (neighbours[i] | neighbours[k]) & ~mask_of((i, k))
     return chosen

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Functions, Target
+from eomgen.codegen.trial import Address
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
@@ -64,10 +65,9 @@ class RightHandSide:
             raise _wrong_length("inputs", self.inputs, len(inputs))
         return self._one(t, x, known[1], inputs)
 
-    def at(self, p: Any) -> Callable[[float, Any], np.ndarray]:
+    def at(self, p: Any) -> Rate:
         """(t, x) -> dx for given parameters and the model's own inputs: a call without checks, for integrators."""
-        one, known = self._one, self._constants(p)
-        return lambda t, x: one(t, x, known, None)
+        return Rate(self._functions, self._constants(p))
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
         """dx at n states at once: t n or one number, x n x states, inputs () or n x inputs -> n x outputs."""
@@ -97,6 +97,17 @@ class RightHandSide:
         if p.shape != (len(self.parameters),):
             raise _wrong_length("p", self.parameters, p.size)
         return p
+
+
+class Rate:
+    """(t, x) -> dx; `address` is where a compiled one lies, None of others."""
+
+    def __init__(self, functions: Functions, known: Any) -> None:
+        self._one, self._known = functions.one, known
+        self.address: Address | None = None if functions.address is None else functions.address(known)
+
+    def __call__(self, t: float, x: Any) -> np.ndarray:
+        return self._one(t, x, self._known, None)
 
 
 def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0: Any = None) -> RightHandSide:

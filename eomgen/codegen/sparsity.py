@@ -7,7 +7,7 @@ Source: Davis, Direct Methods for Sparse Linear Systems (2006), chapters 3 and 4
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -54,31 +54,45 @@ def zeros_of(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
         M: symmetric, n x n; structural zeros are the number 0.
         J: k x n.
     """
-    n = len(M)
-    later = [{i for i in range(j + 1, n) if not is_zero(M[j][i])} for j in range(n)]
-    return _filled(later, _touched(J))
+    return _filled(_later(M), _touched(J))
 
 
 def zeros_with_ties(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
     """The same of M + J^T W J with any diagonal W."""
-    n, touched = len(M), _touched(J)
-    later = [{i for i in range(j + 1, n) if not is_zero(M[j][i])} for j in range(n)]
+    later, touched = _later(M), _touched(J)
     for row in touched:
-        for j in row:
-            later[j] |= {i for i in row if i > j}
+        for j in members(row):
+            later[j] |= _above(row, j)
     return _filled(later, touched)
 
 
-def _touched(J: Sequence[Row]) -> list[set[int]]:
-    return [{i for i, x in enumerate(row) if not is_zero(x)} for row in J]
+def mask_of(places: Iterable[int]) -> int:
+    """A set of places as the bits of a number: united and counted at once."""
+    return sum(1 << i for i in places)
 
 
-def _filled(later: list[set[int]], reach: list[set[int]]) -> Zeros:
+def members(mask: int) -> list[int]:
+    """The places in a mask, in their order."""
+    return [i for i, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
+
+
+def _above(mask: int, j: int) -> int:
+    return mask >> (j + 1) << (j + 1)
+
+
+def _later(M: Sequence[Row]) -> list[int]:
+    n = len(M)
+    return [mask_of(i for i in range(j + 1, n) if not is_zero(M[j][i])) for j in range(n)]
+
+
+def _touched(J: Sequence[Row]) -> list[int]:
+    return [mask_of(i for i, x in enumerate(row) if not is_zero(x)) for row in J]
+
+
+def _filled(later: list[int], reach: list[int]) -> Zeros:
     """Eliminating column j joins its partners to one another; a row that has j has its partners too."""
     for j, partners in enumerate(later):
-        for i in partners:
-            later[i] |= {other for other in partners if other > i}
-        for row in reach:
-            if j in row:
-                row |= partners
-    return Zeros(tuple(tuple(sorted(p)) for p in later), tuple(tuple(sorted(row)) for row in reach))
+        for i in members(partners):
+            later[i] |= _above(partners, i)
+        reach = [row | partners if row >> j & 1 else row for row in reach]
+    return Zeros(tuple(tuple(members(mask)) for mask in later), tuple(tuple(members(mask)) for mask in reach))

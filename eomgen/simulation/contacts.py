@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from eomgen.mechanics.contacts import Mode
@@ -31,6 +31,14 @@ class Configuration:
         """The ties that do not hold."""
         return tuple(name for name, mode in self.modes.items() if not mode.closed)
 
+
+
+def by_the_law(model: Model, configuration: Configuration) -> Configuration:
+    """The configuration where what slides on a surface rubs along v/|v|, which has no value where v is 0."""
+    surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
+    modes = {name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
+             for name, mode in configuration.modes.items()}  # fmt: skip
+    return replace(configuration, modes=Table(modes))
 
 
 def has_phases(model: Model) -> bool:

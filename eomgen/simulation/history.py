@@ -9,8 +9,9 @@ import numpy as np
 
 from eomgen.model.parts import Model
 from eomgen.simulation.course import Course, at_start, course_of
+from eomgen.simulation.endings import Condition, met
 from eomgen.simulation.joined import told
-from eomgen.simulation.phases import MET, Condition, Plan, passed
+from eomgen.simulation.phases import Plan, passed
 from eomgen.simulation.stage import Stage, Values
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.stretch import Stretch
@@ -64,27 +65,18 @@ def history(
     plan = Plan(time, how, None, until)
     found = []
     for stretch in passed(course, at_start(course, 0.0, parameters, start), plan):
-        met = until is not None and stretch.bound is not None and _met(stretch, until)
-        found.append(_passage(course, stretch, until, met))
-        if met:
+        holds = until is not None and stretch.bound is not None and met(stretch, until)
+        found.append(_passage(course, stretch, until, holds))
+        if holds:
             break
     return tuple(found)
 
 
-def _met(stretch: Stretch, until: Condition) -> bool:
-    """Whether the condition holds where a phase ends, and did not hold all along."""
-    run, stage = stretch.run, stretch.stage
-    t, x = np.append(run.t, run.end), np.vstack([run.x, run.last])
-    size = np.abs(stage.evaluated(t, x, (until(stage),))[:, 0])
-    largest = float(np.max(size))
-    return bool(size[-1] <= MET * max(1.0, largest) < largest)
-
-
-def _passage(course: Course, stretch: Stretch, until: Condition | None, met: bool) -> Passage:
+def _passage(course: Course, stretch: Stretch, until: Condition | None, holds: bool) -> Passage:
     here, stage, run, bound = stretch.here, stretch.stage, stretch.run, stretch.bound
     after, follows = stretch.after, None
     value: Scalar | None
-    if met or (bound is None and run.crossing is not None):
+    if holds or (bound is None and run.crossing is not None):
         assert until is not None
         follows = None if after is None else (course.stages.of(after.configuration), after.values)
         kind, owner, value = "condition", "", until(stage)

@@ -30,8 +30,9 @@ class Independence:
 
     def words(self, t: np.ndarray, x: np.ndarray) -> str:
         """Which ties depend on one another at the worst of the states."""
-        U, sizes, _ = np.linalg.svd(self._scaled(t, x))
-        shares = np.abs(U[int(np.argmin(sizes[:, self.rank - 1])), :, self.rank - 1])
+        J = self._scaled(t, x)
+        worst = int(np.argmin(np.linalg.svd(J, compute_uv=False)[:, self.rank - 1]))
+        shares = np.abs(np.linalg.svd(J[worst])[0][:, self.rank - 1])
         names = dict.fromkeys(tie for tie, share in zip(self.ties, shares, strict=True) if share > SHARE)
         listed = ", ".join(f"'{name}'" for name in names)
         return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
@@ -48,7 +49,9 @@ class Independence:
 
     def J(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """J at n states, n x k x nu; 0 where it has no value."""
-        return np.nan_to_num(self.rows(t, x)).reshape(len(t), len(self.ties), -1)
+        values = self.rows(t, x)
+        known = np.isfinite(values)
+        return (values if known.all() else np.where(known, values, 0.0)).reshape(len(t), len(self.ties), -1)
 
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         J = self.J(t, x)
@@ -56,9 +59,9 @@ class Independence:
 
 
 def _lengths(J: np.ndarray) -> np.ndarray:
-    found: np.ndarray = np.max(np.linalg.norm(J, axis=2, keepdims=True), axis=0, initial=0.0)
+    found: np.ndarray = np.sqrt(np.einsum("nkj,nkj->nk", J, J)).max(axis=0, initial=0.0)[:, None]
     return found
 
 
 def _divisor(lengths: np.ndarray) -> np.ndarray:
-    return np.where(lengths > 0, lengths, 1.0)
+    return lengths if lengths.all() else np.where(lengths > 0, lengths, 1.0)

@@ -65,18 +65,18 @@ class Nearness:
         """The nearness at n states."""
         with np.errstate(all="ignore"):
             sizes = np.abs(self._measured(t, x))
-        self.largest = np.maximum(self.largest, np.max(sizes, axis=0, initial=0.0))
-        scaled: np.ndarray = np.min(sizes / np.where(self.largest > 0, self.largest, 1.0), axis=1, initial=1.0)
-        return scaled
+        self.largest = largest = np.maximum(self.largest, sizes.max(axis=0, initial=0.0))
+        scaled: np.ndarray = (sizes / (largest if largest.all() else np.where(largest > 0, largest, 1.0))).min(axis=1)
+        return np.minimum(scaled, 1.0)
 
     def _measured(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
-        found = [np.zeros((len(t), 0))]
+        found = []
         if self.determinants is not None:
             found.append(np.nan_to_num(self.determinants(t, x)).reshape(len(t), -1))
         if self.rows is not None:
             least, self.lengths = self.rows.least(t, x, self.lengths)
             found.append(least)
-        return np.hstack(found)
+        return found[0] if len(found) == 1 else np.hstack(found)
 
     def words(self, t: float, x: np.ndarray) -> str:
         """What is not determined at a state near a singular position."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eomgen.mechanics.edges import left_of, stopped_at
 from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition as Ending
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.course import Course, Standing, at_start, course_of
-from eomgen.simulation.events import Events
+from eomgen.simulation.endings import MET, Condition, ended
+from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.joined import joined
 from eomgen.simulation.solvers import IMPLICIT
@@ -19,15 +21,10 @@ from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Run, Stepping, march
 from eomgen.simulation.stretch import Stretch
 from eomgen.simulation.trajectory import Trajectory
-from eomgen.symbolic.graph import Scalar
 
 MOST_PHASES = 1000
 MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
 AT_ONCE = 1e-9  # s
-MET = 1e-9  # of a condition's size, at which it holds
-
-Condition = Callable[[Stage], Scalar]
-"""What is asked to become 0, over the symbols, accelerations and multipliers of a stage."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +65,8 @@ def run_phases(
     course = course_of(model, p, target, how.rates if how.stabilization == "baumgarte" else None)
     first = at_start(course, begin, parameters, start)
     condition = None if until is None else lambda stage: until(stage.system)
-    stretches = list(passed(course, first, Plan(end, how, instants, condition)))
-    return joined(course, stretches)
+    stretches = passed(course, first, Plan(end, how, instants, condition))
+    return joined(course, list(stretches if condition is None else ended(stretches, condition)))
 
 
 def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
@@ -84,8 +81,8 @@ def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
             return
         run = _run(stage, here, plan)
         crossing = run.crossing
-        if crossing is None or crossing.index == len(stage.bounds):
-            yield Stretch(here, stage, run, None, None)
+        if crossing is None or crossing.index >= len(stage.bounds):
+            yield Stretch(here, stage, _at_edge(stage, run), None, None)
             return
         soon = run.end - here.t <= AT_ONCE
         hasty, count = hasty + 1 if soon else 0, count + 1
@@ -106,16 +103,27 @@ def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
 
 
 def _events(stage: Stage, t: float, x: np.ndarray, plan: Plan) -> Events | None:
+    """The bounds of the contacts, the edges of the ties, and last the condition; None without any."""
     floors = stage.floors(t, x)
-    if plan.until is None:
+    asked = () if plan.until is None else (plan.until(stage),)
+    further = (*left_of(stage.edges), *asked)
+    if not further:
         return Events(stage.watched, floors) if stage.bounds else None
-    condition = (plan.until(stage),)
-    function = stage.function(condition)
+    function = stage.function(further)
 
     def values(t: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.hstack([stage.watched(t, x), function.many(t, stage.inner(x), stage.p)])
 
-    return Events(values, np.append(floors, MET), either=(len(floors),))
+    floors = np.append(floors, np.full(len(further), MET))
+    return Events(values, floors, either=(len(floors) - 1,) if asked else (), touch=TOUCH * plan.how.rtol)
+
+
+def _at_edge(stage: Stage, run: Run) -> Run:
+    """The run; where it came to an edge of a tie, that is why it ended."""
+    k = -1 if run.crossing is None else run.crossing.index - len(stage.bounds)
+    if not 0 <= k < len(stage.edges):
+        return run
+    return replace(run, status="singular", message=stopped_at(stage.edges[k], run.end), crossing=None)
 
 
 def _endless(stage: Stage, count: int, hasty: int) -> str:

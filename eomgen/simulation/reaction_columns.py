@@ -27,6 +27,7 @@ from eomgen.symbolic.graph import Scalar
 SINGULAR = 1e-7  # of a column's distance from those before it, against its length
 TRACELESS = 1e-6  # of an asked reaction's part in the null space
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once
+ROUNDING = 1e-13  # of the largest entry of its column, below which an entry of A is none: no row is made of these
 BALANCED = 1e-6  # of what the bodies' equations leave over, against their right side
 
 
@@ -115,6 +116,7 @@ def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
     if not A.shape[2] or not sound.any():
         found[sound] = 0.0
         return found
+    A = np.where(np.abs(A) > ROUNDING * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
     R = np.asarray(np.linalg.qr(np.concatenate([A[sound], b[sound][:, :, None]], axis=2), mode="r"))

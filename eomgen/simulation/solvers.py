@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.simulation.quick_steps import quick
+
 EXPLICIT = ("DOP853", "RK45", "RK23")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 METHODS = EXPLICIT + IMPLICIT
@@ -39,7 +41,10 @@ def solver_of(
 
     explicit = method in EXPLICIT  # these shrink the step where a trial has no value
     options = {"rtol": rtol, "atol": atol} | ({} if explicit or slope is None else {"jac": slope})
+    at = getattr(f, "address", None) if explicit else None
     with np.errstate(all="ignore"):
+        if at is not None:
+            return quick(method)(f, span[0], x0, span[1], at=at, **options)
         return getattr(scipy.integrate, method)(f if explicit else finite, span[0], x0, span[1], **options)
 
 

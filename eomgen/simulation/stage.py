@@ -12,9 +12,11 @@ from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.edges import edges_of
 from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
+from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.projection import Projection, projection_of
@@ -156,11 +158,12 @@ class Stage:
         return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
 
     def floors(self, t: float, x: np.ndarray) -> np.ndarray:
-        """What is rounding in each of the bounds, at one state."""
+        """What is rounding in each of the bounds, at one state; a speed that has just come near to 0 may pass it."""
         n = len(self.coordinates)
         places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
         size = {"force": FORCE * self.sizes(t, x)[0], "rate": RATE * rates, "gap": GAP * places}
-        return np.array([size[bound.unit] for bound in self.bounds]) + TINY
+        passing = [float(stopped_below(self.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.bounds]
+        return np.maximum([size[bound.unit] for bound in self.bounds], passing) + TINY
 
     def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The bounds along the states, n x k; nan where a reaction has no single value."""
@@ -184,6 +187,11 @@ class Stage:
 
     def contact(self, name: str) -> Contact:
         return next(contact for contact in self.contacts if contact.name == name)
+
+    @cached_property
+    def edges(self) -> tuple[Edge, ...]:
+        """Where the contacts that are closed no longer say at which place they hold."""
+        return edges_of(self.system.motion, self.configuration.open)
 
     def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:
         """Functions of q, u, t, accelerations and multipliers along the states, n x scalars."""

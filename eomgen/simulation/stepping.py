@@ -21,6 +21,7 @@ MOST_STEPS = 10_000_000
 LOOKED_OUT = -1  # the index of a crossing that a lookout found
 SHARE = 0.1  # of the tolerances of a run: those of one step
 LEAST = 2.3e-14  # rtol, below which rounding is larger
+RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
 STABILIZATIONS = ("projection", "baumgarte", "none")
 
 Dense = Callable[[], Callable[[Any], np.ndarray]]
@@ -47,7 +48,7 @@ class Stepping:
     most_steps: int = MOST_STEPS
     stabilization: str = "projection"
     every: int | None = None
-    rates: tuple[float, float] = (10.0, 10.0)
+    rates: tuple[float, float] = RATES
     knots: tuple[float, ...] = ()
 
     def of_one_step(self) -> Stepping:

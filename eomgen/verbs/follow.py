@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.part import altered
@@ -25,7 +27,7 @@ def following(model: Model, given: Sequence[str]) -> Model:
         given: NAME=FILE each; a CSV with the times in its first column and the values, in SI, in the column NAME, or
             in its second.
     Raises:
-        UsageError: no coordinate or input of that name, a dependent one, or a file without samples.
+        UsageError: no coordinate or input of that name, one that cannot be driven, or a file without samples.
     """
     coordinates, inputs = dict(model.coordinates), dict(model.inputs)
     for name, path in assignments(given, EXAMPLE):
@@ -36,7 +38,12 @@ def following(model: Model, given: Sequence[str]) -> Model:
         else:
             mend = nearest(name, [*coordinates, *inputs])
             raise UsageError(f"--follow: there is no coordinate or input '{name}'", mend=mend)
-    return altered(model, coordinates=Table[Coordinate](coordinates), inputs=Table[Input](inputs))
+    changes: dict[str, Any] = {"coordinates": Table[Coordinate](coordinates), "inputs": Table[Input](inputs)}
+    try:
+        replace(model, **changes)  # what is wrong with a model is wrong with this one
+    except ModelError as error:
+        raise UsageError(f"--follow: {error.problems[0].what}", mend=error.problems[0].mend) from error
+    return altered(model, **changes)
 
 
 def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 import eomgen
@@ -14,6 +15,7 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.running import run
 from eomgen.simulation.projection import projection_of
 from eomgen.simulation.stepping import Stepping
+from tests.float_loops import bricard
 
 MODELS = Path(__file__).parents[2] / "models"
 G = 9.81
@@ -209,3 +211,56 @@ def test_the_squeezer_of_andrews_at_the_published_instant():
     for name, value in published.items():
         assert found[name][-1] == pytest.approx(value, abs=1e-6), name
     assert found.gap < 1e-9
+
+
+def test_bricards_mechanism_of_the_benchmark_library():
+    """A04 for its 10 s: energy and loop kept; three seconds of it as free bodies on hinges move, by least squares."""
+    with pytest.warns(RuntimeWarning, match="indeterminate"):
+        found = eomgen.simulate(eomgen.load(MODELS / "bricard.toml"), time=10, samples=101)
+    assert found.ok and found.gap < 1e-9 and found.drift < 1e-8
+    chain, times = bricard(), found.t[:31]
+
+    def rate(t, x):
+        return np.concatenate([x[5:], chain.accelerations(x[:5], x[5:])])
+
+    oracle = solve_ivp(rate, (0, 3), np.zeros(10), "DOP853", times, rtol=1e-8, atol=1e-8).y.T
+    assert found.x[:31] == pytest.approx(oracle, abs=1e-5)
+
+
+@pytest.mark.parametrize("method", ["BDF", "DOP853"])
+def test_the_stiff_flyball_governor_of_the_benchmark_library(method):
+    """A05 for its 10 s: slider and rods by Lagrange's equations with H = I(alpha) phi' known, the shaft by H."""
+    model = eomgen.load(MODELS / "flyball_governor.toml")
+    found = eomgen.simulate(model, time=10, samples=101, method=method, rtol=1e-8)
+    rod, slider, ball, k, c = 3000 * 0.01**2, 3000 * 0.1**3, 5, 8e5, 4e4
+    across = rod * (1 + 0.01**2) / 12 + rod / 4
+
+    def spin(alpha):  # I(alpha), thin about the rods' own axes
+        out, along = np.cos(alpha), rod * 0.01**2 / 6
+        hung = rod * (0.05**2 + 0.05 * out) + across * out**2 + along * np.sin(alpha) ** 2 + ball * (0.05 + out) ** 2
+        return along + slider * 0.1**2 / 6 + 2 * hung
+
+    H = 2 * np.pi * spin(np.pi / 6)
+
+    def rate(t, x):
+        s, alpha, ds, dalpha = x
+        out, down = np.cos(alpha), np.sin(alpha)
+        wire, opening = np.array([out / 2, 1 - down / 2 - s]), np.array([-down * dalpha / 2, -out * dalpha / 2 - ds])
+        length = np.hypot(*wire)
+        pull = (k * (length - 0.5) + c * (wire @ opening) / length) * wire / length
+        flung = np.imag(spin(alpha + 1e-30j)) / 1e-30 * (H / spin(alpha)) ** 2 / 2
+        turning = pull[0] * down + pull[1] * out + 2 * G * out * (rod / 2 + ball) + flung
+        return [ds, dalpha, 2 * pull[1] / slider - G, turning / (2 * (across + ball))]
+
+    s, alpha, _, _ = solve_ivp(rate, (0, 10), [0.5, np.pi / 6, 0, 0], "LSODA", found.t, rtol=1e-10, atol=1e-10).y
+    assert found.ok and found["s"] == pytest.approx(s, abs=2e-6)
+    assert found["alpha"] == pytest.approx(alpha, abs=2e-6) and found["beta"] == pytest.approx(alpha, abs=2e-6)
+    assert found["phi'"] == pytest.approx(H / spin(alpha), abs=2e-5)
+
+
+def test_change_points_of_the_benchmark_library_leave_the_energy_as_it_was():
+    """A02 for its 10 s, through every position in line: T + V of the one pendulum that it is, and the loops closed."""
+    found = eomgen.simulate(eomgen.load(MODELS / "n_four_bar.toml"), time=10, samples=101)
+    assert found.ok and len(found.passages) > 8 and found.drift < 1e-7 and found.gap < 1e-8
+    moving = 3 / 2 * found["a1'"] ** 2 + 7 / 2 * G * np.sin(found["a1"])
+    assert moving == pytest.approx(3 / 2 + 7 / 2 * G, rel=1e-7)

@@ -21,11 +21,13 @@ class Functions:
         constants: p, an array -> what the parameters determine, p included, in a form that only `one` reads.
         one: (t, x, constants, inputs or None) -> a new array of the outputs; x with a after it, where a is an argument.
         many: the same of n instants at once: t n, x n x states, p, inputs None or n x inputs -> n x outputs.
+        address: constants -> where all of it lies in memory, for other compiled functions; None where that is nowhere.
     """
 
     constants: Callable[[Any], Any]
     one: Callable[..., Any]
     many: Callable[..., Any]
+    address: Callable[[Any], Any] | None = None
 
 
 @dataclass(frozen=True)

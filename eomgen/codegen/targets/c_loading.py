@@ -11,6 +11,7 @@ import numpy as np
 
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Functions
+from eomgen.codegen.trial import Address
 
 _ADDRESS = ctypes.c_void_p
 
@@ -67,4 +68,7 @@ def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: i
         many(len(t), t.ctypes.data, *(part.ctypes.data for part in parts), p.ctypes.data, at, dx.ctypes.data)
         return dx
 
-    return Functions(constants_of, one, all_of)
+    def address(known: _Constants) -> Address:
+        return Address(ctypes.cast(evaluate, _ADDRESS).value or 0, known.p_at, known.c_at, (library, known))
+
+    return Functions(constants_of, one, all_of, None if given else address)

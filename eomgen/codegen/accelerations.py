@@ -1,0 +1,67 @@
+"""Equations, a state -> the accelerations and multipliers there, those that have a single value.
+
+    M a - J^T lam = forcing,   J a = -gamma
+
+lam_i has one value where no combination of rows that vanishes holds it: n_i = 0 for every n with n^T J = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.codegen.program import bordered, program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.system import System
+
+DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
+SHARE = 1e-6  # of a multiplier in a combination that vanishes
+
+
+@dataclass(frozen=True)
+class Accelerations:
+    """a and lam at one state by name, "theta''" and "lam(pin, 1)"; None where there is no single value."""
+
+    a: dict[str, float | None]
+    lam: dict[str, float | None]
+
+
+def accelerations_at(system: System, assembly: Assembly, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
+    """The accelerations and multipliers at one state; none has a single value where branches meet.
+
+    Args:
+        p: the parameters' values.
+    """
+    symbols, rows = system.symbols, [row.label for row in system.ties.closing]
+    names = [f"{u.name}'" for u in symbols.u]
+    if not names:
+        return Accelerations({}, {})
+    outputs = (*symbols.a, *symbols.lam, *(entry for row in assembly.J for entry in row))
+    program = program_of(outputs, symbols, inputs=system.inputs, solve=bordered(assembly))
+    values = compiled(program, "numpy")(t, x, p)
+    a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
+    left = _left(J.reshape(len(rows), len(names)))
+    if len(left) and len(rows) - len(left) < rank_of_ties(system.ties):
+        return Accelerations(dict.fromkeys(names), dict.fromkeys(rows))
+    single = np.max(np.abs(left), axis=0, initial=0.0) < SHARE
+    return Accelerations(
+        {name: _number(value) for name, value in zip(names, a, strict=True)},
+        {name: _number(value) if one else None for name, value, one in zip(rows, lam, single, strict=True)},
+    )
+
+
+def _left(J: np.ndarray) -> np.ndarray:
+    """n with n^T J = 0, one a row; all where J has no value."""
+    if not J.size or not np.all(np.isfinite(J)):
+        return np.eye(len(J))
+    lengths = np.linalg.norm(J, axis=1, keepdims=True)
+    U, sizes, _ = np.linalg.svd(J / np.where(lengths > 0, lengths, 1.0))
+    left: np.ndarray = U[:, int(np.sum(sizes > DEPENDENT)) :].T
+    return left
+
+
+def _number(x: float) -> float | None:
+    return float(x) if np.isfinite(x) else None
