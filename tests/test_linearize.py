@@ -107,3 +107,15 @@ def test_without_values_formulas_stand_and_numbers_are_missing():
     assert payload["stiffness"]["exact"] == [["1/2*m*l*g"]] and payload["stiffness"]["value"] is None
     assert payload["state_matrix"] is None and payload["modes"] is None
     assert "omega_1 = sqrt(3*g/(2*l))" in found.render("text").replace("1/2*sqrt(6*g/l)", "sqrt(3*g/(2*l))")
+
+
+def test_exact_matrices_at_the_values_are_the_numbers():
+    """M, C, K, B of sympy over the parameters, and in floats"""
+    model = eomgen.load(CART)
+    found = eomgen.linearize(model)
+    values = {name: float(part.value.evaluate({})) for name, part in model.parameters.items()}
+    for letter, numbers in (("M", found.M), ("C", found.C), ("K", found.K)):
+        exact = found.exact[letter]
+        at_values = exact.subs({symbol: values[symbol.name] for symbol in exact.free_symbols})
+        assert [float(x) for x in at_values] == pytest.approx(numbers.ravel().tolist(), rel=1e-14)
+    assert list(found.exact["B"]) == [1, 0]

@@ -19,7 +19,7 @@ from eomgen.mechanics.equilibria.static_equations import Row, StaticEquations
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.symbolic.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.derivative import depends_on, gradient, jacobian, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.linear import solved
@@ -124,7 +124,9 @@ class ClosedForms:
         try:
             phi = substituted(statics.phi, q)
             rows = [substituted(tuple(row[k] for row in statics.J), q) for k in range(len(statics.q))]
-            right = tuple(-x for x in substituted(statics.Q, q))
+            rows += [substituted(row, q) for row in jacobian(statics.beside, statics.lam)]
+            alone = substituted(statics.beside, dict.fromkeys(statics.lam, 0))
+            right = tuple(-x for x in substituted((*statics.Q, *alone), q))
             if not all(map(_is_nothing, phi)):
                 return None
             entries = readable_all([x for row in rows for x in row], WORK) if rows and statics.lam else ()

@@ -1,7 +1,8 @@
 """Places of rest -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
 
 Where the second variation K vanishes in some direction, places of rest can make up a whole family: a body on a ball
-joint hangs at any angle about the vertical. Two places of one family have the same V and the same spectrum of K.
+joint hangs at any angle about the vertical, a sleigh stands at any angle. Two places of one family have the same V and
+the same spectrum of K.
 """
 
 from __future__ import annotations
@@ -21,21 +22,28 @@ NOTHING = 1e-25  # of a quaternion's component, which is known to 50 digits
 NEAR = 1e-6  # distance of two places that are one
 
 
+def nearest_first(statics: StaticEquations, found: Sequence[np.ndarray], guess: np.ndarray) -> list[np.ndarray]:
+    """The places with that of e and -e which is nearer to the guess, of every quaternion; the nearest first."""
+    if not statics.norms:
+        return list(found)
+    turned = (_turned(statics, z, guess) for z in found)
+    return sorted(turned, key=lambda z: float(np.sum((z[: len(guess)] - guess) ** 2)))
+
+
 def each_once(
-    statics: StaticEquations, found: Sequence[np.ndarray], guess: np.ndarray, floats: Mapping[Node, float]
+    statics: StaticEquations, found: Sequence[np.ndarray], floats: Mapping[Node, float]
 ) -> list[np.ndarray]:
-    """The places, the nearest to the guess of those that are one, or one family.
+    """The places, the first of those that are one, or one family.
 
     Args:
         found: coordinates and multipliers of each, the nearest to the guess first.
         floats: of the parameters.
     """
-    if not statics.norms:
+    if not statics.norms and not statics.beside:
         return list(found)
     slopes = jacobian(statics.forces, statics.q)
     kept: list[tuple[np.ndarray, np.ndarray]] = []
-    turned = [_turned(statics, z, guess) for z in found]
-    for z in sorted(turned, key=lambda z: float(np.sum((z[: len(guess)] - guess) ** 2))):
+    for z in found:
         values = {**floats, **dict(zip(statics.unknowns, map(float, z), strict=True))}
         marks = _marks(statics, slopes, z, values)
         if not any(_is_one(statics, (z, marks), other) for other in kept):
@@ -61,7 +69,8 @@ def _marks(statics: StaticEquations, slopes, z: np.ndarray, values: Mapping[Node
     H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)
     _, sizes, axes = np.linalg.svd(J)
     Z = axes[int(np.sum(sizes > FLAT * sizes[0])) :].T
-    given = {**{x: 0.0 for x in statics.system.symbols.u}, statics.system.symbols.t: 0.0}
+    symbols = statics.system.symbols
+    given = {**{x: 0.0 for x in (*symbols.q, *symbols.u)}, symbols.t: 0.0}
     (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
     spectrum = np.linalg.eigvals(Z.T @ H @ Z)
     return np.array([V, *sorted(spectrum.real)], dtype=float)

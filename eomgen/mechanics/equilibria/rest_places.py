@@ -13,8 +13,8 @@ import numpy as np
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.symbolic import cramer
 from eomgen.symbolic.derivative import depends_on, jacobian
-from eomgen.symbolic.descent import Descent
-from eomgen.symbolic.evaluation import order
+from eomgen.symbolic.descent import ARRAYS, Descent
+from eomgen.symbolic.evaluation import evaluate, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.isolation import can_isolate, isolated
 from eomgen.symbolic.normal_form import readable
@@ -112,6 +112,8 @@ class _Search:
         force has no part along it, det [Q; J] = 0; None where there are none."""
         statics = self.statics
         n = len(statics.q)
+        if statics.beside:
+            return None
         if not statics.J:
             return statics.Q if not statics.phi else None
         if len(statics.J) == len(statics.phi) == n - 1:
@@ -189,15 +191,17 @@ class _Search:
         """Places with the multipliers that balance them best."""
         if not self.statics.lam:
             return q
-        rows = [np.append(x, self._multipliers(x)) for x in q]
+        J, Q = self._at(self.statics.J, q), self._at((self.statics.Q,), q)
+        rows = [np.append(x, _balancing(*each)) for x, *each in zip(q, J, Q[:, 0], strict=True)]
         return np.array(rows).reshape(len(q), len(self.statics.unknowns))
 
-    def _multipliers(self, q: np.ndarray) -> np.ndarray:
-        J = self.statics.slopes(self.statics.J, q, self.floats)
-        (Q,) = self.statics.slopes((self.statics.Q,), q, self.floats)
-        if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
-            return np.zeros(len(J))
-        return np.linalg.lstsq(J.T, -Q, rcond=1e-9)[0]
+    def _at(self, rows: Sequence[Sequence[Scalar]], q: np.ndarray) -> np.ndarray:
+        """Entries as numbers at many places, places x rows x columns."""
+        values = self.floats | dict(zip(self.statics.q, q.T, strict=True))
+        with np.errstate(all="ignore"):
+            found = evaluate([x for row in rows for x in row], values, ARRAYS)
+        flat = np.stack([np.broadcast_to(x, len(q)) for x in found], axis=1)
+        return flat.astype(float).reshape(len(q), len(rows), -1)
 
     def _is_held(self, z: np.ndarray) -> bool:
         """False near places where the ties are singular, and would need forces without limit to hold it."""
@@ -232,3 +236,10 @@ class _Search:
         turning = [x in self._turning for x in self.statics.q]
         away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
         return float(np.sum((away / (1 + np.abs(self.guess))) ** 2))
+
+
+def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """The multipliers for which Q + J^T lam is least; 0 where it has no value."""
+    if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
+        return np.zeros(len(J))
+    return np.linalg.lstsq(J.T, -Q, rcond=1e-9)[0]

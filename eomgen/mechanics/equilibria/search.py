@@ -18,9 +18,9 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
-from eomgen.mechanics.equilibria.families import each_once
+from eomgen.mechanics.equilibria.families import each_once, nearest_first
 from eomgen.mechanics.equilibria.one_sided import pulling
-from eomgen.mechanics.equilibria.rest_places import ANYWHERE, places_of_rest
+from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, refuse_unrelated, static_equations
 from eomgen.mechanics.loads import start_value
@@ -32,6 +32,8 @@ from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero
+
+NOTHING = 1e-25  # of a coordinate or multiplier, which is known to 50 digits
 
 State = Mapping[Node, Scalar]
 
@@ -93,9 +95,13 @@ class Equilibria:
             DerivationError: there is none.
         """
         if not self.found:
-            raise DerivationError("no place was found at which all forces balance" +
-                                  (": there is none" if self.complete else ""))  # fmt: skip
+            raise nowhere(self.complete)
         return self.found[0]
+
+
+def nowhere(complete: bool) -> DerivationError:
+    """That there is no place of rest, or that none was found."""
+    return DerivationError("no place was found at which all forces balance" + (": there is none" if complete else ""))
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
@@ -117,10 +123,24 @@ def equilibria_of(statics: StaticEquations, guess: Mapping[str, float] | None = 
         UsageError: a name in the guess that is no coordinate.
         DerivationError: the forces hold an unknown.
     """
+    return _search(statics, guess).equilibria()
+
+
+def nearest_equilibrium(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibrium:
+    """The place at which static equations hold that is nearest to a guess (None: to the start).
+
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: there is none; the forces hold an unknown.
+    """
+    return _search(statics, guess).nearest()
+
+
+def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Search:
     if statics.loaded:
         what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
         raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")
-    return _Search(statics, dict(guess or {})).equilibria()
+    return _Search(statics, dict(guess or {}))
 
 
 @dataclass(frozen=True)
@@ -178,13 +198,34 @@ class _Search:
         at = start_values(model, trial)[0] | first_guesses(model, trial) | _near(self.system, self.values)
         return np.array([float({**at, **self.guess}[q.name]) for q in self.statics.q])
 
-    def equilibria(self) -> Equilibria:
+    @cached_property
+    def _places(self) -> Places:
+        """Where the forces balance, the nearest to the guess first."""
         places = places_of_rest(self.statics, self.values, self.first)
-        places = replace(places, found=tuple(each_once(self.statics, places.found, self.first, self.floats)))
-        for q in places.found[:1]:
-            refuse_unrelated(self.statics, q[: len(self.statics.q)], self.floats)
-        forms = ClosedForms(self.statics, self.values, places.turning)
-        found = [each for z in places.found if (each := self._equilibrium(z, forms)) is not None]
+        for z in places.found[:1]:
+            refuse_unrelated(self.statics, z[: len(self.statics.q)], self.floats)
+        return replace(places, found=tuple(nearest_first(self.statics, places.found, self.first)))
+
+    @cached_property
+    def _forms(self) -> ClosedForms:
+        return ClosedForms(self.statics, self.values, self._places.turning)
+
+    def nearest(self) -> Equilibrium:
+        """The place nearest to the guess, alone.
+
+        Raises:
+            DerivationError: there is none.
+        """
+        each = (self._equilibrium(z, self._forms) for z in self._places.found)
+        found = next((place for place in each if place is not None), None)
+        if found is None:
+            raise nowhere(self._places.complete)
+        return found
+
+    def equilibria(self) -> Equilibria:
+        places = self._places
+        places = replace(places, found=tuple(each_once(self.statics, places.found, self.floats)))
+        found = [each for z in places.found if (each := self._equilibrium(z, self._forms)) is not None]
         complete = places.complete and (self.valued or len(found) == len(places.found))
         certain = self.valued or places.where == ANYWHERE
         where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
@@ -211,7 +252,7 @@ class _Search:
         single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
         kept = dict(zip(statics.q, z[:n], strict=True))
         kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
-        return {node: float(x) + 0.0 for node, x in kept.items()}
+        return {node: 0.0 if abs(x) < NOTHING else float(x) for node, x in kept.items()}
 
 def _near(system: System, values: Mapping[Node, Any]) -> dict[str, float]:
     """The first guesses of coordinates that are not dependent."""

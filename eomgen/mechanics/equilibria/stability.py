@@ -19,7 +19,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
-from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
@@ -74,7 +74,10 @@ def stability_of(
     """
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
-    return _Place(statics, exact, numbers, values).stability()
+    try:
+        return _Place(statics, exact, numbers, values).stability()
+    except (NoValue, ZeroDivisionError):  # as of x^(1/3) at 0
+        return Stability("undecided", "the forces have no derivatives there")
 
 
 @dataclass(frozen=True)
@@ -147,6 +150,10 @@ class _Place:
     @cached_property
     def _generic_rank(self) -> int:
         """Of J where the ties are not in a special position."""
+        if self.statics.beside:  # J is without some of its columns
+            rng = Random(6)
+            away = np.array([self.numbers[q] + rng.uniform(0.1, 0.3) for q in self.statics.q])
+            return rank(self.statics.slopes(self.statics.J, away, self.numbers))
         return rank_of_ties((self.statics.system.free or self.statics.system).ties) + self.statics.norms
 
     @cached_property

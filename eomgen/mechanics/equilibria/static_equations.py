@@ -52,6 +52,7 @@ class StaticEquations:
         J: of each closing row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
+        beside: what balances along coordinates that need not be sought, as no equation depends on them.
     """
 
     system: System
@@ -64,6 +65,7 @@ class StaticEquations:
     lam: tuple[Node, ...]
     phi: Row
     norms: int = 0
+    beside: Row = ()
 
     @cached_property
     def forces(self) -> Row:
@@ -76,7 +78,7 @@ class StaticEquations:
     @property
     def equations(self) -> Row:
         """All that vanishes."""
-        return (*self.forces, *self.phi)
+        return (*self.forces, *self.beside, *self.phi)
 
     @property
     def unknowns(self) -> tuple[Node, ...]:
@@ -99,16 +101,20 @@ class StaticEquations:
         Raises:
             DerivationError: a force along one of those dropped, which nothing balances.
         """
+        beside = []
         for q, force in zip(self.q, self.forces, strict=True):
             if q in dropped and not is_zero(force) and not vanishes(force):
-                raise DerivationError(f"nothing balances the force along '{q.name}': it is at rest nowhere",
-                                      f"coordinates.{q.name}")  # fmt: skip
+                if not any(depends_on(force, (x,)) for x in self.unknowns):
+                    raise DerivationError(f"nothing balances the force along '{q.name}': it is at rest nowhere",
+                                          f"coordinates.{q.name}")  # fmt: skip
+                beside.append(force)
         kept = [k for k, q in enumerate(self.q) if q not in dropped]
 
         def of(row: tuple[Any, ...]) -> tuple[Any, ...]:
             return tuple(row[k] for k in kept)
 
-        return replace(self, q=of(self.q), Q=of(self.Q), unbalanced=of(self.unbalanced), J=tuple(map(of, self.J)))
+        return replace(self, q=of(self.q), Q=of(self.Q), unbalanced=of(self.unbalanced), J=tuple(map(of, self.J)),
+                       beside=(*self.beside, *beside))  # fmt: skip
 
     def slopes(self, rows: Sequence[Row], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""

@@ -178,7 +178,7 @@ def _determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple
     """
     if not len(A):
         return (), ()
-    scaled = dense.balanced(A)[0]
+    scaled = dense.balanced(np.where(abs(A) > NOISE * abs(A).max(axis=1, keepdims=True), A, 0))[0]
     rows = dense.independent_rows(scaled, RANK)
     left = scaled[rows].copy()
     chosen: list[int] = []

@@ -20,6 +20,8 @@ from eomgen.mechanics.small_motions.field import Field, Matrix, negative, produc
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 
 NOTHING = 1e-9  # of a coefficient, against the largest of its matrix and 1e-3 of it
+ROUNDING = 1e-12  # of an entry against the largest of its row and of its column, below which it is 0
+LEAST = 1e-14  # the same against the largest of all
 REGULAR = 1e-9  # of the rates as functions of the speeds
 
 Indices = Sequence[int]
@@ -53,6 +55,25 @@ def _without_noise(A: np.ndarray) -> np.ndarray:
 
 def _is_own(row: np.ndarray) -> bool:
     return bool(np.count_nonzero(row) == 1 and row.max() == 1)
+
+
+def without_rounding(e: LinearEquations) -> LinearEquations:
+    """The equations in numbers, 0 where an entry is what is left of it: beside its row and column, or the whole.
+
+    Of C also beside what inertia and stiffness make of a rate: sqrt(M K).
+    """
+    M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
+    usual = np.sqrt(abs(M).max(initial=0) * abs(K).max(initial=0))
+    return replace(e, M=_rounded(M), C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
+
+
+def _rounded(A: np.ndarray, usual: float = 0) -> Matrix:
+    if not A.size:
+        return [[*row] for row in A.tolist()]
+    sizes = abs(A)
+    near = np.minimum(sizes.max(axis=1)[:, None], sizes.max(axis=0)[None, :])
+    least = np.maximum(ROUNDING * near, LEAST * max(usual, sizes.max()))
+    return [[*row] for row in np.where(sizes > least, A, 0.0).tolist()]
 
 
 def over_coordinates(field: Field, equations: LinearEquations, kept: Indices) -> LinearEquations:

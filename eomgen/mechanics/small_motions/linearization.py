@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.small_motions.field import Exact, Field, Numbers
+from eomgen.mechanics.small_motions.field import Exact, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
 from eomgen.mechanics.small_motions.forms import (
-    NOTHING,
     carrying,
     floats,
     is_second_order,
     over_coordinates,
     restricted,
+    without_rounding,
 )
-from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing
+from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import (
     START,
     STEADY,
@@ -30,8 +29,8 @@ from eomgen.mechanics.small_motions.reference import (
     place_of_rest,
     relative_rest,
 )
+from eomgen.mechanics.small_motions.steadiness import reduced, refuse_corners, refuse_unsteady
 from eomgen.mechanics.small_motions.steady import steady_start
-from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
 from eomgen.symbolic import dense
@@ -43,7 +42,6 @@ REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
 MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
-TIMES = (0.37, 1.19)  # later states of a steady motion, at which it must look the same [of the time of one unit]
 
 
 @dataclass(frozen=True)
@@ -111,23 +109,18 @@ def small_motions_of(
         raise DerivationError("the ties leave no freedom: there are no small motions")
     raw = _equations(first, choice, reference)
     kept = carrying(raw, wanted)
-    _refuse_unsteady(first, choice, reference, raw, kept)
+    refuse_corners(first, choice, reference, raw, kept)
+    refuse_unsteady(first, choice, reference, raw, kept)
     _refuse_singular(raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
-    numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
+    numbers = without_rounding(restricted(Numbers(reference.numbers), decided, wanted, decided))
     field = _exact_field(reference, first, choice)
     exact = None
     if field is not None:
-        whole = over_coordinates(field, _reduced(first, choice, reference, field), kept)
+        whole = over_coordinates(field, reduced(first, choice, reference, field), kept)
         exact = restricted(field, whole, wanted, decided)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
     return SmallMotions(reference, numbers, exact, raw, left)
-
-
-def _reduced(first: FirstOrder, choice: Choice, reference: Reference, field: Field) -> LinearEquations:
-    """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
-    equations = Reducing(first, choice, field).equations()
-    return over_turns(field, first.system, equations, spinning(reference, choice))
 
 
 def _equations(first: FirstOrder, choice: Choice, reference: Reference) -> LinearEquations:
@@ -137,13 +130,17 @@ def _equations(first: FirstOrder, choice: Choice, reference: Reference) -> Linea
         DerivationError: they have no value there: rates that declared speeds do not determine are named.
     """
     try:
-        return _reduced(first, choice, reference, Numbers(reference.numbers))
+        return reduced(first, choice, reference, Numbers(reference.numbers))
     except (NoValue, ZeroDivisionError) as error:
-        solved, value = reference.system.declared, Numbers(reference.numbers).of
-        lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
-        what = lost[0] if lost else "the equations of motion have no value"
-        mend = "describe the motion by coordinates and speeds that are regular there"
-        raise DerivationError(f"{what} at the place of reference", "linearize", mend) from error
+        raise _without_value(reference) from error
+
+
+def _without_value(reference: Reference) -> DerivationError:
+    solved, value = reference.system.declared, Numbers(reference.numbers).of
+    lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
+    what = lost[0] if lost else "the equations of motion, or their derivatives, have no value"
+    mend = "describe the motion by coordinates, speeds and forces that are regular there"
+    return DerivationError(f"{what} at the place of reference", "linearize", mend)
 
 
 def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exact | None:
@@ -181,9 +178,14 @@ def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wan
     if about in (START, STEADY):
         reference = at_the_start(system, at_rest=False)
         first = first_order_of(system)
-        if about == STEADY:
-            reference = at_the_start(system, at_rest=False, given=steady_start(first, reference, wanted))
-        if wrong := _accelerated(first, reference):
+        try:
+            if about == STEADY:
+                found = at_the_start(system, at_rest=False, given=steady_start(first, reference, wanted))
+                reference = replace(found, about=STEADY)
+            wrong = _accelerated(first, reference)
+        except (NoValue, ZeroDivisionError) as error:
+            raise _without_value(reference) from error
+        if wrong:
             raise DerivationError(f"the start is no steady motion: '{wrong}' is accelerated there", "linearize.about",
                                   'start from a steady motion, or let it be sought: about = "steady"')  # fmt: skip
         return reference, first
@@ -206,71 +208,13 @@ def _other_rest(
             reference = way()
             if not _accelerated(first, reference):
                 return reference, first
-        except EomgenError:
+        except (EomgenError, NoValue, ZeroDivisionError):
             continue
     raise why
 
 
 def _accelerated(first: FirstOrder, reference: Reference) -> str:
     """The speed that does not stay as it is; "" where all do."""
-    choice = choice_of(first, reference, ())
-    reducing = Reducing(first, choice, Numbers(reference.numbers))
-    scale = max(map(abs, (*Numbers(reference.numbers).of(first.assembly.forcing), *reducing.forces)), default=0)
-    wrong = [first.system.symbols.u[k].name for k, x in zip(choice.u, reducing.unbalanced, strict=True)
-             if abs(x) > max(REST * scale, 1e-12)]  # fmt: skip
-    return wrong[0] if wrong else ""
-
-
-def _refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
-                     kept: Sequence[int]) -> None:  # fmt: skip
-    """A reference that changes with time where it matters.
-
-    Raises:
-        DerivationError: the coordinate that moves is named.
-    """
-    moving = reference.moving
-    t = first.system.symbols.t
-    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
-    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in TIMES]
-    turns = spinning(reference, choice)
-    for shift in shifts:
-        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
-    changes = _changed(first, choice, reference, raw, kept)
-    if not any(map(changes, shifts)):
-        return
-    culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
-    if culprit is t:
-        raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
-                              "let nothing but inputs depend on t")  # fmt: skip
-    what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
-    raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
-
-
-def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
-             ) -> Callable[[Mapping[Node, Any]], bool]:  # fmt: skip
-    """Whether the equations are others at a shifted state."""
-    here = list(_compared(raw, kept))
-
-    def changes(shift: Mapping[Node, Any]) -> bool:
-        shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
-        reducing = Reducing(first, choice, Numbers(shifted))
-        try:
-            there = list(_compared(_reduced(first, choice, reference, reducing.field), kept))
-            forces = [*reducing.forces, *Numbers(shifted).of(first.assembly.forcing)]
-        except (NoValue, ZeroDivisionError):
-            return True
-        scale = max(map(abs, forces), default=0)
-        pairs = zip(here, there, strict=True)
-        return any(abs(x) > max(REST * scale, 1e-12) for x in reducing.unbalanced) or any(
-            np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs
-        )
-
-    return changes
-
-
-def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:
-    yield floats(equations.M)
-    yield floats(equations.C)
-    yield floats(equations.K)[:, list(kept)]
-    yield floats(equations.F)[np.ix_(kept, kept)]
-    yield floats(equations.E)[list(kept)]
+    reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
+    wrong = unsettled(reducing, REST)
+    return first.system.symbols.u[reducing.choice.u[wrong[0]]].name if wrong else ""

@@ -10,6 +10,7 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
 from eomgen.mechanics.small_motions.field import WORK, Entry
 from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.polynomial import (
@@ -17,17 +18,18 @@ from eomgen.mechanics.small_motions.polynomial import (
     TransferFunction,
     characteristic_polynomial,
     closed_frequencies,
-    hurwitz_conditions,
     laplace_variable,
     transfer_functions,
+    transfers_in_numbers,
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import simplest
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
+MOST_STATES = 8  # of transfer functions in floats
 SAME = 1e-9  # of an exact frequency against the number
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
 
@@ -56,7 +58,7 @@ class Modes:
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        return spectrum_of(self.small)
+        return spectrum_of(self.small, self.polynomial)
 
     @cached_property
     def polynomial(self) -> Polynomial | None:
@@ -65,13 +67,29 @@ class Modes:
         return None if exact is None else characteristic_polynomial(exact, self.positive)
 
     @cached_property
-    def conditions(self) -> tuple[Scalar, ...]:
+    def conditions(self) -> Conditions:
         """Routh and Hurwitz: what must be positive."""
-        return () if self.polynomial is None else hurwitz_conditions(self.polynomial, self.positive)
+        if self.polynomial is None or self.small.exact is None:
+            return Conditions()
+        return stability_conditions(self.polynomial, laplace_variable(self.small.exact), self.positive,
+                                    self.small.reference.trial, conservative=self.is_conservative)  # fmt: skip
+
+    @cached_property
+    def is_conservative(self) -> bool:
+        """Whether there is nothing but M and a symmetric K, known exactly."""
+        e = self.small.exact
+        if e is None or not self.small.is_second_order or not all(is_zero(x) for row in e.C for x in row):
+            return False
+        return all(is_zero(self.tidy(e.K[i][j] - e.K[j][i])) for i in range(len(e.K)) for j in range(i))
 
     @cached_property
     def transfers(self) -> tuple[TransferFunction, ...]:
-        return () if self.small.exact is None else transfer_functions(self.small.exact, self.positive)
+        """From inputs to coordinates: exact where that can be, else in floats, of systems of few states."""
+        exact, small = self.small.exact, self.small
+        found = () if exact is None else transfer_functions(exact, self.positive)
+        if found or not small.numbers.inputs or not small.reference.valued or len(small.state_matrix) > MOST_STATES:
+            return found
+        return transfers_in_numbers(small.numbers, small.state_matrix, small.input_matrix)
 
     @cached_property
     def frequencies(self) -> tuple[Frequency, ...]:
@@ -131,6 +149,8 @@ class Modes:
         """
         equations = self.small.exact or self.small.numbers
         rows = {u.name.removesuffix("'"): k for k, u in enumerate(equations.speeds)}
+        if self.small.is_second_order:
+            rows |= {q.name: k for k, q in enumerate(equations.coordinates)}
         columns = rows if function != "stiffness" else {q.name: k for k, q in enumerate(equations.coordinates)}
         for name, known in zip(names, (rows, columns), strict=True):
             if name not in known:

@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Matrix
@@ -26,14 +28,14 @@ from eomgen.symbolic.terms import Terms, TooLarge, plus
 
 MOST = 6  # rows of a determinant that is written out
 LIMIT = 50_000  # products of terms
-MOST_CONDITIONS = 4  # degree of a polynomial whose Hurwitz determinants are written
+ROUNDING = 1e-10  # of a coefficient in floats
 
 
 @dataclass(frozen=True)
 class Polynomial:
-    """c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters."""
+    """c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters, or floats."""
 
-    coefficients: tuple[Scalar, ...]
+    coefficients: tuple[Any, ...]
 
     @property
     def degree(self) -> int:
@@ -57,9 +59,9 @@ def graph_of(equations: LinearEquations) -> Graph:
 
 
 def laplace_variable(equations: LinearEquations) -> Node:
-    """A symbol s that the entries do not hold."""
-    taken = {x.name for x in symbols_of([x for A in (equations.M, equations.C, equations.K, equations.B) for row in A
-                                         for x in row])}  # fmt: skip
+    """A symbol s that neither the entries nor the coordinates have."""
+    entries = [x for A in (equations.M, equations.C, equations.K, equations.B) for row in A for x in row]
+    taken = {x.name for x in (*symbols_of(entries), *equations.all, *equations.inputs)}
     return graph_of(equations).symbol(next(name for name in ("s", "s_", "s__", "s___") if name not in taken))
 
 
@@ -111,11 +113,12 @@ def closed_frequencies(polynomial: Polynomial, s: Node, positive: Collection[Nod
 
     Of factors c2 s^2 + c1 s + c0:          w = sqrt(4 c0 c2 - c1^2)/(2 |c2|)
     of factors c4 s^4 + c2 s^2 + c0:        w^2 = (c2 -+ sqrt(c2^2 - 4 c0 c4))/(2 c4)
+    with a root less, q^2 = c0 c4:          w = (sqrt((c2 + 2 q)/c4) -+ sqrt((c2 - 2 q)/c4))/2
     """
     found: list[Scalar] = []
     try:
-        for squared in _squares(polynomial.at(s), s, positive):
-            w = simplest(sqrt(squared), LIMIT, positive)
+        for w in _frequencies(polynomial.at(s), s, positive):
+            w = simplest(w, LIMIT, positive)
             if w not in found:
                 found.append(w)
     except DerivationError:  # too large
@@ -123,62 +126,91 @@ def closed_frequencies(polynomial: Polynomial, s: Node, positive: Collection[Nod
     return tuple(found)
 
 
-def _squares(x: Scalar, s: Node, positive: Collection[Node]) -> Iterator[Scalar]:
-    """w^2 of every factor of which it is known."""
+@dataclass(frozen=True)
+class Factors:
+    """The factors of a polynomial in s.
+
+    Args:
+        expansion: whose atoms stand in them.
+        parts: of each the coefficients by the power of s.
+        fresh: what stands for sines and cosines.
+        positive: parameters that are.
+    """
+
+    expansion: Expansion
+    parts: tuple[dict[int, Terms], ...]
+    fresh: Mapping[Node, Scalar]
+    positive: Collection[Node]
+
+    def written(self, a: Scalar) -> Scalar:
+        """In the symbols of the model."""
+        return simplest(substituted((a,), self.fresh)[0], LIMIT, self.positive)
+
+
+def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> Factors:
+    """Those that hold s and more.
+
+    Raises:
+        TooLarge: it is too much work.
+    """
     expansion = Expansion(s.graph, LIMIT, positive)
     expansion.of(s)
     f, _ = expansion.cleared(expansion.of(x))
     f, fresh = wave_free(expansion, f)
+    found = ((coefficients(part, s), n) for part, n in factored(f))
+    return Factors(expansion, tuple(c for c, n in found for _ in range(n) if max(c, default=0)), fresh, positive)
+
+
+def _frequencies(x: Scalar, s: Node, positive: Collection[Node]) -> Iterator[Scalar]:
+    """w of every factor of which it is known."""
+    factors = factors_of(x, s, positive)
+    expansion, written = factors.expansion, factors.written
     node = expansion.atoms.node
-
-    def written(a: Scalar) -> Scalar:
-        return simplest(substituted((a,), fresh)[0], LIMIT, positive)
-
-    for part, _ in factored(f):
-        c = coefficients(part, s)
-        if max(c, default=0) == 2:
+    for c in factors.parts:
+        if max(c) == 2:
             squared = over(4 * node(c.get(0, {})) * node(c[2]) - node(c.get(1, {})) ** 2, 4 * node(c[2]) ** 2)
-            yield from _possible(written(squared))
-        elif max(c, default=0) == 4 and not c.get(1) and not c.get(3):
-            root = _root(expansion, c, positive)
-            for sign in (-1, 1):
-                yield from _possible(written(over(node(c.get(2, {})) + sign * root, 2 * node(c[4]))))
+            yield from _rooted(written(squared))
+        elif max(c) == 4 and not c.get(1) and not c.get(3):
+            yield from (w for squared in _squares(expansion, c, positive) for w in _rooted(written(squared)))
+            yield from _of_single_roots(expansion, c, written)
 
 
-def _possible(squared: Scalar) -> tuple[Scalar, ...]:
-    """w^2, but for a number that has no root."""
-    return () if type(squared) is not Node and squared < 0 else (squared,)
+def _rooted(squared: Scalar) -> tuple[Scalar, ...]:
+    """w of w^2, but for a number that has no root."""
+    return () if type(squared) is not Node and squared < 0 else (sqrt(squared),)
 
 
-def _root(expansion: Expansion, c: dict[int, Terms], positive: Collection[Node]) -> Scalar:
-    """sqrt(c2^2 - 4 c0 c4)"""
-    middle = c.get(2, {})
+def _squares(expansion: Expansion, c: dict[int, Terms], positive: Collection[Node]) -> tuple[Scalar, ...]:
+    """(c2 -+ sqrt(c2^2 - 4 c0 c4))/(2 c4); () where w has roots that do not stand in one another."""
+    node, middle = expansion.atoms.node, c.get(2, {})
     discriminant = plus(expansion.product(middle, middle), expansion.product(c.get(0, {}), c[4]), -4)
     whole = square_root(discriminant) if discriminant else {}
-    node = expansion.atoms.node
-    return sqrt(simplest(node(discriminant), LIMIT, positive)) if whole is None else node(whole)
-
-
-# -- stability ------------------------------------------------------------------------------------------------------
-
-
-def hurwitz_conditions(polynomial: Polynomial, positive: Collection[Node]) -> tuple[Scalar, ...]:
-    """What must be positive for all roots to lie on the left: coefficients and Hurwitz determinants; () if too many.
-
-    The leading coefficient is det M, which is positive.
-    """
-    n = polynomial.degree
-    if not 0 < n <= MOST_CONDITIONS or polynomial.is_even:
+    if whole is None and _single_roots(expansion, c):
         return ()
-    a = list(reversed(polynomial.coefficients))  # a0 s^n + a1 s^(n-1) + ...
+    root = sqrt(simplest(node(discriminant), LIMIT, positive)) if whole is None else node(whole)
+    return tuple(over(node(middle) + sign * root, 2 * node(c[4])) for sign in (-1, 1))
 
-    def entry(i: int, j: int) -> Scalar:
-        k = 2 * j - i + 1
-        return a[k] if 0 <= k <= n else 0
 
-    minors = [cramer.determinant([[entry(i, j) for j in range(m)] for i in range(m)]) for m in range(2, n)]
-    conditions = [*polynomial.coefficients[:-1], *(simplest(x, LIMIT, positive) for x in minors)]
-    return tuple(x for x in conditions if type(x) is Node or x <= 0)
+def _single_roots(expansion: Expansion, c: dict[int, Terms]) -> tuple[Terms, ...]:
+    """c2 -+ 2 q, q^2 = c0 c4, where one of them by c4 is a square; () elsewhere."""
+    q = square_root(expansion.product(c[0], c[4])) if c.get(0) else None
+    if q is None:
+        return ()
+    parts = tuple(plus(c.get(2, {}), q, factor) for factor in (2, -2))
+    whole = [not x or square_root(expansion.product(x, c[4])) is not None for x in parts]
+    return parts if any(whole) else ()
+
+
+def _of_single_roots(
+    expansion: Expansion, c: dict[int, Terms], written: Callable[[Scalar], Scalar]
+) -> Iterator[Scalar]:
+    """w where its roots do not stand in one another; of the difference both signs."""
+    node = expansion.atoms.node
+    squares = [written(over(node(x), node(c[4]))) for x in _single_roots(expansion, c)]
+    roots = [w for squared in squares for w in _rooted(squared)]
+    if len(roots) == 2:
+        a, b = roots
+        yield from (over(a + b, 2), over(a - b, 2), over(b - a, 2))
 
 
 # -- transfer functions ---------------------------------------------------------------------------------------------
@@ -196,15 +228,16 @@ class TransferFunction:
 
 def transfer_functions(e: LinearEquations, positive: Collection[Node]) -> tuple[TransferFunction, ...]:
     """From every input to every coordinate, by Cramer's rule; () where it is too much work."""
-    if not e.inputs or not is_second_order(e) or len(e.speeds) > MOST:
-        return ()
     s = laplace_variable(e)
-    pencil = _of_second_order(e, s)
+    pencil = _pencil(e, s) if e.inputs else None
+    if pencil is None:
+        return ()
     below = polynomial_in(cramer.determinant(pencil), s, positive)
+    right = [[0] * len(e.inputs)] * (len(pencil) - len(e.B)) + e.B
     found = []
     for k, w in enumerate(e.inputs):
         for j, q in enumerate(e.coordinates):
-            column = [[e.B[i][k] if m == j else x for m, x in enumerate(row)] for i, row in enumerate(pencil)]
+            column = [[right[i][k] if m == j else x for m, x in enumerate(row)] for i, row in enumerate(pencil)]
             above = polynomial_in(cramer.determinant(column), s, positive)
             if above is None or below is None:
                 return ()
@@ -219,3 +252,21 @@ def _shortened(above: Polynomial, below: Polynomial, s: Node, positive: Collecti
     while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):
         a, b = a[1:], b[1:]
     return Polynomial(tuple(a)), Polynomial(tuple(b))
+
+
+def transfers_in_numbers(e: LinearEquations, A: np.ndarray, B: np.ndarray) -> tuple[TransferFunction, ...]:
+    """The same of x' = A x + B w in floats, x = (q, ...): det(s 1 - A + b c) = det(s 1 - A) (1 + c (s 1 - A)^-1 b)."""
+    below = np.poly(A)
+    found = []
+    for k, w in enumerate(e.inputs):
+        for j, q in enumerate(e.coordinates):
+            coupled = A.copy()
+            coupled[:, j] -= B[:, k]
+            closed = np.poly(coupled)
+            above = np.where(abs(closed - below) > ROUNDING * (abs(closed) + abs(below)), closed - below, 0.0)
+            found.append(TransferFunction(q, w, *map(_of_floats, (np.trim_zeros(above, "f"), below))))
+    return tuple(found)
+
+
+def _of_floats(highest_first: np.ndarray) -> Polynomial:
+    return Polynomial(tuple(float(c) for c in reversed(highest_first)) or (0.0,))

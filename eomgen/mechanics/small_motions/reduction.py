@@ -39,6 +39,7 @@ from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node
 
 REST = 1e-9  # of a force that nothing balances, against the largest
+NEAR = 1e-12  # displacement, speed or change of it in 1 s whose forces count as none, against what is there or 1
 
 
 @dataclass(frozen=True)
@@ -188,3 +189,24 @@ class Reducing:
             product(field, Z_T, self.derivative("W")),
             [rates[k] for k in choice.q], product(field, [N[k] for k in choice.q], Z), P,
         )  # fmt: skip
+
+
+def unsettled(reducing: Reducing, share: float) -> list[int]:
+    """Which of the independent speeds a force is left to accelerate: more than rounding leaves.
+
+    Args:
+        share: of the largest force, below which one is none.
+    """
+    found = reducing.unbalanced
+    scale = max(map(abs, (*reducing.field.of(reducing.first.assembly.forcing), *reducing.forces)), default=0)
+    left = [i for i, x in enumerate(found) if abs(x) > share * scale]
+    if not left:
+        return []
+    e = reducing.equations()
+    places, speeds = ([max(1.0, abs(x)) for x in reducing.field.of(part)] for part in (e.coordinates, e.speeds))
+    rows = [_size(K, places) + _size(C, speeds) + _size(M, speeds) for K, C, M in zip(e.K, e.C, e.M, strict=True)]
+    return [i for i in left if abs(found[i]) > NEAR * rows[i]]
+
+
+def _size(row: list[Entry], unit: list[float]) -> float:
+    return float(sum(abs(x) * one for x, one in zip(row, unit, strict=True)))

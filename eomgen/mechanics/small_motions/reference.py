@@ -11,8 +11,8 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.closed_instant import position_equations
-from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria, equilibria_of
-from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
@@ -36,7 +36,7 @@ class Reference:
 
     Args:
         system: of the model; about a place of rest its drives are held.
-        about: EQUILIBRIUM or START.
+        about: EQUILIBRIUM, START or STEADY.
         exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
         numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
         place: the place of rest, where it was sought.
@@ -80,7 +80,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
         DerivationError: none was found, or rest is possible in many places; a one-sided contact would have to pull.
         NotYet: speeds that are not rates.
     """
-    place = all_equilibria(system, guess).nearest(guess)
+    place = nearest_equilibrium(static_equations(system), guess)
     if contacts_of(system.scope.model) and (pulls := place.pulling):
         raise DerivationError(f"'{pulls[0]}' would have to pull where the other forces balance",
                               f"constraints.{pulls[0]}", "without it the system rests elsewhere")  # fmt: skip
@@ -111,7 +111,7 @@ def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float]
         tuple(substituted(row, given) for row in assembly.J), symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
     )  # fmt: skip
-    return _place(equilibria_of(statics, guess).nearest(guess))
+    return _place(nearest_equilibrium(statics, guess))
 
 
 def _place(place: Equilibrium) -> Reference:

@@ -13,15 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.mechanics.small_motions.eigen import defective, eigenpairs, met, squares_of, zeros_of
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
-from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, START
+from eomgen.mechanics.small_motions.polynomial import Polynomial
+from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.symbolic.graph import Node
 
-ZERO = 1e-6  # of an eigenvalue against the largest: a double zero keeps half of the digits
-STILL = 1e-9  # of a real part against the largest eigenvalue, below which a motion neither grows nor fades
-SQUARE_ZERO = 1e-11  # of w^2 against the largest
-SYMMETRIC = 1e-10  # of A - A^T against the largest entry
+STILL = 1e-9  # of a real part against the eigenvalue, below which a motion neither grows nor fades
+NOISE = 1e-12  # the same against the largest eigenvalue
+SYMMETRIC = 1e-10  # of A - A^T against the largest entries of the two rows
+ROUNDING = 1e-14  # of an entry against the largest
 
 
 @dataclass(frozen=True)
@@ -87,12 +89,17 @@ class Spectrum:
         return tuple(mode for mode in self.modes if mode.frequency is not None)
 
 
-def spectrum_of(small: SmallMotions) -> Spectrum:
-    """The modes of small motions in numbers."""
-    modes = _undamped(small) if _is_undamped(small) else _general(small)
+def spectrum_of(small: SmallMotions, polynomial: Polynomial | None = None) -> Spectrum:
+    """The modes of small motions in numbers.
+
+    Args:
+        polynomial: p(s), where it is known exactly.
+    """
+    zeros = zeros_of(small.numbers, polynomial, small.reference.trial)
+    modes = _undamped(small, zeros // 2) if _is_undamped(small) else _general(small, zeros)
     modes.sort(key=lambda mode: (mode.frequency is None, mode.frequency or 0.0, -mode.eigenvalue.real))
     values = [x for mode in modes for x in _all_values(mode)]
-    return Spectrum(tuple(modes), tuple(values), *_stability(small, values))
+    return Spectrum(tuple(modes), tuple(values), *_stability(small, values, modes))
 
 
 def _all_values(mode: Mode) -> tuple[complex, ...]:
@@ -110,20 +117,24 @@ def _is_undamped(small: SmallMotions) -> bool:
         return False
     M, C, K = (floats(x) for x in (e.M, e.C, e.K))
     size = abs(M).max() * np.sqrt(abs(K).max() / abs(M).max())
-    return bool(abs(C).max() <= 1e-13 * size) and bool(abs(K - K.T).max() <= SYMMETRIC * abs(K).max())
+    return bool(abs(C).max() <= 1e-13 * size) and _is_symmetric(K, 1)
 
 
-def _undamped(small: SmallMotions) -> list[Mode]:
+def _is_symmetric(A: np.ndarray, sign: int) -> bool:
+    """Whether A = sign A^T: entries of slow motions count, whatever stiff ones stand beside them."""
+    rows = np.maximum(abs(A).max(axis=1), abs(A).max(axis=0))
+    limit = SYMMETRIC * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
+    return bool(np.all(abs(A - sign * A.T) <= limit))
+
+
+def _undamped(small: SmallMotions, rigid: int) -> list[Mode]:
     """K v = w^2 M v."""
-    from scipy.linalg import eigh
-
-    M, K = floats(small.numbers.M), floats(small.numbers.K)
-    squares, vectors = eigh((K + K.T) / 2, (M + M.T) / 2)
-    largest = abs(squares).max()
+    squares, vectors = squares_of(floats(small.numbers.M), floats(small.numbers.K))
+    still = set(np.argsort(abs(squares))[:rigid])
     modes = []
-    for square, v in zip(squares, vectors.T, strict=True):
+    for k, (square, v) in enumerate(zip(squares, vectors.T, strict=True)):
         rate = math.sqrt(abs(square))
-        if abs(square) <= SQUARE_ZERO * largest:
+        if k in still:
             values, pair = [0j], True
         else:
             values, pair = ([complex(0, rate)], True) if square > 0 else ([complex(rate, 0), complex(-rate, 0)], False)
@@ -134,23 +145,28 @@ def _undamped(small: SmallMotions) -> list[Mode]:
 # -- all others ------------------------------------------------------------------------------------------------
 
 
-def _general(small: SmallMotions) -> list[Mode]:
+def _general(small: SmallMotions, still: int) -> list[Mode]:
     """The eigenvalues of the state matrix."""
-    values, vectors = np.linalg.eig(small.state_matrix)
-    largest = abs(values).max(initial=0)
-    n = len(small.numbers.coordinates)
-    modes, zeros = [], []
-    for value, x in zip(values, vectors.T, strict=True):
-        still = abs(value) <= ZERO * largest or largest == 0
-        shape = _shape(small, x[:n], 0 if still else value)
-        if still:
-            zeros.append(shape)
-        elif abs(value.imag) <= STILL * largest:
-            modes.append(Mode(complex(value.real, 0), False, shape))
-        elif value.imag > 0:
-            real = 0.0 if abs(value.real) <= STILL * largest else value.real
-            modes.append(Mode(complex(real, value.imag), True, shape))
+    values, vectors = eigenpairs(small.state_matrix)
+    order = np.argsort(abs(values))
+    zeros = [_shape(small, vectors[: len(small.numbers.coordinates), k], 0) for k in order[:still]]
+    values, vectors = met(values[order[still:]]), vectors[:, order[still:]]
+    modes = []
+    for value, x in zip(_without_noise(small, values), vectors.T, strict=True):
+        if value.imag >= 0:
+            modes.append(Mode(value, value.imag > 0, _shape(small, x[: len(small.numbers.coordinates)], value)))
     return modes + _zero_modes(small, zeros)
+
+
+def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
+    """Parts that are what rounding leaves of 0 taken out: real ones all where nothing fades unless another grows."""
+    e = small.numbers
+    gyroscopic = small.is_second_order and _is_symmetric(floats(e.C), -1) and _is_symmetric(floats(e.K), 1)
+    largest = abs(values).max(initial=0)
+    real = np.full(len(values), STILL * largest) if gyroscopic else STILL * abs(values) + NOISE * largest
+    both = zip(values, real, strict=True)
+    return [complex(0 if abs(x.real) <= least else x.real, 0 if abs(x.imag) <= STILL * abs(x) + NOISE * largest
+                    else x.imag) for x, least in both]  # fmt: skip
 
 
 def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
@@ -193,7 +209,7 @@ def _with_others(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> np.
 # -- stability --------------------------------------------------------------------------------------------------
 
 
-def _stability(small: SmallMotions, values: list[complex]) -> tuple[str, str]:
+def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[Mode]) -> tuple[str, str]:
     growing = [x for x in values if x.real > 0]
     if any(x.imag for x in growing):
         return "unstable", "an oscillation grows (flutter)"
@@ -201,12 +217,22 @@ def _stability(small: SmallMotions, values: list[complex]) -> tuple[str, str]:
         return "unstable", "a motion grows without oscillation (divergence)"
     if all(x.real < 0 for x in values):
         return "asymptotically stable", "all motions fade"
-    e = small.numbers
-    if any(x == 0 for x in values) and small.reference.about == START and small.reference.moving:
+    if defective(small.numbers, values):
+        return "undecided", "two oscillations have come to be one: to first order they grow with the time"
+    if any(x == 0 for x in values) and small.reference.about != EQUILIBRIUM and small.reference.moving:
         return "stable to first order", "motions oscillate, fade, or go over into a steady motion nearby"
     if any(x == 0 for x in values):
-        return "undecided", "some small motions neither grow nor fade nor oscillate"
-    if _is_undamped(small) and small.reference.about == EQUILIBRIUM and np.all(np.linalg.eigvalsh(floats(e.K)) > 0):
+        return "undecided", _drifting(modes)
+    if _is_undamped(small) and small.reference.about == EQUILIBRIUM:
         added = ", that of the centrifugal forces included," if small.reference.moving else ""
         return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
     return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"
+
+
+def _drifting(modes: Sequence[Mode]) -> str:
+    """That of motions which stay as they are, or drift, terms of higher order decide; what moves in them."""
+    moving = [q.name for q in (modes[0].shape if modes else ()) if any(
+        mode.eigenvalue == 0 and abs(mode.shape[q]) > 1e-6 for mode in modes)]  # fmt: skip
+    names = ", ".join(moving) or "some speeds"
+    others = "; all other motions oscillate or fade" if any(mode.eigenvalue for mode in modes) else ""
+    return f"to first order {names} may stay anywhere, or drift{others}"

@@ -19,10 +19,10 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.closure import closed
-from eomgen.mechanics.small_motions.field import Matrix, Numbers, product
+from eomgen.mechanics.small_motions.field import Numbers, product
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.forms import floats
-from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing
+from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node
@@ -30,8 +30,9 @@ from eomgen.symbolic.graph import Node
 STEPS = 40
 LONGEST = 0.3  # of one step, against what has moved or 1
 REACHED = 1e-13  # of a step, against what has moved or 1
+NOTHING = 1e-18  # of a coordinate or speed, after a last step of Newton's method
 BALANCED = 1e-10  # of a force that is left, against the largest
-UNSEEN = 1e-9  # of a coefficient, against the largest of its matrix
+UNSEEN = 1e-9  # of a coefficient, against the largest that the speeds make
 
 State = Mapping[Node, Any]
 
@@ -50,7 +51,8 @@ def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] 
         found = _sought(first, choice, reference.numbers, mask) if np.any(mask) else None
         if found is not None:
             symbols = first.system.symbols
-            return {x.name: float(found[x]) for x in (*symbols.q, *symbols.u)}
+            values = {x.name: float(found[x]) for x in (*symbols.q, *symbols.u)}
+            return {name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()}
     raise DerivationError("no steady motion was found near the start", "linearize.about",
                           "start nearer to one; `near` marks what may change, with its speed")  # fmt: skip
 
@@ -76,10 +78,10 @@ def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -
         try:
             here = _Here(first, choice, Reducing(first, choice, Numbers(state)))
             step = np.zeros(len(mask))
-            step[mask] = np.linalg.lstsq(here.slopes[:, mask], -here.residuals, rcond=1e-10)[0]
+            step[mask] = here.step(mask)
             size = float(np.max(abs(step) / here.sizes))
             if size <= REACHED:
-                return state if here.is_balanced else None
+                return (here.moved(step) or state) if here.is_balanced else None
             moved = here.moved(step * min(1.0, LONGEST / size))
         except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
             return None
@@ -87,12 +89,6 @@ def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -
             return None
         state = moved
     return None
-
-
-def _shows(A: Matrix) -> np.ndarray:
-    """Where an entry is more than rounding."""
-    sizes = abs(floats(A))
-    return sizes > UNSEEN * max(1.0, sizes.max(initial=0))
 
 
 @dataclass(frozen=True)
@@ -116,13 +112,22 @@ class _Here:
     @cached_property
     def still(self) -> list[int]:
         """The independent coordinates that must not move: those seen in K, and those on which their rates depend."""
-        K, F = map(_shows, (self.equations.K, self.equations.F))
+        K, F = self._seen
         found: set[int] = set()
         seen = {int(j) for j in np.flatnonzero(np.any(K, axis=0))}
         while seen - found:
             found |= seen
             seen = {int(j) for j in np.flatnonzero(np.any(F[sorted(found)], axis=0))}
         return sorted(found)
+
+    @property
+    def _seen(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where entries of K and F are more than rounding, beside C w, M w^2 and E w of the fastest speed w."""
+        e = self.equations
+        w = max(abs(float(self.state[u])) for u in e.speeds)
+        M, C, K, F, E = (abs(floats(x)) for x in (e.M, e.C, e.K, e.F, e.E))
+        sizes = (max(K.max(), C.max() * w, M.max() * w * w), max(F.max(), E.max() * w))
+        return K > UNSEEN * sizes[0], F > UNSEEN * sizes[1]
 
     @cached_property
     def rates(self) -> np.ndarray:
@@ -141,6 +146,20 @@ class _Here:
         upper = np.hstack([floats(e.K), floats(e.C)])
         return np.vstack([upper, np.hstack([floats(e.F), floats(e.E)])[self.still]])
 
+    def step(self, mask: np.ndarray) -> np.ndarray:
+        """The least change of what the mask frees that takes the residuals away; rows and columns free of units."""
+        sizes, rows = self.sizes[mask], self.row_sizes
+        scaled = self.slopes[:, mask] * sizes / rows[:, None]
+        return sizes * np.linalg.lstsq(scaled, -self.residuals / rows, rcond=1e-10)[0]
+
+    @property
+    def row_sizes(self) -> np.ndarray:
+        """The largest of each row of the slopes; of one in which nothing but rounding is, what inertia makes."""
+        w = self.sizes[-1]
+        inertia = np.append(abs(floats(self.equations.M)).max(axis=1) * w * w, np.ones(len(self.still)))
+        largest = (abs(self.slopes) * self.sizes).max(axis=1)
+        return np.maximum(largest, UNSEEN * inertia)
+
     @property
     def sizes(self) -> np.ndarray:
         """What counts as a change of 1: the speeds by how fast it moves."""
@@ -150,13 +169,8 @@ class _Here:
 
     @property
     def is_balanced(self) -> bool:
-        forces = [abs(float(x)) for x in self.reducing.forces]
-        scale = max([1e-12, *forces, *(abs(float(x)) for x in self._forcing)])
-        return bool(np.all(abs(self.residuals) <= BALANCED * max(scale, 1.0)))
-
-    @property
-    def _forcing(self) -> list[Any]:
-        return self.reducing.field.of(self.first.assembly.forcing)
+        moving = abs(self.rates[self.still])
+        return not unsettled(self.reducing, BALANCED) and bool(np.all(moving <= BALANCED * max(1.0, *abs(self.rates))))
 
     def moved(self, step: np.ndarray) -> State | None:
         """The state after a step of the independent ones, the others following; None where the ties do not close."""

@@ -80,6 +80,16 @@ class Linearization(Shown):
     D = cached_property(lambda self: (self.C + self.C.T) / 2)
     G = cached_property(lambda self: (self.C - self.C.T) / 2)
 
+    @cached_property
+    def exact(self) -> dict[str, Any]:
+        """{"M": M, "C": C, "K": K, "B": B} as sympy matrices of the parameters; {} where only numbers are known."""
+        import sympy
+
+        from eomgen.symbolic.sympy_form import to_sympy
+
+        letters = "MCKB" if self.is_exact else ""
+        return {letter: sympy.Matrix([to_sympy(row) for row in getattr(self.equations, letter)]) for letter in letters}
+
     @property
     def A(self) -> np.ndarray:
         """The state matrix, x = (coordinates, speeds)."""
@@ -187,7 +197,8 @@ class Linearization(Shown):
             "state_matrix": self.A.tolist() if self.valued else None,
             "input_matrix": self.B.tolist() if self.valued else None,
             "characteristic_polynomial": _polynomial(self.modes.polynomial),
-            "conditions": [to_text(x) for x in self.modes.conditions],
+            "conditions": [to_text(x) for x in self.modes.conditions.expressions],
+            "conditions_for": self.modes.conditions.words or None,
             "transfer_functions": [
                 {"coordinate": f.coordinate.name, "input": f.input.name, "numerator": _polynomial(f.above),
                  "denominator": _polynomial(f.below)} for f in self.modes.transfers],
@@ -226,7 +237,9 @@ def _state(exact: Scalar | None, number: float, valued: bool) -> dict[str, Any]:
 
 def _polynomial(polynomial: Polynomial | None) -> list[str] | None:
     """Coefficients, the constant first."""
-    return None if polynomial is None else [to_text(c) for c in polynomial.coefficients]
+    if polynomial is None:
+        return None
+    return [repr(c) if isinstance(c, float) else to_text(c) for c in polynomial.coefficients]
 
 
 def linearize(model: Model, about: str | None = None, coordinates: Sequence[str] = ()) -> Linearization:
@@ -240,7 +253,8 @@ def linearize(model: Model, about: str | None = None, coordinates: Sequence[str]
         DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
     """
     part = model.linearize
-    wanted = tuple(coordinates or (part.coordinates if part is not None else None) or ())
+    asked = coordinates or (part.coordinates if part is not None else None) or ()
+    wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))
     for name in wanted:
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,8 +11,8 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Entry, Matrix
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
-from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
-from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
+from eomgen.mechanics.small_motions.polynomial import Polynomial, TransferFunction, laplace_variable
+from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY
 from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
@@ -40,8 +41,8 @@ FOLLOW = Law(
     r"\delta a = Z\, \delta a_{i} + X_{u}\, \delta u_{i} + X_{q}\, \delta q_{i}",
 )
 PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C = \frac{\partial R}{\partial u}")
-DETERMINANT = Law("det(s^2*M + s*C + K)", r"\det\left(s^{2} M + s C + K\right)")
-STATE_DETERMINANT = Law("det(M)*det(s*1 - A)", r"\det M \det\left(s \mathbf{1} - A\right)")
+DETERMINANT = ("det({s}^2*M + {s}*C + K)", r"\det\left({s}^{{2}} M + {s} C + K\right)")
+STATE_DETERMINANT = ("det(M)*det({s}*1 - A)", r"\det M \det\left({s} \mathbf{{1}} - A\right)")
 LONG = 1200  # characters of one formula
 MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
 
@@ -60,6 +61,8 @@ def _reference(modes: Modes) -> Step:
     reference = modes.small.reference
     at_rest = reference.about == EQUILIBRIUM
     words = "The place of rest nearest to the start:" if at_rest else "The steady motion from the start:"
+    if reference.about == STEADY:
+        words = "The steady motion nearest to the start:"
     if at_rest and reference.moving:
         words = "The place of rest beside what moves steadily, nearest to the start:"
     symbols = reference.system.symbols
@@ -100,15 +103,26 @@ def _equations(modes: Modes) -> Step:
     if len(e.speeds) > MOST_SHOWN:
         statements.append(Prose((f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines.",)))
         return Step("equations", "Equations to first order", tuple(statements))
-    statements += _entries("M", e.M, e.speeds, e.speeds, symmetric=True)
+    rows = _rows(modes)
+    statements += _entries("M", e.M, rows, rows, symmetric=True)
     statements += _rates(modes, undamped)
     symmetric = small.is_second_order and _symmetric(modes, e.K)
-    statements += _entries("K", e.K, e.speeds, e.coordinates, symmetric=symmetric)
-    statements += _entries("B", e.B, e.speeds, e.inputs, symmetric=False)
+    statements += _entries("K", e.K, rows, e.coordinates, symmetric=symmetric)
+    if small.is_second_order and not symmetric:
+        H = [[modes.tidy(x) for x in row] for row in modes.symmetric_parts["H"]]
+        statements.append(Prose(("The skew part H = (K - K^T)/2 of K is circulatory.",)))
+        statements += _entries("H", H, rows, e.coordinates, symmetric=False)
+    statements += _entries("B", e.B, rows, e.inputs, symmetric=False)
     if not small.is_second_order:
         statements += _entries("E", e.E, e.coordinates, e.speeds, symmetric=False)
         statements += _entries("F", e.F, e.coordinates, e.coordinates, symmetric=False)
     return Step("equations", "Equations to first order", tuple(statements))
+
+
+def _rows(modes: Modes) -> Sequence[Node]:
+    """What the rows belong to: of equations of second order the coordinates, else the speeds."""
+    e = modes.small.exact or modes.small.numbers
+    return e.coordinates if modes.small.is_second_order else e.speeds
 
 
 def _rates(modes: Modes, undamped: bool) -> list[Statement]:
@@ -119,9 +133,12 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     if not modes.small.is_second_order:
         return _entries("C", e.C, e.speeds, e.speeds, symmetric=False)
     parts = {letter: [[modes.tidy(x) for x in row] for row in modes.symmetric_parts[letter]] for letter in "DG"}
-    shown: list[Statement] = [Prose(("C = D + G, of damping (symmetric) and gyroscopic (skew).",))]
+    there = [letter for letter, A in parts.items() if not all(is_zero(x) for row in A for x in row)]
+    words = {"D": "C = D, of damping (symmetric).", "G": "C = G, gyroscopic (skew).",
+             "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew)."}  # fmt: skip
+    shown: list[Statement] = [Prose((words.get("".join(there), ""),))] if there else []
     for letter, A in parts.items():
-        shown += _entries(letter, A, e.speeds, e.speeds, symmetric=letter == "D")
+        shown += _entries(letter, A, e.coordinates, e.coordinates, symmetric=letter == "D")
     return shown
 
 
@@ -166,8 +183,11 @@ def _characteristic(modes: Modes) -> tuple[Step, ...]:
     shown = _polynomial(modes)
     if shown is None:
         return ()
-    law = DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT
-    statements = (Prose(("With displacements that go as exp(s t):",)), Formula((law, shown, 0)))
+    exact, s = modes.small.exact, "s"
+    if exact is not None and not isinstance(shown, Law):
+        s = laplace_variable(exact).name
+    law = Law(*(x.format(s=s) for x in (DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT)))
+    statements = (Prose((f"With displacements that go as exp({s} t):",)), Formula((law, shown, 0)))
     return (Step("characteristic", "Characteristic equation", statements),)
 
 
@@ -192,7 +212,10 @@ def _in_numbers(coefficients: np.ndarray) -> Law:
              if abs(x) > 1e-12 * largest]  # fmt: skip
     plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
     latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]
-    return Law(*(" + ".join(x).replace("+ -", "- ") for x in (plain, latex)))
+    one = (("1*s", "s"), ("1 s", "s"))
+    found = [[re.sub(rf"^(-?){re.escape(a)}", rf"\1{b}", x) for x in written]
+             for written, (a, b) in zip((plain, latex), one, strict=True)]  # fmt: skip
+    return Law(*(" + ".join(x).replace("+ -", "- ") for x in found))
 
 
 def _latex_number(text: str) -> str:
@@ -235,11 +258,13 @@ def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
             (omega, hertz, ratio)), mode.kind)  # fmt: skip
 
 
-def _complex(x: complex, *, pair: bool = False) -> str:
+def _complex(x: complex, *, pair: bool = False) -> Cell:
     if not x.imag:
         return f"{x.real:.7g}"
     sign = "+-" if pair else "+" if x.imag > 0 else "-"
-    return f"{f'{x.real:.7g} ' if x.real else ''}{sign} {abs(x.imag):.7g}i" if x.real else f"{sign}{abs(x.imag):.7g}i"
+    text = f"{x.real:.7g} {sign} {abs(x.imag):.7g}i" if x.real else f"{sign}{abs(x.imag):.7g}i"
+    latex = " ".join(_latex_number(part) for part in text.removesuffix("i").split())
+    return Law(text, latex.replace("+-", r"\pm ") + r"\,\mathrm{i}")
 
 
 def _shapes(modes: Sequence[Mode]) -> Grid:
@@ -260,9 +285,11 @@ def _stability(modes: Modes) -> tuple[Step, ...]:
     statements: list[Statement] = []
     if modes.small.reference.valued:
         statements.append(Prose((f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}.",)))
-    if modes.conditions:
-        statements.append(Prose(("By Routh and Hurwitz all motions fade where these are positive:",)))
-        for k, x in enumerate(modes.conditions, start=1):
+    conditions = modes.conditions
+    if conditions.expressions:
+        which = "all motions but those that stay as they are" if conditions.zeros else "all motions"
+        statements.append(Prose((f"By Routh and Hurwitz {which} {conditions.words} where these are positive:",)))
+        for k, x in enumerate(conditions.expressions, start=1):
             statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _or_number(modes, x))))
     return (Step("stability", "Stability", tuple(statements)),) if statements else ()
 
@@ -276,11 +303,20 @@ def _or_number(modes: Modes, x: Scalar) -> Side:
 
 
 def _transfers(modes: Modes) -> tuple[Step, ...]:
-    if not modes.transfers or modes.small.exact is None:
+    if not modes.transfers:
         return ()
-    s = laplace_variable(modes.small.exact)
-    statements: list[Statement] = [Prose(("From inputs to coordinates, as functions of s:",))]
+    exact = modes.small.exact
+    s = "s" if exact is None else laplace_variable(exact).name
+    statements: list[Statement] = [Prose((f"From inputs to coordinates, as functions of {s}:",))]
     for f in modes.transfers:
-        quotient = over(_written(f.above, s), _written(f.below, s))
-        statements.append(Formula((Place("W", f.coordinate, f.input), _side(quotient))))
+        statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f))))
     return (Step("transfer", "Transfer functions", tuple(statements)),)
+
+
+def _quotient(modes: Modes, f: TransferFunction) -> Side:
+    exact = modes.small.exact
+    if exact is not None and not any(isinstance(c, float) for c in f.below.coefficients):
+        s = laplace_variable(exact)
+        return _side(over(_written(f.above, s), _written(f.below, s)))
+    above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))
+    return Law(f"({above.text})/({below.text})", rf"\frac{{{above.latex}}}{{{below.latex}}}")

@@ -1,0 +1,72 @@
+"""Assembly -> accelerations and multipliers as expressions, by the independent accelerations: few freedoms, many ties.
+
+    a = Z a_i + X,   Z^T M Z a_i = Z^T (F - M X),   J_d^T lam = (M a - F)_d
+
+J = (J_i, J_d) with J_d regular; Z = (1, A), X = (0, b) with J_d A = -J_i, J_d b = -gamma.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.system import System
+from eomgen.symbolic import cramer
+from eomgen.symbolic.dense import independent_rows
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.functions import inner
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+
+FEW = 3  # freedoms
+INDEPENDENT = 1e-7
+
+
+def by_independent(system: System, assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scalar]:
+    """a and lam, where the ties leave few freedoms; redundant rows are left out, their lam 0.
+
+    Args:
+        kept: the closing rows that do not follow from others.
+    Raises:
+        DerivationError: too many unknowns hang together.
+        MissingValues: the ties do not close without values.
+    """
+    symbols, n = assembly.symbols, len(assembly.M)
+    J = [assembly.J[m] for m in kept]
+    d = _dependent(system, J)
+    i = [k for k in range(n) if k not in d]
+    right = [(*(-row[k] for k in i), -assembly.gamma[m]) for m, row in zip(kept, J, strict=True)]
+    columns, _ = cramer.solved([_entries([row[k] for k in d]) for row in J], right)
+    follows = dict(zip(d, columns, strict=True))
+    Z = [follows[k][:-1] if k in follows else tuple(int(k == j) for j in i) for k in range(n)]
+    X = [follows[k][-1] if k in follows else 0 for k in range(n)]
+    a = _moved(assembly, Z, X)
+    pull = [inner(assembly.M[k], a) - assembly.forcing[k] for k in d]
+    lam, _ = cramer.solved([_entries([row[k] for row in J]) for k in d], [(x,) for x in pull])
+    multipliers = {symbols.lam[m]: x for m, (x,) in zip(kept, lam, strict=True)}
+    return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def _moved(assembly: Assembly, Z: Sequence[Sequence[Scalar]], X: Sequence[Scalar]) -> list[Scalar]:
+    """a = Z a_i + X of the independent accelerations that the forces make."""
+    freedoms = range(len(Z[0]))
+    columns = [[row[j] for row in Z] for j in freedoms]
+    moved = [[inner(row, column) for row in assembly.M] for column in columns]
+    left = [force - inner(row, X) for force, row in zip(assembly.forcing, assembly.M, strict=True)]
+    reduced = [_entries([inner(column, each) for each in moved]) for column in columns]
+    found, _ = cramer.solved(reduced, [(inner(column, left),) for column in columns])
+    return [inner(row, [x for (x,) in found]) + x for row, x in zip(Z, X, strict=True)]
+
+
+def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
+    """The speeds that follow from the others, in a configuration that is not special; the last ones rather."""
+    values = evaluate([x for row in J for x in row], generic_state(system.ties), fifty_digits())
+    columns = np.array([float(x) for x in values]).reshape(len(J), -1).T
+    many = len(columns)
+    return sorted(many - 1 - k for k in independent_rows(columns[::-1], INDEPENDENT))
+
+
+def _entries(row: Sequence[Scalar]) -> dict[int, Scalar]:
+    return {j: x for j, x in enumerate(row) if not is_zero(x)}

@@ -1,0 +1,123 @@
+"""Characteristic polynomial -> what must be positive for small motions to fade or to oscillate: Routh and Hurwitz."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.mechanics.small_motions.polynomial import LIMIT, Polynomial, factors_of
+from eomgen.symbolic import cramer
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.expansion import Expansion
+from eomgen.symbolic.functions import over
+from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.terms import TooLarge, content
+
+MOST_CONDITIONS = 6  # degree of a polynomial whose Hurwitz determinants are written
+MOST_EVEN = 4  # degree in s^2 of one whose coefficients are written as conditions
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What must be positive.
+
+    Args:
+        expressions: for all motions to fade; those of even factors of p(s) to oscillate.
+        fading, oscillating: whether there are factors of which it is said.
+        zeros: how many times p(s) holds the factor s: motions that stay as they are, of which nothing is said.
+    """
+
+    expressions: tuple[Scalar, ...] = ()
+    fading: bool = False
+    oscillating: bool = False
+    zeros: int = 0
+
+    @property
+    def words(self) -> str:
+        """What all motions then do."""
+        said = [word for word, holds in (("oscillate", self.oscillating), ("fade", self.fading)) if holds]
+        return " or ".join(said)
+
+
+def stability_conditions(polynomial: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any], *,
+                         conservative: bool) -> Conditions:  # fmt: skip
+    """Of Routh and Hurwitz for each factor of p(s), in the fewer ones of Lienard and Chipart: all coefficients, every
+    other determinant. Of an even factor, what makes all s^2 real and negative.
+
+    Args:
+        trial: values of the parameters: leading coefficients keep the signs that they have there, as det M does.
+        conservative: whether all s^2 are real in any case.
+    Source: Gantmacher, The Theory of Matrices, vol. 2, chapter 15.
+    """
+    zeros = next(k for k, c in enumerate(polynomial.coefficients) if not is_zero(c))
+    factors = []
+    for factor in _polynomials(Polynomial(polynomial.coefficients[zeros:]), s, positive):
+        leading = evaluate((factor.coefficients[-1],), trial, fifty_digits())[0]
+        one = factor if leading > 0 else Polynomial(tuple(simplest(-c, LIMIT, positive) for c in factor.coefficients))
+        if one not in factors:
+            factors.append(one)
+    found = [_conditions(one, conservative) for one in factors]
+    if any(x is None for x in found):
+        return Conditions()
+    each = (_without_number(x, positive) for part in found for x in part or ())
+    expressions = dict.fromkeys(x for x in each if type(x) is Node or x <= 0)
+    even = [one.is_even for one in factors]
+    return Conditions(tuple(expressions), not all(even), any(even), zeros)
+
+
+def _without_number(x: Scalar, positive: Collection[Node]) -> Scalar:
+    """A positive multiple of x, its coefficients whole numbers without a common factor."""
+    if type(x) is not Node:
+        return x
+    expansion = Expansion(x.graph, LIMIT, positive)
+    try:
+        terms = expansion.of(x)
+    except TooLarge:
+        return x
+    return simplest(over(x, content(terms)) if terms else 0, LIMIT, positive)
+
+
+def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node]) -> Iterator[Polynomial]:
+    """The factors of p(s); itself where it is too much work."""
+    try:
+        factors = factors_of(polynomial.at(s), s, positive)
+    except TooLarge:
+        yield polynomial
+        return
+    node = factors.expansion.atoms.node
+    for c in factors.parts:
+        yield Polynomial(tuple(factors.written(node(c.get(k, {}))) for k in range(max(c) + 1)))
+
+
+def _conditions(polynomial: Polynomial, conservative: bool) -> list[Scalar] | None:
+    """What must be positive; None where that is too long to be written."""
+    n, c = polynomial.degree, polynomial.coefficients
+    if not polynomial.is_even:
+        return [*c[:-1], *_determinants(polynomial)] if n <= MOST_CONDITIONS else None
+    even = c[::2]
+    if conservative:
+        return [*even[:-1]] if n <= 2 * MOST_EVEN else None
+    return [*even[:-1], DISCRIMINANTS[len(even) - 2](*even)] if n <= 2 * len(DISCRIMINANTS) else None
+
+
+DISCRIMINANTS: tuple[Callable[..., Scalar], ...] = (
+    lambda c, a: 1,
+    lambda c, b, a: b * b - 4 * a * c,
+    lambda d, c, b, a: 18 * a * b * c * d - 4 * b * b * b * d + b * b * c * c - 4 * a * c * c * c - 27 * a * a * d * d,
+)
+"""Of polynomials in s^2 of degree 1, 2, 3, the constant first: positive where all roots are real."""
+
+
+def _determinants(polynomial: Polynomial) -> list[Scalar]:
+    """Hurwitz' determinants of n - 1, n - 3, ... rows."""
+    n = polynomial.degree
+    a = list(reversed(polynomial.coefficients))  # a0 s^n + a1 s^(n-1) + ...
+
+    def entry(i: int, j: int) -> Scalar:
+        k = 2 * j - i + 1
+        return a[k] if 0 <= k <= n else 0
+
+    sizes = range(2 + (n - 1) % 2, n, 2)
+    return [cramer.determinant([[entry(i, j) for j in range(m)] for i in range(m)]) for m in sizes]

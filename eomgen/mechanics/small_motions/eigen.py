@@ -1,0 +1,150 @@
+"""Matrices of small motions -> eigenvalues and eigenvectors in numbers, and how many eigenvalues are 0.
+
+    A_0 x = lambda B_0 x,   A_0 = [F, E; -K, -C],   B_0 = [1, 0; 0, M]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.small_motions.field import Matrix
+from eomgen.mechanics.small_motions.forms import floats
+from eomgen.mechanics.small_motions.polynomial import Polynomial
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.symbolic import dense
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import Node
+
+WIDE = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
+MOST_BY_DIGITS = 30  # rows of a matrix whose eigenvalues are sought with more digits
+DIGITS = 40
+VANISHING = 1e-36  # of a coefficient of 50 digits, made free of units
+ROUNDING = 1e-14  # of an entry of a matrix against its largest
+RANK = 1e-10  # of balanced rows, below which one follows from others
+MET = 1e-7  # distance of two eigenvalues that are one, against their size
+NULL = 1e-5  # of balanced rows at an eigenvalue that others have met
+
+
+def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(lambda, v) of A v = lambda v, the small ones as exact as the large ones."""
+    values, vectors = np.linalg.eig(A)
+    if not _is_wide(values):
+        return values, vectors
+    from mpmath import mp
+
+    with mp.workdps(DIGITS):
+        E, V = mp.eig(mp.matrix(A.tolist()))
+        return np.array([complex(x) for x in E]), _as_floats(V, complex)
+
+
+def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(w^2, v) of K v = w^2 M v, both symmetric."""
+    from scipy.linalg import eigh
+
+    M, K = (M + M.T) / 2, (K + K.T) / 2
+    squares, vectors = eigh(K, M)
+    if not _is_wide(squares):
+        return squares, vectors
+    from mpmath import mp
+
+    with mp.workdps(DIGITS):
+        L = mp.inverse(mp.cholesky(mp.matrix(M.tolist())))
+        E, V = mp.eigsy(L * mp.matrix(K.tolist()) * L.T)
+        return np.array([float(x) for x in E]), _as_floats(L.T * V, float)
+
+
+def _is_wide(values: np.ndarray) -> bool:
+    sizes = abs(values)
+    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < WIDE * sizes.max()
+
+
+def _as_floats(A: Any, kind: type) -> np.ndarray:
+    """The columns, each with the largest entry of size 1."""
+    found = np.array([[kind(A[i, j]) for j in range(A.cols)] for i in range(A.rows)])
+    return found / abs(found).max(axis=0)
+
+
+# -- zeros ---------------------------------------------------------------------------------------------------------
+
+
+def zeros_of(e: LinearEquations, polynomial: Polynomial | None, trial: Mapping[Node, Any]) -> int:
+    """How many eigenvalues are 0.
+
+    Args:
+        polynomial: p(s), where it is known exactly.
+        trial: values of the parameters, with 50 digits.
+    """
+    found = None if polynomial is None else _of_polynomial(e, polynomial, trial)
+    return _by_rank(*_pencil(e)) if found is None else found
+
+
+def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[Node, Any]) -> int | None:
+    """The power of s that p(s) holds as a factor; None where nothing but 0 is left, in which no size can be seen."""
+    A, B = _pencil(e)
+    largest = abs(np.linalg.eigvals(np.linalg.solve(B, A))).max(initial=0)
+    if not largest:
+        return None
+    unit = fifty_digits().number(1) * float(largest)
+    sizes = [abs(c) * unit**k for k, c in enumerate(evaluate(polynomial.coefficients, trial, fifty_digits()))]
+    return next((k for k, x in enumerate(sizes) if x > VANISHING * sizes[-1]), None)
+
+
+def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
+    """(A_0, B_0)"""
+    n, m = len(e.coordinates), len(e.speeds)
+    M, C, K = (_without_rounding(x, m) for x in (e.M, e.C, e.K))
+    F, E = (_without_rounding(x, n) for x in (e.F, e.E))
+    return np.block([[F, E], [-K, -C]]), np.block([[np.eye(n), np.zeros((n, m))], [np.zeros((m, n)), M]])
+
+
+def _without_rounding(A: Matrix, rows: int) -> np.ndarray:
+    found = floats(A) if rows else np.zeros((0, 0))
+    return np.where(abs(found) > ROUNDING * abs(found).max(initial=0), found, 0)
+
+
+def _by_rank(A: np.ndarray, B: np.ndarray) -> int:
+    """The number of chains A x_1 = 0, A x_2 = B x_1, ... that are independent."""
+    n, found = len(A), 0
+    for k in range(1, n + 1):
+        chain = np.kron(np.eye(k), A) - np.kron(np.eye(k, k=1), B)
+        missing = k * n - dense.rank(chain, smallest=RANK)
+        if missing <= found:
+            break
+        found = missing
+    return found
+
+
+# -- eigenvalues that are one --------------------------------------------------------------------------------------
+
+
+def met(values: np.ndarray) -> np.ndarray:
+    """The eigenvalues, those that rounding has drawn apart from one place of the imaginary axis put back on it."""
+    values = values.copy()
+    for group in _groups(values):
+        mean = values[group].mean()
+        if len(group) > 1 and abs(mean.real) <= MET**1.5 * abs(mean):
+            values[group] = 1j * values[group].imag
+    return values
+
+
+def _groups(values: Sequence[complex] | np.ndarray) -> list[list[int]]:
+    groups: list[list[int]] = []
+    for k in np.argsort(np.imag(values), kind="stable"):
+        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= MET * abs(values[k])]
+        near[0].append(int(k)) if near else groups.append([int(k)])
+    return groups
+
+
+def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
+    """Whether an eigenvalue of the imaginary axis has fewer modes than it counts for."""
+    A, B = _pencil(e)
+    for group in _groups(values):
+        x = 1j * np.mean([values[k].imag for k in group])
+        if len(group) > 1 and x.imag > 0 and not any(values[k].real for k in group):
+            whole = np.block([[A, x.imag * B], [-x.imag * B, A]])  # of real and imaginary parts
+            if len(whole) - dense.rank(whole, smallest=NULL) < 2 * len(group):
+                return True
+    return False

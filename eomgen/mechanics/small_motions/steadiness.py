@@ -1,0 +1,107 @@
+"""Reference -> whether it is one: a state at which the equations are smooth, and later look the same as now."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.small_motions.field import Field, Numbers
+from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
+from eomgen.mechanics.small_motions.forms import NOTHING, floats
+from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
+from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
+from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.evaluation import NoValue, fifty_digits, order
+from eomgen.symbolic.graph import Node
+
+TIMES = (0.3717281828, 1.1931415926)  # later states of a steady motion, at which it must look the same [of one unit]
+CORNERS = frozenset(("abs", "sign", "min", "max", "select"))
+ASIDE = 1e-24  # how far from the reference forces must be the same
+SIDES = 4  # directions that are tried, with their opposites
+LATER = (13.4142135623, 1717.7724538509)  # the same, where t itself stands in the equations
+
+
+def reduced(first: FirstOrder, choice: Choice, reference: Reference, field: Field) -> LinearEquations:
+    """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
+    equations = Reducing(first, choice, field).equations()
+    return over_turns(field, first.system, equations, spinning(reference, choice))
+
+
+def refuse_corners(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
+                    kept: Sequence[int]) -> None:  # fmt: skip
+    """Forces that are not smooth at the reference, as k |x| at x = 0: close to it, on both sides, all must be the same.
+
+    Raises:
+        DerivationError: they are not.
+    """
+    if not any(node.op in CORNERS for node in order(first.residual)):
+        return
+    symbols, rng = first.system.symbols, Random(7)
+    changes = _changed(first, choice, reference, raw, kept)
+    for _ in range(SIDES):
+        aside = {x: fifty_digits().number(1) * ASIDE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
+        if changes(aside) or changes({x: -d for x, d in aside.items()}):
+            raise DerivationError("the forces have a corner or a jump at the place of reference", "linearize",
+                                  "take a place beside it, or forces that are smooth there")  # fmt: skip
+
+
+def refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
+                     kept: Sequence[int]) -> None:  # fmt: skip
+    """A reference that changes with time where it matters.
+
+    Raises:
+        DerivationError: the coordinate that moves is named.
+    """
+    moving = reference.moving
+    t = first.system.symbols.t
+    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
+    graph = first.assembly
+    timed = any(depends_on(x, (t,)) for x in (*graph.forcing, *graph.gamma, *graph.sigma))
+    times = (*TIMES, *LATER) if timed else TIMES
+    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
+    turns = spinning(reference, choice)
+    for shift in shifts:
+        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
+    changes = _changed(first, choice, reference, raw, kept)
+    if not any(map(changes, shifts)):
+        return
+    culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
+    if culprit is t:
+        raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
+                              "let nothing but inputs depend on t")  # fmt: skip
+    what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
+    raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
+
+
+def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+             ) -> Callable[[Mapping[Node, Any]], bool]:  # fmt: skip
+    """Whether the equations are others at a shifted state."""
+    here = list(_compared(raw, kept))
+
+    def changes(shift: Mapping[Node, Any]) -> bool:
+        shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
+        reducing = Reducing(first, choice, Numbers(shifted))
+        try:
+            there = list(_compared(reduced(first, choice, reference, reducing.field), kept))
+            pushed = unsettled(reducing, REST)
+        except (NoValue, ZeroDivisionError):
+            return True
+        pairs = zip(here, there, strict=True)
+        return bool(pushed) or any(
+            np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs
+        )
+
+    return changes
+
+
+def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:
+    yield floats(equations.M)
+    yield floats(equations.C)
+    yield floats(equations.K)[:, list(kept)]
+    yield floats(equations.F)[np.ix_(kept, kept)]
+    yield floats(equations.E)[list(kept)]
