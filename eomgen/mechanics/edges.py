@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+from fractions import Fraction
+
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import SystemScene
 from eomgen.model.constraints.row import Edge
+from eomgen.symbolic.graph import Scalar
+
+NEAR = 1e-5  # of what vanishes at an edge: a motion ends there
 
 
-def edges_of(motion: Motion) -> tuple[Edge, ...]:
-    """Of all ties of the model."""
-    ties = motion.scope.model.constraints.items()
+def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
+    """Of all ties of the model but those that are open."""
+    ties = [(name, tie) for name, tie in motion.scope.model.constraints.items() if name not in open]
     return tuple(edge for name, tie in ties for edge in tie.edges(SystemScene(motion, f"{tie.table}.{name}")))
+
+
+def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
+    """What is left until a motion ends at each of them."""
+    return tuple(edge.vanishes - Fraction(NEAR) for edge in edges)
+
+
+def stopped_at(edge: Edge, t: float) -> str:
+    """Why a motion ends there."""
+    return f"Stopped at t = {t:.6g} s: {edge.words}, and how it goes on is not determined."

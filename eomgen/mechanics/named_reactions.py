@@ -1,7 +1,8 @@
 """Reactions -> what an output asks of them by name, every one: reaction_x(B), reaction_n(wall), tension(rope, 2).
 
 In the plane these are the components themselves; in space, and at hinges of several bodies, sums of them in the
-ground's axes. Beside each contact that rubs stands its friction, reaction_t(wall), along the contact's tangent.
+ground's axes. Beside each contact that rubs stands its friction along the contact's tangent, reaction_t(wall), on a
+surface along both tangents.
 """
 
 from __future__ import annotations
@@ -10,12 +11,12 @@ from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.balance import Balance
-from eomgen.mechanics.components import Component, rubbing_of
+from eomgen.mechanics.components import Component
 from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.model.constraints.members import ends_asked
-from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.expressions import Call, Expression, Reference
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
 
 FORCE, COUPLE = "N", "N*m"
@@ -75,11 +76,11 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
             yield from _vector(balance, owner, "", "couple_", COUPLE, along)
     for j, c in apart:
         yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
-        if c.rubbing:
-            yield NamedReaction(f"reaction_t({owner})", owner, FORCE, {j: rubbing_of(balance.system, c)[0]})
+        for rubs in c.friction:
+            yield NamedReaction(f"reaction_{rubs.label}({owner})", owner, FORCE, {j: rubs.factor})
     for j, c in mine:
-        if c.kind == "drive":
-            yield NamedReaction(_drive(balance, c), owner, unit_of(c), {j: 1})
+        if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
+            yield NamedReaction(c.name, owner, unit_of(c), drives)
 
 
 def _vector(
@@ -132,11 +133,11 @@ def _name(balance: Balance, component: Component) -> str:
     return f"tension({component.owner})" if strand == 1 else f"tension({component.owner}, {strand})"
 
 
-def _drive(balance: Balance, component: Component) -> str:
-    """drive(q) where the joint alone follows the coordinate q, else by the joint."""
+def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]:
+    """What drives a coordinate: of every joint that follows it D_k ds_k/dq, s_k the joint's variable."""
+    if not component.side:
+        return {j: 1}
     motion = balance.system.motion
-    s = motion.link(component.owner).s[component.number - 1]
-    if type(s) is not Node or s not in motion.scope.symbols.q:
-        return component.name
-    followers = [other for link in motion.links for other in link.s if depends_on(other, (s,))]
-    return f"drive({s.name})" if len(followers) == 1 else component.name
+    (q,) = (x for x in motion.scope.symbols.q if x.name == component.side)
+    mine = [(i, c) for i, c in enumerate(balance.components) if c.kind == "drive" and c.side == q.name]
+    return {i: derivative(motion.link(c.owner).s[c.number - 1], q) for i, c in mine}

@@ -100,12 +100,13 @@ def _lines(
     tests: Sequence[Mapping[int, Scalar]],
 ) -> list[_Line]:  # fmt: skip
     flat = [entry for row in rows for entry in row.values()]
-    shadows = iter(values(flat))
+    found = values(flat)
+    shadows, floor = iter(found), tolerance**2 * max(map(abs, found), default=0)  # a row may be rounding alone
     lines = []
     for row, b, test in zip(rows, right, tests, strict=True):
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
-        kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > tolerance * largest}
+        kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > max(tolerance * largest, floor)}
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
         lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines

@@ -20,9 +20,12 @@ from eomgen.model.forces.load import Scalar, Scene, Vector
 from eomgen.model.joints.base import unit
 from eomgen.symbolic.functions import cos, over, sin, sqrt
 from eomgen.symbolic.graph import Node
+from eomgen.symbolic.normal_form import readable
 from eomgen.symbolic.spatial import apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.text import text_size
 
 FLAT = 1e-6  # rho of a wheel that lies flat
+LONGEST, WORK = 400, 500  # characters and products of terms of a cosine that is multiplied out
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ class Wheel:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)
         k = cross(n, a)
-        wave = _other_wave(scene, dot(n, a))
+        wave = _other_wave(scene, _short(dot(n, a)))
         return sqrt(dot(k, k)) if wave is None else wave
 
     def _axle(self, scene: Scene) -> Vector:
@@ -144,8 +147,14 @@ def _nearest_axis(scene: Scene, n: Vector) -> tuple[int, int]:
 
 def complement(scene: Scene, x: Scalar) -> Scalar:
     """sqrt(1 - x^2)."""
+    x = _short(x)
     wave = _other_wave(scene, x)
     return sqrt(1 - x * x) if wave is None else wave
+
+
+def _short(x: Scalar) -> Scalar:
+    """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
+    return readable(x, WORK) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
 def _other_wave(scene: Scene, x: Scalar) -> Scalar | None:
