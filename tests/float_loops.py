@@ -135,3 +135,16 @@ def turn(n: np.ndarray, angle: float) -> np.ndarray:
     """The rotation about n."""
     K = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+def bricard() -> Chain:
+    """Five rods of 1 kg along edges of a cube of 1 m, the last hinged to the ground; weight along -y."""
+    rod = {(1, 0, 0): (0, 1, 1), (0, 1, 0): (1, 0, 1), (0, 0, 1): (1, 1, 0)}
+    along = [(1, 0, 0), (0, -1, 0), (0, 0, 1), (-1, 0, 0), (0, 1, 0)]
+    axes = [(0, 1, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    hinges = [(0, 0, 0), *along[:-1]]
+    links = [
+        Link(hinge, axis, np.array(d) / 2, 1.0, np.array(rod[tuple(map(abs, d))]) / 12)
+        for hinge, axis, d in zip(hinges, axes, along, strict=True)
+    ]
+    return Chain(links, Closing(along[-1], (1, 0, 0)), (0, -9.81, 0))

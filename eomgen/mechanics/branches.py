@@ -18,18 +18,20 @@ import numpy as np
 from eomgen.mechanics.closure import gaps_of, movable
 from eomgen.mechanics.consistency import is_guess
 from eomgen.mechanics.elimination import dependent_coordinates
+from eomgen.mechanics.loads import SystemScene
 from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.dense import independent_rows
 from eomgen.symbolic.derivative import jacobian, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these
 STEPS = 40
 CLOSED = 1e-11  # of a gap
 SAME = 1e-6
+ROUNDING = 1e-12
 INDEPENDENT = 1e-7
 SINGULAR = 1e-4  # of the largest singular value: two branches meet there
 
@@ -42,7 +44,7 @@ class Branch:
 
     Args:
         values: of the coordinates that follow.
-        sign: of det d phi/dq over them.
+        sign: of det d phi/dq over them; 0 where rows are redundant: no choice of them is independent everywhere.
     """
 
     values: Mapping[str, float]
@@ -50,7 +52,7 @@ class Branch:
 
     def __str__(self) -> str:
         named = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
-        return f"{named} ({'+' if self.sign > 0 else '-'})"
+        return named + {1: " (+)", -1: " (-)", 0: ""}[self.sign]
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ class _Search:
     Args:
         gaps, slopes: phi, and its derivatives by what is sought.
         rows: those that are independent.
+        agreeing: what is positive where hinges and welds are not turned over.
         here: the place of the start.
         turns: of each coordinate sought, whether it is an angle.
         reach: how far lengths may lie from where they are.
@@ -107,6 +110,7 @@ class _Search:
     known: State
     sought: tuple[Node, ...]
     kept: tuple[str, ...]
+    agreeing: tuple[Scalar, ...]
     here: np.ndarray
     turns: np.ndarray
     reach: float
@@ -122,7 +126,8 @@ class _Search:
             if not np.all(np.isfinite(J)):
                 return None
             if np.max(np.abs(phi)) < CLOSED:
-                return self.here + self.apart(place, self.here) if self.is_regular(J) else None
+                fits = self.is_regular(J) and self._is_upright(place)
+                return self.here + self.apart(place, self.here) if fits else None
             place = place - np.linalg.lstsq(J, phi, rcond=1e-12)[0]
         return None
 
@@ -132,9 +137,14 @@ class _Search:
         sizes = np.linalg.svd(J / np.where(scale > 0, scale, 1.0), compute_uv=False)
         return bool(sizes[-1] > SINGULAR * sizes[0])
 
+    def _is_upright(self, place: np.ndarray) -> bool:
+        return all(x > 0 for x in evaluate(self.agreeing, self._state(place), FLOAT))
+
+    def _state(self, place: np.ndarray) -> State:
+        return self.known | dict(zip(self.sought, place.tolist(), strict=True))
+
     def _at(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        state = self.known | dict(zip(self.sought, place.tolist(), strict=True))
-        values = np.array(evaluate((*self.gaps, *self.slopes), state, FLOAT), dtype=float)
+        values = np.array(evaluate((*self.gaps, *self.slopes), self._state(place), FLOAT), dtype=float)
         k = len(self.gaps)
         return values[:k], values[k:].reshape(k, -1)
 
@@ -147,8 +157,15 @@ class _Search:
         return bool(np.max(np.abs(self.apart(one, other))) < SAME)
 
     def branch(self, place: np.ndarray) -> Branch:
-        values = {q.name: float(x) for q, x in zip(self.sought, place, strict=True)}
-        return Branch(values, 1 if np.linalg.det(self._at(place)[1][list(self.rows)]) > 0 else -1)
+        values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
+        if len(self.rows) < len(self.gaps):
+            return Branch(values, 0)
+        return Branch(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1)
+
+
+def _plain(x: float) -> float:
+    """A value found to CLOSED; what is rounding of it is 0."""
+    return float(x) if abs(x) > ROUNDING else 0.0
 
 
 def _search(system: System, start: Mapping[str, float]) -> _Search | None:
@@ -171,7 +188,10 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     lengths = [abs(known[q]) for q in free] + [abs(x) for x in p.values()]
     here = np.array([known[q] for q in sought])
     kept = tuple(q.name for q in free if q not in sought)
-    return _Search(gaps, slopes, tuple(rows), known, tuple(sought), kept, here, turns, 2 * max(lengths, default=1.0))
+    agreeing = tuple(x for name, tie in system.scope.model.constraints.items()
+                     for x in tie.agreeing(SystemScene(system.motion, f"constraints.{name}")))  # fmt: skip
+    reach = 2 * max(lengths, default=1.0)
+    return _Search(gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
 
 
 def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node]:

@@ -17,18 +17,21 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.closure import closed, gaps_of, generic_state
+from eomgen.mechanics.closure import closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.ties import Ties
 from eomgen.model.parts import Model
-from eomgen.symbolic.dense import rank
-from eomgen.symbolic.derivative import jacobian
+from eomgen.symbolic.dense import balanced
+from eomgen.symbolic.derivative import depends_on, jacobian
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
 ROUNDS = 12  # of walking along the ties towards the values given
 STILL = 1e-12  # of a step of such a walk, against a turn of 1 rad
 DEPENDENT = 1e-9  # of a singular value of the balanced rows
+APART = 1e-6  # of two configurations
 SPREADS = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
+EASY = 1e3  # times farther a guess may move than a given value, for the same
+ROUNDING = 1e-12  # of a coordinate
 FLAT = 1e-6  # of the largest slope: what moves the gaps by less counts as if it moved them by that
 
 State = dict[Node, Any]
@@ -45,10 +48,10 @@ def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Nod
     free: list[Node] = []
     for tier in tiers:
         free += tier
-        if tier:
-            found = _nearest(ties, state, free, guessed)
-            if found is not None:
-                return found
+        moved = _moved(ties, state, free) if tier else None
+        found = None if moved is None else _nearest(moved, state, free, guessed)
+        if found is not None:
+            return found
     return None
 
 
@@ -73,11 +76,25 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
 
 
 def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:
-    """Whether the gaps are as independent there as in a configuration that is not special."""
+    """Whether the gaps are as independent there as in a configuration that is not special.
+
+    Slopes are measured by those of that configuration: where all gaps are flat none is.
+    """
+    J = [_slope(ties, each, free) for each in (state, _another(ties, state, free))]
+    _, rows, columns = balanced(J[1])
+    here, there = (np.linalg.svd(rows[:, None] * each * columns, compute_uv=False) for each in J)
+    smallest = DEPENDENT * np.max(there, initial=0.0)
+    return bool(np.sum(here > smallest) >= np.sum(there > smallest))
+
+
+def _another(ties: Ties, state: State, free: Sequence[Node]) -> State:
+    """A configuration that is not special; where the gaps close in none but this one, they need not close there."""
     try:
-        return _rank(ties, state, free) == _rank(ties, generic_state(ties), free)
+        other = generic_state(ties)
     except EomgenError:
-        return True
+        return scattered_state(ties)
+    same = all(abs(other[q] - state[q]) < APART for q in free)
+    return scattered_state(ties) if same else other
 
 
 def far(ties: Ties, before: State, after: State, given: Sequence[Node]) -> bool:
@@ -100,11 +117,26 @@ def is_guess(model: Model, name: str) -> bool:
 # -- positions ---------------------------------------------------------------------------------------
 
 
+def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
+    """The rows that these coordinates move; None where another one is open by more than the rounding of its values."""
+    others = [row for row in ties.rows if row.gap is not None and not depends_on(row.gap, free)]
+    gaps = tuple(row.gap for row in others if row.gap is not None and not row.identical)
+    slopes = _slope(replace(ties, rows=tuple(others)), state, movable(ties))
+    sizes = np.max(np.abs(slopes), axis=1, initial=0.0)
+    try:
+        values = evaluate(gaps, state, fifty_digits())
+    except (NoValue, ZeroDivisionError):
+        return None
+    if any(abs(x) > ROUNDING * max(size, FLAT) for x, size in zip(values, sizes, strict=True)):
+        return None
+    return replace(ties, rows=tuple(row for row in ties.rows if row not in others))
+
+
 def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
     """By moving these alone: from where they stand, then from other guesses."""
     given = [q for q in free if q not in guessed]
     for start in _guesses(state, [q for q in free if q in guessed]):
-        found = _walked(ties, start, free, state)
+        found = _walked(ties, start, free, state, guessed)
         if found is not None and not far(ties, state, found, given) and regular(ties, found, free):
             return found
     return None
@@ -116,12 +148,14 @@ def _guesses(state: State, guessed: Sequence[Node]) -> Iterator[State]:
         yield state | {q: state[q] + rng.uniform(-spread, spread) for q in guessed}
 
 
-def _walked(ties: Ties, start: State, free: Sequence[Node], wanted: Mapping[Node, Any]) -> State | None:
-    """Closed from the start, then along the ties to the point that is nearest to the wanted values.
+def _walked(
+    ties: Ties, start: State, free: Sequence[Node], wanted: Mapping[Node, Any], guessed: Sequence[Node]
+) -> State | None:
+    """Closed from the start, then along the ties to the point that is nearest to the wanted values, guesses last.
 
     dq = (1 - J^+ J) (q_wanted - q), and closed again, till that is nothing.
     """
-    sizes = 1 / _slopes(_slope(ties, start, free))
+    sizes = 1 / _slopes(_slope(ties, start, free)) * np.array([EASY if q in guessed else 1.0 for q in free])
     found = closed(ties, start, free, sizes)
     for _ in range(ROUNDS if found is not None else 0):
         assert found is not None
@@ -149,10 +183,6 @@ def _slopes(J: np.ndarray) -> np.ndarray:
     """How far each column moves the gaps, none of them nothing."""
     lengths = np.linalg.norm(J, axis=0)
     return np.maximum(lengths, FLAT * (np.max(lengths, initial=0.0) or 1.0))
-
-
-def _rank(ties: Ties, state: State, free: Sequence[Node]) -> int:
-    return rank(_slope(ties, state, free), smallest=DEPENDENT)
 
 
 def bilateral(ties: Ties, ending: Sequence[str], holds: Sequence[str]) -> Ties:

@@ -22,7 +22,7 @@ from eomgen.mechanics.ties import Ties, holds_identically
 from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent
 from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations
+from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations, order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
@@ -67,6 +67,18 @@ class Elimination:
 def dependent_coordinates(scope: Scope) -> tuple[str, ...]:
     """The names of the coordinates that are eliminated, in the model's order."""
     return tuple(name for name, part in scope.model.coordinates.items() if part.dependent)
+
+
+def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[Block, ...]:
+    """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
+    moving = (*scope.symbols.q, scope.symbols.t)
+    rates = {q.name: rate for q, rate in zip(scope.symbols.q, scope.rates, strict=True)}
+
+    def divided(block: Block) -> bool:
+        nodes = order([rates[name] for name in block.coordinates])
+        return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
+
+    return () if elimination is None else tuple(filter(divided, elimination.blocks))
 
 
 def elimination_of(ties: Ties) -> Elimination:

@@ -13,10 +13,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.errors import DerivationError, UsageError
+from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.mechanics.closure import closed, gaps_of, number
 from eomgen.mechanics.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.elimination import dependent_coordinates
+from eomgen.mechanics.forks import Fork, at_rest, fork_at, leads_on, speeds_along
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
 from eomgen.model.contacts import contacts_of
@@ -26,6 +27,7 @@ from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits, o
 from eomgen.symbolic.graph import Node, Scalar
 
 OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
+ROUNDING = 1e-17  # of a coordinate or speed found by the ties, in SI: 0
 NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so little is rounding
 
 State = dict[Node, Any]
@@ -56,11 +58,13 @@ class Start:
         values: of every coordinate and independent speed; all ties hold.
         changes: of those that are not dependent, so that the ties hold.
         ties: the names of the ties that did not hold at the values given.
+        fork: where branches meet there.
     """
 
     values: dict[str, float]
     changes: tuple[Change, ...] = ()
     ties: tuple[str, ...] = ()
+    fork: Fork | None = None
 
     @property
     def words(self) -> str:
@@ -102,9 +106,10 @@ def start_of_motion(
     _refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, start or {})
     _refuse_open_rates(system, state)
-    names = tuple(dict.fromkeys((*open_gaps, *open_rates)))
-    found = {node.name: float(state[node]) for node in (*system.symbols.q, *system.symbols.u)}
-    return Start(found, _changes(system, values, found, start or {}) if names else (), names)
+    state, fork, turned = _along_a_branch(system, state, start or {})
+    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
+    found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
+    return Start(found, _changes(system, values, found, start or {}) if names else (), names, fork)
 
 
 # -- values at which the ties hold -------------------------------------------------------------------
@@ -129,16 +134,41 @@ def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) 
 
 def _with_rates_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
-    u, model = system.symbols.u, system.scope.model
-    apart = _apart(((row, row.velocity) for row in system.ties.closing), u, state)
+    apart = _apart(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
     ties = _that_stay(system, apart)
     opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
     if not opened:
         return state, ()
+    return nearest_speeds(ties, state, _speeds(system, start)) or state, opened
+
+
+def _along_a_branch(
+    system: System, state: State, start: Mapping[str, float]
+) -> tuple[State, Fork | None, tuple[str, ...]]:
+    """(the nearest state whose speeds lead along a branch, where branches meet, the ties that they did not keep).
+
+    Raises:
+        DerivationError: they lead along none.
+    """
+    try:
+        fork = fork_at(system.ties, state)
+    except EomgenError:  # the ties close nowhere near: there is but this place
+        return state, None, ()
+    if fork is None or at_rest(system.ties, state) or leads_on(system.ties, fork, state):
+        return state, fork, ()
+    found = speeds_along(system.ties, fork, state, _speeds(system, start))
+    if found is None:
+        what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
+        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
+    return found, fork, fork.ties
+
+
+def _speeds(system: System, start: Mapping[str, float]) -> tuple[list[Node], list[Node], list[Node]]:
+    """The speeds that nobody gave, those of the model, those that the caller gave."""
+    u, model = system.symbols.u, system.scope.model
     called = [node for node in u if node.name in start]
     silent = [node for node in u if node not in called and is_guess(model, node.name)]
-    tiers = (silent, [node for node in u if node not in called and node not in silent], called)
-    return nearest_speeds(ties, state, tiers) or state, opened
+    return silent, [node for node in u if node not in called and node not in silent], called
 
 
 def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
@@ -161,6 +191,11 @@ def _changes(
         Change(x.name, before[x.name], after[x.name], x.name in start or not is_guess(system.scope.model, x.name))
         for x in own if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
     )  # fmt: skip
+
+
+def _rounded(x: Any, given: float) -> float:
+    """A number of 50 digits as a float; 0 where it is rounding, and not given."""
+    return 0.0 if abs(x) < ROUNDING and float(x) != given else float(x)
 
 
 def start_speeds(system: System) -> dict[Node, Scalar]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from eomgen.errors import EomgenError
+from collections.abc import Sequence
+
+from eomgen.errors import EomgenError, MissingValues
 from eomgen.mechanics.branches import Branches, branches_of_loops
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.mechanics.instant.snapshot import mobility_of
+from eomgen.mechanics.integrability import VelocityRow
 from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.statics.structure import Structure, structure_of
@@ -40,8 +43,10 @@ def check(model: Model) -> Outcome:
     mobility = mobility_of(model) if still else None
     structure = structure_of(system_of(model, modes_at_rest(model))) if still else None
     lines += _freedom_lines(model, freedom)
-    begun, branches = _start_of_loops(model, modes, freedom)
+    begun, branches, refused = _start_of_loops(model, modes, freedom)
+    lines += [f"start: {refused}"] if refused else []
     lines += [f"start {begun.words}"] if begun is not None and begun.words else []
+    lines += [f"the start is {begun.fork.words}"] if begun is not None and begun.fork is not None else []
     lines += _branch_lines(branches)
     lines += [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
     lines += [] if structure is None else [f"structure: {_held(structure)}"]
@@ -56,38 +61,41 @@ def check(model: Model) -> Outcome:
         "open_at_start": away, "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "position_freedoms": _positions(freedom), "velocity_rows": _velocity_rows(freedom),
-        "start": None if begun is None else begun.values,
+        "start": None if begun is None else begun.values, "start_refused": refused or None,
+        "change_point": bool(begun is not None and begun.fork),
         "start_changed": [{"name": c.name, "from": c.before, "to": c.after, "given": c.given}
                           for c in (begun.changes if begun is not None else ())],
         "branches": [] if branches is None else [
-            {"values": dict(each.values), "sign": each.sign} for each in (branches.here, *branches.others)],
+            {"values": dict(each.values), "sign": each.sign or None} for each in (branches.here, *branches.others)],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip
     return Outcome("\n".join(lines) + "\n", payload)
 
 
-def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> tuple[Start | None, Branches | None]:
-    """(the start at which loops close, the ways in which they do); None where nothing closes or a value is missing."""
+def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> tuple[Start | None, Branches | None, str]:
+    """(the start at which loops close, the ways in which they do, why there is none); None where nothing closes."""
     if not freedom.closing or not model.coordinates:
-        return None, None
+        return None, None, ""
     try:
         system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
         begun = start_of_motion(system)
-        return begun, branches_of_loops(system, begun.values)
-    except EomgenError:  # said by the verbs that need a start
-        return None, None
+        return begun, None if begun.fork else branches_of_loops(system, begun.values), ""
+    except MissingValues:
+        return None, None, ""
+    except EomgenError as error:  # an error of the verbs that need a start
+        return None, None, error.what
 
 
 def _branch_lines(branches: Branches | None) -> list[str]:
     if branches is None:
         return []
     lines = [f"loops at the start: {branches.here}"]
-    others = listed(str(each) for each in branches.others[:MOST_TOLD])
-    more = len(branches.others) - MOST_TOLD
+    others, more = list(map(str, branches.others[:MOST_TOLD])), len(branches.others) - MOST_TOLD
+    others += [f"and {more} more ways"] if more > 0 else []
     kept = f" with the same {listed(branches.kept)}" if branches.kept else ""
-    if branches.others:
-        lines.append(f"they also close{kept} at {others}" + f", and {more} more ways" * (more > 0))
-    return lines
+    if len(others) == 1:
+        return [*lines, f"they also close{kept} at {others[0]}"]
+    return [*lines, f"they also close{kept} at", *(f"  {each}" for each in others)] if others else lines
 
 
 def _truss(name: str, truss: Truss) -> str:
@@ -113,7 +121,7 @@ def _freedom_lines(model: Model, freedom: Freedom) -> list[str]:
     lines += [f"ties that only react: {listed(freedom.identical)}"] if freedom.identical else []
     lines += _velocity_lines(freedom)
     for row in freedom.redundant:
-        others = f", it follows from {listed(row.others)}" if row.others else ""
+        others = f", it follows from {listed(row.others) if row.others else 'its other rows'}"
         lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
     return lines
 
@@ -123,13 +131,22 @@ def _velocity_lines(freedom: Freedom) -> list[str]:
     found = freedom.integrability
     if found is None:
         return []
-    lines = []
+    free = [row for row in found.rows if not row.integrable]
+    lines = [f"not integrable (nonholonomic): {listed(_rows(free))}"] if free else []
     for row in found.rows:
-        kept = "" if row.integral is None else f": {to_text(row.integral)} = 0"
-        what = "integrable (holonomic)" if row.integrable else "not integrable (nonholonomic)"
-        lines.append(f"{what}: row {row.number} of tie '{row.tie}'{kept}")
+        if row.integrable:
+            kept = "" if row.integral is None else f": {to_text(row.integral)} = 0"
+            lines.append(f"integrable (holonomic): row {row.number} of tie '{row.tie}'{kept}")
     more = found.positions != freedom.by_rank
     return [*lines, f"degrees of freedom in position: {found.positions}"] if more else lines
+
+
+def _rows(rows: Sequence[VelocityRow]) -> list[str]:
+    """row 1 of tie 'edge', rows 2 and 3 of tie 'wheel'"""
+    numbers: dict[str, list[str]] = {}
+    for row in rows:
+        numbers.setdefault(row.tie, []).append(str(row.number))
+    return [f"row{'s' * (len(each) > 1)} {' and '.join(each)} of tie '{tie}'" for tie, each in numbers.items()]
 
 
 def _positions(freedom: Freedom) -> int | None:

@@ -34,6 +34,7 @@ from eomgen.verbs.given import assignments, nearest
 from eomgen.verbs.outcome import Outcome, listed
 
 NO_VALUE = "it has no single value at the start"
+ROUNDING = 1e-14  # of the largest reaction: smaller numbers are 0
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
 
 
@@ -95,7 +96,9 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:
         return {}, error.what
-    return {n: float(x) + 0.0 for n, x in zip(columns.names, values, strict=True) if math.isfinite(x)}, None
+    rounding = ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
+    return {n: float(x) if abs(x) > rounding else 0.0
+            for n, x in zip(columns.names, values, strict=True) if math.isfinite(x)}, None  # fmt: skip
 
 
 # -- at an instant, or from rest -------------------------------------------------------------------

@@ -7,7 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from eomgen import pipeline, running
+from eomgen.codegen.accelerations import accelerations_at
+from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
@@ -42,7 +46,20 @@ def simulate(
         plot_trajectory(run, prepared(plot), title=model.name, units=units)
     told = f"The start was {run.assembled}." if run.assembled else ""
     notes = tuple(note for note in (told, run.remark if run.reactions else "") if note)
-    return Outcome(_run_text(model, run), _run_payload(model, run, files), "" if run.ok else run.message, notes)
+    payload = _run_payload(model, run, files) | _first_instant(equations, run, parameters)
+    return Outcome(_run_text(model, run), payload, "" if run.ok else run.message, notes)
+
+
+def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:
+    """Accelerations and multipliers at the start; null where one has no single value."""
+    if not len(run.t):
+        return {"start_accelerations": {}, "start_multipliers": {}}
+    stage, x = run.phases[0].stage, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
+    system, assembly = (equations.system, equations.graph) if stage is None else (stage.system, stage.assembly)
+    state = np.array([x[node.name] for node in (*system.symbols.q, *system.symbols.u)])
+    p = parameter_vector(equations.model, parameters)
+    found = accelerations_at(system, assembly, float(run.t[0]), state, p)
+    return {"start_accelerations": found.a, "start_multipliers": found.lam}
 
 
 def _check_ending(output: str | None) -> None:

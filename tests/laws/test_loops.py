@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.mechanics.branches import branches_of_loops
 from eomgen.mechanics.start import start_of_motion
-from tests.float_loops import Chain, Closing, Link
+from tests.float_loops import Chain, Closing, Link, bricard
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")
 MODELS = Path(__file__).parents[2] / "models"
@@ -21,18 +21,6 @@ MODELS = Path(__file__).parents[2] / "models"
 
 def model(name: str) -> eomgen.Model:
     return eomgen.load(MODELS / f"{name}.toml")
-
-
-def bricard() -> Chain:
-    rod = {(1, 0, 0): (0, 1, 1), (0, 1, 0): (1, 0, 1), (0, 0, 1): (1, 1, 0)}
-    along = [(1, 0, 0), (0, -1, 0), (0, 0, 1), (-1, 0, 0), (0, 1, 0)]
-    axes = [(0, 1, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    hinges = [(0, 0, 0), *along[:-1]]
-    links = [
-        Link(hinge, axis, np.array(d) / 2, 1.0, np.array(rod[tuple(map(abs, d))]) / 12)
-        for hinge, axis, d in zip(hinges, axes, along, strict=True)
-    ]
-    return Chain(links, Closing(along[-1], (1, 0, 0)), (0, -9.81, 0))
 
 
 def bennett() -> Chain:

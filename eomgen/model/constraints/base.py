@@ -8,6 +8,7 @@ from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
+from eomgen.symbolic.graph import Scalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +38,10 @@ class Constraint(Part, ABC):
 
     def edges(self, scene: Scene) -> tuple[Edge, ...]:
         """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
+        return ()
+
+    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+        """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""
         return ()
 
     @abstractmethod

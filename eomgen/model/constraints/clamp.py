@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.pin import held_together, not_turning, others_of
+from eomgen.model.constraints.pin import alike, held_together, not_turning, others_of
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import PointName, Points
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import IDENTITY
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,3 +30,10 @@ class Clamp(Constraint):
             bodies = first[0], other[0]
             rows += [same_turn(scene, *bodies)] if scene.plane else not_turning(scene, bodies)
         return tuple(rows)
+
+    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+        """In space e_i . e_i of the axes in either body."""
+        if scene.plane:
+            return ()
+        first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
+        return tuple(alike(scene, (first[0], other[0]), e) for other in others_of(scene, named) for e in IDENTITY)

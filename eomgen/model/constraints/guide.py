@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.pin import not_turning
+from eomgen.model.constraints.pin import alike, not_turning
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName
-from eomgen.symbolic.spatial import dot
+from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.spatial import IDENTITY, dot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,3 +33,8 @@ class Guide(Constraint):
             rows.append(TieRow((PointForce(place, n),), height - scene.start(height), component=name))
         turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
         return (*rows, *turns)
+
+    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+        """In space e_i . e_i of the ground's axes and those that the body carries."""
+        body = scene.place(self.point)[0]
+        return () if scene.plane else tuple(alike(scene, (body, None), e) for e in IDENTITY)

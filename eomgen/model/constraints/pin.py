@@ -8,6 +8,7 @@ from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
+from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.spatial import IDENTITY, apply, cross, dot, matrix_of, minus, times, transposed
 
 
@@ -37,6 +38,14 @@ class Pin(Constraint):
                 n = unit(scene.vector(self.axis))
                 rows += [across_from(scene, (first[0], other[0]), e, n) for e in across(n)]
         return tuple(rows)
+
+    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+        """Of a hinge in space n_first . n_P, for each further point P."""
+        if self.axis is None or scene.plane:
+            return ()
+        first, *_ = named = [scene.place(point) for point in self.points]
+        n = unit(scene.vector(self.axis))
+        return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
 
 
 def others_of(scene: Scene, named: list[Place]) -> list[Place]:
@@ -69,6 +78,11 @@ def not_turning(scene: Scene, bodies: tuple[str | None, str | None]) -> list[Tie
     """e_i . e_j = 0 in space of axes in either body, that agree at the start: the couples about x, y and z."""
     x, y, z = IDENTITY  # y x z = x
     return [across_from(scene, bodies, e, n) for e, n in ((y, z), (z, x), (x, y))]
+
+
+def alike(scene: Scene, bodies: tuple[str | None, str | None], n: Vector) -> Scalar:
+    """n . n of a direction that agreed at the start, carried by either body."""
+    return dot(carried(scene, bodies[0], n), carried(scene, bodies[1], n))
 
 
 def carried(scene: Scene, body: str | None, direction: Vector) -> Vector:
