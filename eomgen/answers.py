@@ -21,6 +21,7 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.journey import Journey
+from eomgen.mechanics.constants_of_motion import stays
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
 from eomgen.mechanics.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.speeds import rates_of
@@ -306,16 +307,30 @@ class _Solver:
             moment = self._resting
         else:
             moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
-        situation = moment.situation
+        situation, method = moment.situation, moment.method
         try:
             exact = situation.simple(self._in_unit(situation.at(output.value, moment.exact), output))
         except MissingValues:
-            return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
+            found = self._constant(moment, output)
+            if found is None:
+                return _valued(Answer(method=method), self._number_at(moment, output), "at the instant")
+            exact, method = situation.simple(self._in_unit(found, output)), "constant of motion"
         text = to_text(exact) if text_size(exact) <= LONGEST else None
         try:
-            return _valued(Answer(text, None, "", moment.method), self._at_start(exact), "at the instant")
+            return _valued(Answer(text, None, "", method), self._at_start(exact), "at the instant")
         except MissingValues as error:
-            return Answer(text, None, "", moment.method, error.what)
+            return Answer(text, None, "", method, error.what)
+
+    def _constant(self, moment: Moment, output: Output) -> Scalar | None:
+        """What stays constant along every motion, as it is at the start; None: it changes, or a contact has."""
+        journey = self.journeys[output.from_ == "rest"]
+        situation = journey.situation
+        if moment.situation is not situation or not journey.start:
+            return None
+        asked = situation.eliminated(situation.raw(output.value))
+        if not stays(situation.system, situation.assembly, (asked,))[0]:
+            return None
+        return substituted((asked,), journey.start)[0]
 
     @cached_property
     def _resting(self) -> Moment:

@@ -58,7 +58,8 @@ def _write(
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="eomgen")
 def main() -> None:
-    """Mechanical systems: equations of motion, reactions, structures at rest, mechanisms; exact, step by step.
+    """Mechanical systems: equations of motion, reactions, small motions, structures at rest, mechanisms; exact, step by
+    step.
 
     MODEL is a text file that declares the system (- reads it from stdin); begin with `eomgen new NAME`.
     """
@@ -77,7 +78,11 @@ def new(name: str, wants_json: bool) -> int:
 @main.command()
 @_common
 def check(model: str, wants_json: bool, output: str | None) -> int:
-    """Validate a model; count its degrees of freedom."""
+    """Validate a model; count its degrees of freedom.
+
+    By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
+    integrable; how the loops close at the start, and in which other ways they could.
+    """
     from eomgen.verbs.check import check as checked
 
     with reading(model) as declared:
@@ -190,7 +195,8 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 @main.command()
 @_written
 @click.option("--about", type=click.Choice(["equilibrium", "start", "steady"]),
-              help="The nearest place of rest, or the start, a steady motion.  [default: see [linearize]]")  # fmt: skip
+              help="Rest nearest to the start; the start, if its motion is steady; or the steady motion near "
+                   "it.  [default: see [linearize]]")  # fmt: skip
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give small motions about rest or a steady motion.
@@ -211,8 +217,8 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
 @click.option("--set", "given", multiple=True, metavar="NAME=VALUE", help="Another value of a parameter.")
 @click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
-@click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of a step.")
-@click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of a step.")
+@click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of the run.")
+@click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of the run.")
 @click.option("--method", default="DOP853", show_default=True, metavar="NAME",
               help="DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.")  # fmt: skip
 @click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
@@ -220,24 +226,29 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
               show_default=True, help="What keeps ties closed.")  # fmt: skip
 @click.option("--project-every", type=click.IntRange(min=1), metavar="STEPS",
               help="Project at each so many steps.  [default: where a tie opens by atol/10]")  # fmt: skip
-@click.option("--baumgarte", nargs=2, type=float, default=(10.0, 10.0), show_default=True, metavar="ALPHA BETA",
-              help="Rates of Baumgarte's rows [1/s].")  # fmt: skip
+@click.option("--baumgarte", nargs=2, type=float, metavar="ALPHA BETA",
+              help="Rates of Baumgarte's rows [1/s].  [default: 10 10]")  # fmt: skip
 @FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
 def simulate(
     model: str, wants_json: bool, output: str | None, method: str, rtol: float, atol: float, stabilize: str,
-    project_every: int | None, baumgarte: tuple[float, float], follow: tuple[str, ...], **options: Any,
+    project_every: int | None, baumgarte: tuple[float, float] | None, follow: tuple[str, ...], **options: Any,
 ) -> int:  # fmt: skip
     """Integrate the motion from the start values.
 
     It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns. Ties are
     kept closed, and how well, and how well energy is kept, is said.
     """
-    from eomgen.simulation.stepping import Stepping
+    from eomgen.simulation.stepping import RATES, Stepping
     from eomgen.verbs.simulate import simulate as simulated
 
-    options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=baumgarte)
+    if baumgarte and stabilize != "baumgarte":
+        raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
+    if project_every and stabilize != "projection":
+        raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
+    rates = baumgarte or RATES
+    options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as declared:
         outcome = simulated(_followed(declared, follow), output=output, **options)
     if output and not wants_json:

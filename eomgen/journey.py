@@ -25,7 +25,7 @@ from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.moments import Moment, carried, parameters_of, placed
-from eomgen.simulation.contacts import has_phases
+from eomgen.simulation.contacts import by_the_law, has_phases
 from eomgen.simulation.course import Course, Standing, at_start, course_of
 from eomgen.simulation.history import Passage, history
 from eomgen.simulation.stage import Stage
@@ -87,7 +87,7 @@ class Journey:
             return situation_of(self.model, modes_at_rest(self.model))
         if self.course is None:
             return situation_of(self.model)
-        return Situation(self.course.stages.of(self._first.configuration).system)
+        return Situation(self.course.stages.of(by_the_law(self.model, self._first.configuration)).system)
 
     @property
     def failure(self) -> str:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
 from eomgen.codegen.factorization import solved
-from eomgen.errors import MissingValues
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.balance_solution import values_at_a_state
 from eomgen.mechanics.closure import number as precise
@@ -27,6 +28,7 @@ from eomgen.mechanics.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reduced import FEW, by_independent
 from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.start import fixed_by_position, start_speeds
 from eomgen.mechanics.statics.unknown_loads import still
@@ -136,7 +138,16 @@ class Situation:
 
     def simple(self, scalar: Scalar) -> Scalar:
         """A scalar in its most readable form; as it came where multiplying out made it longer still."""
-        return legible(scalar, WORK, self.positive, LONG)
+        known = self._legible
+        if scalar not in known:
+            found = legible(scalar, WORK, self.positive, LONG)
+            known |= {scalar: found, found: found}
+        return known[scalar]
+
+    @cached_property
+    def _legible(self) -> dict[Scalar, Scalar]:
+        """What was made readable once: also that it is, or could not be."""
+        return {}
 
     # -- at an instant ---------------------------------------------------------------------------
 
@@ -251,6 +262,9 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
     kept = regular_rows(system)
     if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
         return by_determinants(assembly, kept)
+    if len(symbols.a) - len(kept) <= FEW:
+        with suppress(DerivationError):
+            return by_independent(system, assembly, kept)
     free = solved(assembly.M, assembly.forcing)
     J = [assembly.J[i] for i in kept]
     columns = [solved(assembly.M, row) for row in J]

@@ -116,8 +116,10 @@ def reactions_along_motion(derived: Equations) -> dict[Node, Scalar]:
     named, motion = letters(derived), along_motion(derived)
     values = dict(zip(named.symbols, substituted([x for x in derived.reactions.values if x is not None], motion),
                       strict=True))  # fmt: skip
-    for rub, friction in zip(named.rubs, named.frictions, strict=True):
-        values[friction] = rub.factor * values[named.symbols[rub.component]]
+    for rub, frictions in zip(named.rubs, named.frictions, strict=True):
+        along = derived.reactions.components[rub.component].friction
+        for friction, rubs in zip(frictions, along, strict=True):
+            values[friction] = rubs.factor * values[named.symbols[rub.component]]
     return values
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
-from eomgen.errors import NotYet
+from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.contacts import CLOSED, friction_factor
 from eomgen.mechanics.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
 from eomgen.mechanics.kinematics import Link, Motion
@@ -13,10 +14,25 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import ZERO, Vector, transposed, vector_of
 
 EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True)
+class Rubbing:
+    """Friction of a contact along one direction.
+
+    Args:
+        label: "t" or, of a contact on a surface, "s".
+        factor: what it is for a unit of the normal reaction.
+        effects: of a unit of it.
+    """
+
+    label: str
+    factor: Scalar
+    effects: tuple[Effect, ...]
 
 
 @dataclass(frozen=True)
@@ -29,7 +45,7 @@ class Component:
         label: "x", "y", "z", "n", "t", "couple", "couple x", "tension", "drive", or "" for a row of no place.
         number: its row in the tie, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
-        rubbing: its friction for a unit of it, on the same bodies.
+        friction: along each direction in which its contact rubs.
         side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
             truss, or "".
     """
@@ -39,8 +55,13 @@ class Component:
     label: str
     number: int
     effects: tuple[Effect, ...]
-    rubbing: tuple[Effect, ...] = ()
+    friction: tuple[Rubbing, ...] = ()
     side: str = ""
+
+    @cached_property
+    def rubbing(self) -> tuple[Effect, ...]:
+        """Its friction for a unit of it, on the same bodies."""
+        return tuple(effect.times(along.factor) for along in self.friction for effect in along.effects)
 
     @property
     def name(self) -> str:
@@ -64,7 +85,7 @@ def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
 
 def _joint_components(system: System, axes: Axes) -> list[Component]:
     found = []
-    driven = _driven_joints(axes.motion)
+    driven = _driven_variables(axes.motion)
     for link in axes.motion.links:
         joint = link.joint
         if joint is None or not joint.carries_reaction:
@@ -73,36 +94,47 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
             factor = joint_friction(system, link) if label == "n" else None
-            rubbing = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, factor)))
-            found.append(Component(link.name, "joint", label, number, effects, rubbing))
-        for k, s in enumerate(link.s):
-            if link.name in driven and _is_driven(axes.motion, s):
+            along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, 1)))
+            friction = () if factor is None else (Rubbing("t", factor, along),)
+            found.append(Component(link.name, "joint", label, number, effects, friction))
+        for k in range(len(link.s)):
+            if (driver := driven.get((link.name, k))) is not None:
                 effects = tuple(effects_at_joint(axes, link, *scaled(axes, link.name, k, 1)))
-                found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driven[link.name]))
+                found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driver))
     return found
 
 
-def _driven_joints(motion: Motion) -> dict[str, str]:
-    """{body: coordinate} of the joints at which somebody has to drive a given motion ("": time alone).
+def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
+    """{(body, number of its joint's variable): coordinate} where somebody drives a given motion ("": time alone).
 
-    They are those whose variable follows it alone; where there is none, those in which it has a part.
+    They follow it alone. Where there is none, and what follows holds a free coordinate of no other joint, nothing has
+    to push: the equation of that coordinate says so.
+
+    Raises:
+        DerivationError: that coordinate moves other joints too, so that the drive has no one place.
     """
     symbols, table = motion.scope.symbols, motion.scope.model.coordinates
     free = [q for q in symbols.q if not table[q.name].driven]
-    found: dict[str, str] = {}
+    joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
+    found: dict[tuple[str, int], str] = {}
     for driver in (*(q for q in symbols.q if table[q.name].driven), symbols.t):
-        name = "" if driver is symbols.t else driver.name
-        joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
-        moved = {link.name: link for link in joints if any(depends_on(s, (driver,)) for s in link.s)}
-        alone = [body for body, link in moved.items() if not any(depends_on(s, free) for s in link.s)]
-        found |= dict.fromkeys(alone or moved, name)
+        moved = [(link.name, k, s) for link in joints for k, s in enumerate(link.s) if depends_on(s, (driver,))]
+        alone = [(name, k) for name, k, s in moved if not depends_on(s, free)]
+        found |= dict.fromkeys(alone, "" if driver is symbols.t else driver.name)
+        if not alone:
+            _refuse_spread(joints, [s for _, _, s in moved], free, driver)
     return found
 
 
-def _is_driven(motion: Motion, s: Scalar) -> bool:
-    """Whether a joint's variable follows a given motion."""
-    driven = [q for q in motion.scope.symbols.q if motion.scope.model.coordinates[q.name].driven]
-    return depends_on(s, (*driven, motion.scope.symbols.t))
+def _refuse_spread(joints: Sequence[Link], follow: Sequence[Scalar], free: Sequence[Node], driver: Node) -> None:
+    """Refuse what follows a driver and a free coordinate that moves other joints too."""
+    for q in free:
+        moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
+        if len(moved) > 1 and any(depends_on(s, (q,)) for s in follow):
+            which = " and ".join(f"'{name}'" for name in moved)
+            raise DerivationError(f"what drives '{driver.name}' has no one place: with '{q.name}' it moves the "
+                                  f"joints of {which}, and reactions do not follow", f"bodies.{moved[0]}.joint",
+                                  f"let one joint follow '{driver.name}' alone")  # fmt: skip
 
 
 def _basis(axes: Axes, link: Link, system: System) -> list[tuple[str, Vector, Vector]]:
@@ -192,14 +224,20 @@ def _tie_components(system: System, axes: Axes) -> list[Component]:
         effects = tuple(e for push in row.pushes for e in effects_of_load(axes, push))
         if not effects:
             continue
-        rubbing: tuple[Effect, ...] = ()
-        if row.friction is not None:
-            rubbing = tuple(e.times(row.friction) for push in row.tangent for e in effects_of_load(axes, push))
-        found.append(_of_tie(system, row, effects, rubbing))
+        found.append(_of_tie(system, row, effects, _friction(axes, row)))
     return found
 
 
-def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], rubbing: tuple[Effect, ...]) -> Component:
+def _friction(axes: Axes, row: Row) -> tuple[Rubbing, ...]:
+    """The friction of a row along its tangent, on a surface along both."""
+    if row.friction is None:
+        return ()
+    ways = zip("ts", row.shares or (1,), (row.tangent, row.cross_tangent), strict=False)
+    return tuple(Rubbing(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
+                 for label, share, pushes in ways)  # fmt: skip
+
+
+def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[Rubbing, ...]) -> Component:
     """The component; of a hinge of several bodies, the force on the one that the row adds.
 
     Where the first-named point is the ground's, it is the force on the body.
@@ -212,4 +250,4 @@ def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], rubbing: tupl
         side = system.motion.links[effects[-1].link].name if len(points) > 2 else ""
         opposite = tuple(e.times(-1) for e in effects)
         return Component(row.tie, "tie", row.component, row.number, opposite, (), side)
-    return Component(row.tie, "tie", row.component, row.number, effects, rubbing, row.part)
+    return Component(row.tie, "tie", row.component, row.number, effects, friction, row.part)

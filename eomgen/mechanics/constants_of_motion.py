@@ -95,9 +95,10 @@ def momenta_of_the_whole(system: System, assembly: Assembly, known: Sequence[Sca
     many = len(assembly.M) > MOST_SPEEDS
     if system.scope.model.space != "space" or not bodies or many or shapeless(system.motion, bodies):
         return ()
-    P = _momentum(system, bodies)
-    constant = stays(system, assembly, P)
-    places = {"the mass centre": _mass_center(system, bodies), **_seats(system)}
+    heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
+    P = _momentum(system, heavy)
+    constant = stays(system, assembly, P) if heavy else (False,) * 3
+    places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
     found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
     for about, point in places.items():
         L = angular_momentum(system.motion, point, bodies)

@@ -134,7 +134,8 @@ def _columns(system: System, names: Sequence[str], needed: Row) -> tuple[Row, ..
             raise UsageError(f"there is no coordinate, speed, input or hinged body '{name}'",
                              mend=nearest(name, [*known, *symbols.inputs]))  # fmt: skip
         elif all(is_zero(x) for x in known[name]):
-            raise UsageError(f"'{name}' is driven: it takes what drive({name}) says", mend=NAME)
+            asked = name if name in scope.model.coordinates else "its coordinate"
+            raise UsageError(f"'{name}' is driven: it takes what drive({asked}) says", mend=NAME)
     return tuple(known[name] for name in names)
 
 

@@ -142,7 +142,7 @@ class _Laws:
         return None if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants) else Pair(A, B, b)
 
     def _vary(self, sums: Sequence[Sequence[Scalar]]) -> bool:
-        """Whether numbers at two states show that one of the sums of terms is no constant: it changes with what moves."""
+        """Whether numbers at two states show that one of the sums of terms changes with what moves."""
         rng = Random(1)
         terms = [x for each in sums for x in each]
         fixed = {x: rng.uniform(0.5, 1.5) for x in symbols_of(terms) if x not in self._moving}

@@ -51,12 +51,13 @@ class Row:
             coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
         component: "x", "y", "z", "n", "t", "couple", "tension", or "".
         pushes: the forces and couples behind `wrenches`, as the tie gave them.
-        tangent: of a contact that can rub, the forces and couples for a unit of friction.
+        tangent: of a contact that can rub, the forces and couples for a unit of friction along it.
         sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
         friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
         eliminates: the dependent coordinate that an "eliminated" row determines, or "".
         part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
         cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
+        shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
     """
 
     tie: str
@@ -75,6 +76,7 @@ class Row:
     part: str = ""
     cross_tangent: tuple[Push, ...] = ()
     across: Scalar | None = None
+    shares: tuple[Scalar, ...] = ()
 
     @property
     def identical(self) -> bool:
@@ -197,9 +199,10 @@ def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
     if law is None or not row.tangent:
         return row
     if row.across is not None:
+        if law.coulomb is not None and mode.sense == 0:
+            return row
         row = _on_surface(row, viscous=law.coulomb is None, still=mode.sense is not None)
-        if law.coulomb is None:
-            return replace(row, friction=-mode.push * scene.value(law.viscous))
+        return replace(row, friction=-mode.push * scene.value(law.viscous if law.coulomb is None else law.coulomb))
     return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
 
 
@@ -214,13 +217,7 @@ def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
     square = pair[0] * pair[0] + pair[1] * pair[1]
     speed = sqrt(square + STILL * STILL if still else square)
     shares = pair if viscous else tuple(over(v, speed) for v in pair)
-    tangent = (*_scaled(row.tangent, shares[0]), *_scaled(row.cross_tangent, shares[1]))
-    return replace(row, tangent=tangent, sliding=Fraction(1, 2) * square if viscous else speed)
-
-
-def _scaled(pushes: tuple[Push, ...], k: Scalar) -> tuple[Push, ...]:
-    return tuple(replace(push, couple=times(k, push.couple)) if isinstance(push, Couple)
-                 else replace(push, force=times(k, push.force)) for push in pushes)  # fmt: skip
+    return replace(row, shares=shares, sliding=Fraction(1, 2) * square if viscous else speed)
 
 
 def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:

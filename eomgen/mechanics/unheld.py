@@ -18,8 +18,10 @@ from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import structure_of
+from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.trusses import called, declared_at
+from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Scalar
 from eomgen.symbolic.linear import Solution
@@ -49,8 +51,23 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     direction = DIRECTIONS[equation.direction]
     turning = direction.startswith("moment")
     what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
-    raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body),
-                          "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
+    joined = _joined_by_a_coordinate(system)
+    mend = (f"{joined}, and nothing named joins them: name the constraint that does" if joined else
+            "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
+    raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
+
+
+def _joined_by_a_coordinate(system: System) -> str:
+    """Where one free coordinate moves several joints, or one in two ways, the sentence that says so."""
+    table = system.scope.model.coordinates
+    joints = [link for link in system.motion.links if link.joint is not None and link.joint.carries_reaction]
+    for q in system.symbols.q:
+        moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
+        if len(moved) > 1 and not table[q.name].driven:
+            names = [f"'{name}'" for name in dict.fromkeys(moved)]
+            which = "the joints of " if len(names) > 1 else "in two ways the joint of "
+            return f"'{q.name}' moves {which}{' and '.join(names)}"
+    return ""
 
 
 def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:

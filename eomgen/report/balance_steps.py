@@ -15,10 +15,8 @@ from eomgen.report.reaction_names import Lettered
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Formula, Law, Name, Omitted, Prose, Statement, Step
-from eomgen.symbolic.functions import over
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.layout import terms
-from eomgen.symbolic.normal_form import cancelled
 from eomgen.symbolic.text import text_size
 
 BOOK = 12_000  # characters of the equations of all bodies together
@@ -116,16 +114,15 @@ def _terms(letters: Lettered, equation: BodyEquation) -> list[tuple[Node, Scalar
     """(symbol, coefficient) of every reaction in one equation, friction by a symbol of its own."""
     balance = letters.balance
     link, d = balance.system.motion.index[equation.body], equation.direction
-    frictions = {rub.component: (rub, symbol) for rub, symbol in zip(letters.rubs, letters.frictions, strict=True)}
+    frictions = {rub.component: symbols for rub, symbols in zip(letters.rubs, letters.frictions, strict=True)}
     found: list[tuple[Node, Scalar]] = []
     for j in equation.coefficients:
         component = balance.components[j]
         own = sum((e.six[d] for e in component.effects if e.link == link), start=0)
         if not is_zero(own):
             found.append((letters.symbols[j], own))
-        if j in frictions:
-            rub, symbol = frictions[j]
-            rubbing = sum((e.six[d] for e in component.rubbing if e.link == link), start=0)
+        for along, symbol in zip(component.friction, frictions.get(j, ()), strict=True):
+            rubbing = sum((e.six[d] for e in along.effects if e.link == link), start=0)
             if not is_zero(rubbing):
-                found.append((symbol, cancelled(over(rubbing, rub.factor), WORK)))
+                found.append((symbol, rubbing))
     return found

@@ -53,15 +53,18 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     letters = lettered(readings.ways[0], system.scope.names)
     senses = _senses(letters, system)
     forces: list[Scalar] = [0] * len(system.symbols.u)
-    shown = {symbol: function("sign", readable_value(reader, x.args[0])) for x, symbol in senses.items()}
+    shown = {symbol: function(x.op, readable_value(reader, x.args[0])) for x, symbol in senses.items()}
     definitions = [(symbol, simplest(x, WORK, readings.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
-    for rub, friction in zip(letters.rubs, letters.frictions, strict=True):
+    for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
         value = _normal(readings, rub.component, assembly, senses)
-        factor, *row = substituted((rub.factor, *rub.force), senses)
+        along = [x.factor for x in letters.reactions.components[rub.component].friction]
+        factors, row = substituted(along, senses), substituted(rub.force, senses)
         definitions.append((normal, value))
-        statements += [Formula((normal, value)), Formula((friction, reader.shown(factor) * normal))]
+        statements.append(Formula((normal, value)))
+        for friction, factor in zip(frictions, factors, strict=True):
+            statements.append(Formula((friction, reader.shown(factor) * normal)))
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
     return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
@@ -102,12 +105,14 @@ def _solved(reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
 
 
 def _senses(letters: Lettered, system: System) -> dict[Node, Node]:
-    """A symbol for each sign of a sliding velocity, where it is more than the sign of one rate."""
+    """A symbol for each sign of a sliding velocity that is more than one rate, on a surface for its magnitude."""
     found: dict[Node, Node] = {}
     for rub in letters.rubs:
-        for node in order((rub.factor,)):
-            if node.op == "sign" and node not in found and node.args[0] not in system.symbols.u:
-                name = f"s_{rub.name}"
+        speed = next((row.sliding for row in system.ties.rows if row.tie == rub.name and row.shares), None)
+        for node in order((rub.factor, *rub.force)):
+            sense = node.op == "sign" and node.args[0] not in system.symbols.u
+            if node not in found and (sense or (node is speed and node.op == "sqrt")):
+                name = f"{'s' if sense else 'v'}_{rub.name}"
                 while name in system.scope.names or name in letters.names:
                     name += "_r"
                 found[node] = system.scope.graph.symbol(name)

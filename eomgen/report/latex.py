@@ -161,7 +161,8 @@ def piece_latex(setter: Setter, piece: Piece, escape) -> str:
     if isinstance(piece, str):
         return escape(piece)
     if isinstance(piece, Code):
-        return rf"\texttt{{{escape(piece.text)}}}"
+        text = escape(piece.text).replace("--", "-{}-")  # T1 makes a dash of two hyphens
+        return rf"\texttt{{{text}}}"
     return f"${side_latex(setter, piece)}$"
 
 

@@ -32,13 +32,13 @@ class Lettered:
         reactions: solved.
         symbols: one for each component, in order.
         rubs: the contacts that rub.
-        frictions: a symbol for the friction of each.
+        frictions: a symbol for the friction of each, along each direction in which it rubs.
     """
 
     reactions: Reactions
     symbols: tuple[Node, ...]
     rubs: tuple[Rub, ...]
-    frictions: tuple[Node, ...]
+    frictions: tuple[tuple[Node, ...], ...]
 
     @property
     def balance(self) -> Balance:
@@ -46,17 +46,18 @@ class Lettered:
 
     @property
     def names(self) -> frozenset[str]:
-        return frozenset(symbol.name for symbol in (*self.symbols, *self.frictions))
+        return frozenset(symbol.name for symbol in (*self.symbols, *(x for each in self.frictions for x in each)))
 
     def table(self, shown: Container[object] | None = None) -> Table:
         """What the symbols stand for, all or those that are shown, in the order of the components."""
         rows = []
+        named = {rub.component: symbols for rub, symbols in zip(self.rubs, self.frictions, strict=True)}
         for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
             if shown is None or symbol in shown:
                 rows.append(Meaning(symbol, meaning(self.balance, component), unit_of(component)))
-            for rub, friction in zip(self.rubs, self.frictions, strict=True):
-                if rub.component == j and (shown is None or friction in shown):
-                    rows.append(Meaning(friction, f"friction {_on(self.balance, component)}, along the contact", "N"))
+            for rubs, friction in zip(component.friction, named.get(j, ()), strict=True):
+                if shown is None or friction in shown:
+                    rows.append(Meaning(friction, _friction(self.balance, component, rubs.label), "N"))
         return Table(HEAD, tuple(rows))
 
     def of_row(self, row: Row) -> Scalar | None:
@@ -80,7 +81,9 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
         return graph.symbol(name)
 
     symbols = tuple(symbol(_letters(reactions.balance, component)) for component in reactions.components)
-    return Lettered(reactions, symbols, rubs, tuple(symbol(f"F_{rub.name}") for rub in rubs))
+    frictions = [(rub.name, reactions.components[rub.component].friction) for rub in rubs]
+    named = tuple(tuple(symbol(f"{LETTERS[x.label]}_{name}") for x in friction) for name, friction in frictions)
+    return Lettered(reactions, symbols, rubs, named)
 
 
 def _letters(balance: Balance, component: Component) -> str:
@@ -117,8 +120,7 @@ def meaning(balance: Balance, component: Component) -> str:
     if kind == "couple":
         return f"couple {on}, {_sense(balance, component)}"
     if kind in ("t", "s"):
-        space = balance.system.scope.model.space == "space"
-        return f"friction {on}, along {f'{kind} of the contact' if space else 'the contact'}, without sliding"
+        return f"{_friction(balance, component, kind)}, without sliding"
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
@@ -137,10 +139,16 @@ def said(balance: Balance, named: NamedReaction) -> str:
     component = next((c for c in mine if c.side == side), mine[0])
     on = _on(balance, component)
     if kind in ("t", "s"):
-        return f"friction {on}, along the contact"
+        return _friction(balance, component, kind)
     if kind.startswith("couple_"):
         return f"couple {on}, about {axis}"
     return f"force {on}, along {axis}"
+
+
+def _friction(balance: Balance, component: Component, label: str) -> str:
+    """Friction along the contact; in space along one of its two tangents."""
+    along = f"{label} of the contact" if balance.system.scope.model.space == "space" else "the contact"
+    return f"friction {_on(balance, component)}, along {along}"
 
 
 def _on(balance: Balance, component: Component) -> str:

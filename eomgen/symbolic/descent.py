@@ -27,6 +27,7 @@ ROOT = 1e-30  # of a step, against the size of the unknown and 1
 NOTHING = 1e-40  # of the scaled equations: what is left is rounding of 50 digits
 TOGETHER = 1e-6  # distance of two results of floats that become one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
+FALLS = 1e-3  # by which what is left falls in a step with the slopes of an earlier place, or they are taken anew
 RANK = 1e-12  # of the largest singular value
 
 _ON_ARRAYS: dict[str, Callable[..., Any]] = {
@@ -76,17 +77,17 @@ class Descent:
     def polished(self, x: np.ndarray) -> np.ndarray | None:
         """The root near x to all digits of a float; None where there is none."""
         state = dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
+        inverse, before = None, np.inf
         try:
             for _ in range(POLISHINGS):
                 f = evaluate(self.equations, state, fifty_digits())
                 size = max(abs(y) for y in f)
                 if max(abs(y) * r for y, r in zip(f, self._rows, strict=True)) < NOTHING:
                     break
-                right = np.array([float(y / size) for y in f])
-                A = np.reshape([float(y) for y in evaluate(self._slopes, state, fifty_digits())], self._shape)
-                step = self._columns * np.linalg.lstsq(
-                    self._rows[:, None] * A * self._columns, -self._rows * right, rcond=RANK)[0]  # fmt: skip
-                moved = [size * float(d) for d in step]
+                if inverse is None or size > FALLS * before:
+                    inverse = self._inverse(state)
+                step = self._columns * (inverse @ (-self._rows * np.array([float(y / size) for y in f])))
+                before, moved = size, [size * float(d) for d in step]
                 state |= {node: state[node] + d for node, d in zip(self.unknowns, moved, strict=True)}
                 if max(abs(d) / (1 + abs(state[n])) for n, d in zip(self.unknowns, moved, strict=True)) < ROOT:
                     break
@@ -94,6 +95,11 @@ class Descent:
             return None
         found = np.array([float(state[node]) for node in self.unknowns])
         return found if self._holds(state) and np.all(abs(found - x) <= WANDERS * (1 + abs(x))) else None
+
+    def _inverse(self, state: Mapping[Node, Any]) -> np.ndarray:
+        """The pseudo-inverse of df/dx, scaled."""
+        A = np.reshape([float(y) for y in evaluate(self._slopes, state, fifty_digits())], self._shape)
+        return np.linalg.pinv(self._rows[:, None] * A * self._columns, rcond=RANK)
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""

@@ -10,7 +10,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -18,6 +18,7 @@ from eomgen.symbolic.graph import CONSTANTS, LARGEST_POWER, Graph, Node, Number,
 from eomgen.symbolic.splines import sampled_of
 
 FREE = frozenset(("symbol", "pi", "neg"))
+WAYS_KEPT = 16  # of evaluations that may come again
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
 
 
@@ -90,21 +91,50 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         DerivationError: a symbol without a value; all are named.
         NoValue: outside the domain (floats give nan instead).
     """
-    nodes = order(outputs, values)
-    known = {x: values[x] for x in nodes if x in values}
-    missing = [x.name for x in nodes if x.op == "symbol" and x not in known]
+    way = _way(tuple(outputs), frozenset(x for x in values if x.op != "symbol"))
+    missing = [x.name for x in way.symbols if x not in values]
     if missing:
         raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}")
     number, functions = arithmetic.number, arithmetic.functions
-    for x in nodes:
-        if x in known:
-            continue
-        arguments = [known[a] if type(a) is Node else number(a) for a in x.args]
+    known = [number(x) for x in way.constants]
+    known += [values[x] for x in way.symbols]
+    known += [values[x] for x in way.given]
+    for x, op, places in way.steps:
         try:
-            known[x] = functions[x.op](*arguments)
+            known.append(functions[op](*[known[i] for i in places]))
         except (ValueError, ZeroDivisionError, OverflowError):
-            known[x] = arithmetic.failed(x)
-    return [known[x] if type(x) is Node else number(x) for x in outputs]
+            known.append(arithmetic.failed(x))
+    return [known[i] for i in way.outputs]
+
+
+@dataclass(frozen=True)
+class _Way:
+    """In which order values are found: constants, symbols, nodes given, then each step from the values before it.
+
+    Args:
+        steps: a node, its operation, and the places of its arguments among all values.
+        outputs: their places.
+    """
+
+    constants: tuple[Number, ...]
+    symbols: tuple[Node, ...]
+    given: tuple[Node, ...]
+    steps: tuple[tuple[Node, str, tuple[int, ...]], ...]
+    outputs: tuple[int, ...]
+
+
+@lru_cache(maxsize=WAYS_KEPT)
+def _way(outputs: tuple[Scalar, ...], given: frozenset[Node]) -> _Way:
+    """The way to the outputs, which is the same for all values."""
+    nodes = order(outputs, given)
+    symbols = tuple(x for x in nodes if x.op == "symbol")
+    known = tuple(x for x in nodes if x in given)
+    computed = [x for x in nodes if x.op != "symbol" and x not in given]
+    numbers = dict.fromkeys(a for x in computed for a in x.args if type(a) is not Node)
+    constants = tuple(numbers | dict.fromkeys(x for x in outputs if type(x) is not Node))
+    place: dict[Scalar, int] = {x: i for i, x in enumerate((*constants, *symbols, *known, *computed))}
+    steps = tuple((x, x.op, tuple(place[a] for a in x.args)) for x in computed)
+    return _Way(constants, symbols, known, steps, tuple(place[x] for x in outputs))
 
 
 def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Count:

@@ -54,6 +54,9 @@ def square_root(f: Terms) -> Terms | None:
     if any(w for _, w in f) or any(e % 2 for _, e in common):
         return None
     inverted, _ = inverse(common)
+    if len(f) == 1:
+        single = _root_of(Fraction(next(iter(f.values()))))
+        return None if single is None else {(tuple((atom, e // 2) for atom, e in common), ()): single}
     found = _polynomial(times(f, {(inverted, ()): 1}))
     if found is None:
         return None

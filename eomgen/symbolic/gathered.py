@@ -16,6 +16,7 @@ from eomgen.symbolic.terms import (
     Monomial,
     Terms,
     TooLarge,
+    accumulate,
     common_monomial,
     content,
     inverse,
@@ -64,10 +65,11 @@ def _by_what_moves(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar
     groups: dict[tuple, Terms] = {}
     for c, monomial, factors in writer.written(terms):
         still, moving = _parted(expansion, monomial)
-        part = groups.setdefault((moving, factors), {})
-        part[still, ()] = part.get((still, ()), 0) + c
+        accumulate(groups.setdefault((moving, factors), {}), (still, ()), c)
     total: Scalar = 0
     for (moving, factors), part in groups.items():
+        if not part:
+            continue
         common = common_monomial(part)
         product = writer.term(1, tuple(sorted((*common, *moving))), factors)
         total = expansion.graph.add(total, expansion.graph.mul(_sum_of(writer, part, common), product))

@@ -62,15 +62,15 @@ def _even(a: Interval, n: int) -> Interval:
 
 
 def _pow(a: Interval, n: Interval) -> Interval:
-    if np.ndim(n[0]) or n[0] != n[1]:
+    if np.ndim(n[0]) or n[0] * n[1] < 0:
         raise NoMeaning("a power that is no number")
     e = float(n[0])
-    if e == int(e):
+    if n[0] == n[1] and e == int(e):
         whole = abs(int(e))
         power = _even(a, whole) if whole % 2 == 0 and whole else (np.power(a[0], whole), np.power(a[1], whole))
         return _div((1.0, 1.0), power) if e < 0 else power
-    positive = (np.maximum(a[0], 0.0), np.maximum(a[1], 0.0))
-    root = (positive[0] ** abs(e), positive[1] ** abs(e))
+    ends = [np.maximum(x, 0.0) ** abs(float(k)) for x in a for k in n]  # n an interval too, as 1/3 is
+    root = (np.minimum.reduce(ends), np.maximum.reduce(ends))
     return _div((1.0, 1.0), root) if e < 0 else root
 
 

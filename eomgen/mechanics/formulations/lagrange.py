@@ -43,9 +43,9 @@ def _reduced(system: System, free: System) -> Assembly:
     known = dict(zip(free.scope.symbols.u, rates, strict=True))
     N = jacobian(rates, system.scope.symbols.u)
     bias = system.scope.time_derivative(rates)
-    M = tuple(substituted(row, known) for row in whole.M)
-    (T, *rest) = substituted((whole.T, *whole.c, *whole.Q), known)
-    c, Q = rest[: len(M)], rest[len(M) :]
+    n, entries = len(whole.M), [x for row in whole.M for x in row]
+    (T, *rest) = substituted((whole.T, *whole.c, *whole.Q, *entries), known)  # at once: they share nearly everything
+    c, Q, M = rest[:n], rest[n : 2 * n], [rest[k : k + n] for k in range(2 * n, len(rest), n)]
     carried = [inertia + inner(row, bias) for inertia, row in zip(c, M, strict=True)]
     columns = tuple(zip(*N, strict=True))
     columned = [[inner(row, column) for row in M] for column in columns]

@@ -127,12 +127,17 @@ class _Tensor:
         return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
 
     def _cubic(self, I: Matrix) -> Moments:
-        """The roots of J^3 - tr J^2 + minors J - det."""
-        if sum(text_size(x) for row in I for x in row) > LONGEST:
-            return self._trigonometric(I, lambda x: x)
-        trace = self.short(I[0][0] + I[1][1] + I[2][2])
-        minors = self.short(sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2))))
-        determinant = self.short(dot(I[0], cross(I[1], I[2])))
+        """The roots of J^3 - tr J^2 + minors J - det; without a determinant, as of masses in line, 0 is one."""
+        is_long = sum(text_size(x) for row in I for x in row) > LONGEST
+        short: Callable[[Scalar], Scalar] = (lambda x: x) if is_long else self.short
+        trace = short(I[0][0] + I[1][1] + I[2][2])
+        if vanishes(dot(I[0], cross(I[1], I[2]))):
+            square = trace * trace - 4 * self._minors(I)
+            spread = 0 if vanishes(square) else sqrt(square)
+            return 0, short(HALF * (trace - spread)), short(HALF * (trace + spread))
+        if is_long:
+            return self._trigonometric(I, short)
+        minors, determinant = self.short(self._minors(I)), self.short(dot(I[0], cross(I[1], I[2])))
         J = self.scope.graph.symbol("J of the characteristic equation")
         found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.positive)
         if len(found) >= 2:
@@ -143,6 +148,10 @@ class _Tensor:
             square = self.short(total * total - 4 * (minors - found[0] * total))
             return (found[0], *self._halves(total, self.short(sqrt(square))))
         return self._trigonometric(I, self.short)
+
+    @staticmethod
+    def _minors(I: Matrix) -> Scalar:
+        return sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
 
     def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> Moments:
         q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
@@ -268,12 +277,15 @@ def _ascending(tensor: _Tensor) -> list[int] | None:
     numbers = values_of(moments, tensor.scope)
     if numbers is not None:
         return sorted(range(3), key=lambda k: numbers[k])
-    signs = [[tensor.larger(i, j) for j in range(3)] for i in range(3)]
-    if any(sign is None for row in signs for sign in row):
-        return None
+    signs = {(k, k): 0 for k in range(3)}
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        sign = tensor.larger(i, j)
+        if sign is None:
+            return None
+        signs[i, j], signs[j, i] = sign, -sign
 
     def compared(i: int, j: int) -> int:
-        return signs[i][j] or 0
+        return signs[i, j]
 
     return sorted(range(3), key=cmp_to_key(compared))
 

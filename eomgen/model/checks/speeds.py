@@ -31,7 +31,8 @@ def _quaternions(catalog: Catalog) -> Iterator[Finding]:
             speed = catalog.table("speeds").get(name)
             if speed is not None and speed.rate is not None:
                 what = f"speed '{name}' has a 'rate' and is the angular velocity of body '{body}' too"
-                yield Finding((*path, "omega", k), what, "leave out the 'rate': `omega` says what it is")
+                start = "" if speed.rate.names else f"; a start is {name} = {{ start = {speed.rate.text} }}"
+                yield Finding((*path, "omega", k), what, f"leave out the 'rate': `omega` says what it is{start}")
 
 
 def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Finding]:

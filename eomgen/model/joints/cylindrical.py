@@ -9,6 +9,7 @@ from eomgen.model.joints.base import (
     Joint,
     Scalars,
     Value,
+    Z,
     across,
     angular,
     linear,
@@ -26,13 +27,13 @@ class Cylindrical(Joint):
     """A sleeve on a shaft: s = (d, angle), X = (Rot(n, angle), d n), S = (0, n), (n, 0); W: all across n.
 
     Args:
-        axis: n, in the turned axes; need not have unit length.
+        axis: n, in the turned axes; need not have unit length; None: z.
         displacement, angle: along n [m] and about it [rad].
         force, torque: along n and about it on the child, minus on the parent [N, N m].
     """
 
     kind: ClassVar[str] = "cylindrical"
-    axis: SpaceDirection
+    axis: SpaceDirection | None = None
     displacement: Displacement
     angle: Angle
     force: Force | None = None
@@ -63,7 +64,7 @@ class Cylindrical(Joint):
         return (Effort(self.force), Effort(self.torque))
 
     def _normal(self, value: Value) -> Vector:
-        return unit(vector(self.axis, value))
+        return unit(vector(self.axis, value, Z))
 
     def turn(self, s: Scalars, value: Value) -> Any:
         return s[1]

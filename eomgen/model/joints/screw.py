@@ -10,6 +10,7 @@ from eomgen.model.joints.base import (
     Joint,
     Scalars,
     Value,
+    Z,
     across,
     angular,
     linear,
@@ -31,7 +32,7 @@ class Screw(Joint):
     W: torques and forces across n, and the thread's thrust: a force n with the torque -h n.
 
     Args:
-        axis: n, in the turned axes; need not have unit length.
+        axis: n, in the turned axes; need not have unit length; None: z.
         angle: about n [rad].
         pitch: h, advance per radian [m].
         torque: about n on the child, minus on the parent [N m].
@@ -39,7 +40,7 @@ class Screw(Joint):
     """
 
     kind: ClassVar[str] = "screw"
-    axis: SpaceDirection
+    axis: SpaceDirection | None = None
     angle: Angle
     pitch: Pitch
     torque: Torque | None = None
@@ -75,7 +76,7 @@ class Screw(Joint):
 
     def _thread(self, value: Value) -> tuple[Vector, Any]:
         """The unit axis n and the pitch h."""
-        return unit(vector(self.axis, value)), value(self.pitch)
+        return unit(vector(self.axis, value, Z)), value(self.pitch)
 
     def turn(self, s: Scalars, value: Value) -> Any:
         return s[0]

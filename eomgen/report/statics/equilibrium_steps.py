@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from eomgen.mechanics.equilibria.resting_reactions import RestingReaction, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
@@ -16,7 +14,7 @@ from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count, listed
 from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Prose, Statement, Step, narrow_grid
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.graph import Scalar
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
 REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
@@ -61,8 +59,9 @@ def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ..
     """The equation along every coordinate; with ties the multipliers stand in it beside Q."""
     if not statics.lam:
         pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
-        return page(reader, pairs, then=(0,))
-    return tuple(Formula((reader.shown(x), 0)) for x in statics.forces)
+        others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
+        return (*page(reader, pairs, then=(0,)), *others)
+    return tuple(Formula((reader.shown(x), 0)) for x in (*statics.forces, *statics.beside))
 
 
 # -- the places ------------------------------------------------------------------------------------
@@ -72,18 +71,14 @@ def _places(found: Equilibria) -> Step:
     statements: list[Statement] = []
     if found.indifferent:
         symbols = found.indifferent
-        verb = "is" if len(symbols) == 1 else "are"
-        statements.append(Prose(("No force holds ", *listed(symbols), f": {verb} left where {_it(symbols)} start.")))
+        stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
+        statements.append(Prose(("No force holds ", *listed(symbols), f": {stay}.")))
     if not found.found:
         statements.append(Prose((_how_many(found),)))
         return Step("places", "Places of rest", tuple(statements))
     rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
     grid = narrow_grid(("place", "coordinate", "exact", "value", "stability"), rows)
     return Step("places", "Places of rest", (*statements, Prose((_how_many(found),)), grid))
-
-
-def _it(symbols: Sequence[Node]) -> str:
-    return "it" if len(symbols) == 1 else "they"
 
 
 def _how_many(found: Equilibria) -> str:
