@@ -28,8 +28,8 @@ from eomgen.mechanics.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reduced import FEW, by_independent
 from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.reduced import FEW, by_independent
 from eomgen.mechanics.start import fixed_by_position, start_speeds
 from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of

@@ -122,13 +122,16 @@ def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located
 def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
     """An equation solved for one of its unknowns; the one in which it has a single root first.
 
-    Where there is a loop only such a one, of an equation of less than a page; a cos q + b sin q + r has two roots.
+    Only of an equation of less than a page; where there is a loop such a one alone: a cos q + b sin q + r has two
+    roots.
     """
     several: Step | None = None
     in_loop = any(True for _ in _loops(left, unknowns))
     for i, equation in enumerate(left):
+        if text_size(equation) > PAGE:
+            continue
         for q in _held(equation, unknowns):
-            if in_loop and (text_size(equation) > PAGE or _waves(equation, q) is not None):
+            if in_loop and _waves(equation, q) is not None:
                 continue
             candidates = roots(equation, q, located.positive, LIMIT)
             root = located.chosen(candidates, q, equation)

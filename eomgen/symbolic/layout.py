@@ -217,7 +217,8 @@ def _moves(base: Node) -> bool:
 
 def _is_short_constant(base: Node) -> bool:
     nodes = order((base,))
-    return len(nodes) <= SHORT_SUM and all(x.op != "symbol" or x.graph.is_constant(x) for x in nodes)
+    symbols = [x for x in nodes if x.op == "symbol"]
+    return len(nodes) <= SHORT_SUM and bool(symbols) and all(x.graph.is_constant(x) for x in symbols)
 
 
 def rebuilt_as_written(x: Scalar) -> Scalar:
