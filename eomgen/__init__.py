@@ -32,7 +32,7 @@ _HOMES = {
         "DerivationError", "EomgenError", "ExpressionError", "MissingValues", "ModelError", "NotYet", "Problem",
         "RunFailed", "ToolMissing", "UsageError",
     ),
-    "mechanics.freedom": ("Freedom", "freedom_of"),
+    "mechanics.loops.freedom": ("Freedom", "freedom_of"),
     "model.parts": (
         "Body", "Coordinate", "Given", "Input", "Linearize", "Model", "Output", "Parameter", "Piece", "Speed", "Truss",
         "Unknown",

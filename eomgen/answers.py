@@ -21,11 +21,11 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.journey import Journey
-from eomgen.mechanics.constants_of_motion import stays
+from eomgen.mechanics.constants.constants_of_motion import stays
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
+from eomgen.mechanics.loops.start import start_state
 from eomgen.mechanics.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.speeds import rates_of
-from eomgen.mechanics.start import start_state
 from eomgen.mechanics.worth import known_parameters
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output

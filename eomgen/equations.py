@@ -18,8 +18,8 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.inverse import inverse_of
-from eomgen.mechanics.reactions import Reactions, reactions_of
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.loops.start import start_state
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model

@@ -12,7 +12,7 @@ from random import Random
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import EomgenError, RunFailed
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closed_instant import ClosedInstant
+from eomgen.mechanics.loops.closed_instant import ClosedInstant
 from eomgen.mechanics.places import Located
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System

@@ -16,8 +16,8 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
+from eomgen.mechanics.loops.start import Start, start_of_motion
 from eomgen.mechanics.places import Located
-from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.system import system_of
 from eomgen.mechanics.ties import holds_identically

@@ -10,7 +10,7 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import refuse_motion

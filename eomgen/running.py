@@ -12,14 +12,14 @@ from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.edges import NEAR, edges_of, left_of, stopped_at
-from eomgen.mechanics.elimination import singular_blocks
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import rank_of_ties
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.gimbal import locks_of
-from eomgen.mechanics.stabilization import stabilized
-from eomgen.mechanics.start import Start, start_of_motion
+from eomgen.mechanics.loops.edges import NEAR, edges_of, left_of, stopped_at
+from eomgen.mechanics.loops.elimination import singular_blocks
+from eomgen.mechanics.loops.freedom import rank_of_ties
+from eomgen.mechanics.loops.stabilization import stabilized
+from eomgen.mechanics.loops.start import Start, start_of_motion
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition, condition_of

@@ -17,20 +17,20 @@ from functools import cached_property
 from eomgen.codegen.factorization import solved
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.balance_solution import values_at_a_state
-from eomgen.mechanics.closure import number as precise
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.explicit import bordered_rows, by_determinants, regular_rows
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value, with_unit_quaternions
+from eomgen.mechanics.loops.closure import number as precise
+from eomgen.mechanics.loops.freedom import freedoms
+from eomgen.mechanics.loops.start import fixed_by_position, start_speeds
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.reduced import FEW, by_independent
-from eomgen.mechanics.start import fixed_by_position, start_speeds
+from eomgen.mechanics.reacting.balance_solution import values_at_a_state
+from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.reacting.reduced import FEW, by_independent
 from eomgen.mechanics.statics.unknown_loads import still
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.ties import holds_identically

@@ -15,9 +15,9 @@ from math import isfinite
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.journey import Journey
 from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.freedom import counted, freedoms
 from eomgen.mechanics.instant.kinematic_state import KinematicState, State
 from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
+from eomgen.mechanics.loops.freedom import counted, freedoms
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
 from eomgen.model.parts import Given, Model

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.statics.influence import influence_line
 from eomgen.mechanics.statics.section_forces import section_forces
 from eomgen.mechanics.statics.structure import structure_of

@@ -11,7 +11,7 @@ import eomgen
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
 from eomgen.mechanics.outputs import COMPONENTS, LINEARIZED, MAGNITUDES, OF_MOTION, TURNING, Quantities
-from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.system import system_of
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.situation import accelerations_and_multipliers

@@ -17,10 +17,10 @@ from moving import at
 import eomgen
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.closure import generic_state
-from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.outputs import Quantities
-from eomgen.mechanics.reactions import Indeterminate
+from eomgen.mechanics.reacting.named_reactions import named_reactions
+from eomgen.mechanics.reacting.reactions import Indeterminate
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.trials import accelerations_at

@@ -6,7 +6,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.release import released, stays_straight
+from eomgen.mechanics.reacting.release import released, stays_straight
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.ties import rows_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate

@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
 
 DEPENDENT = 1e-9  # of a singular value of J, rows of length 1

@@ -11,8 +11,8 @@ import numpy as np
 from eomgen.codegen.program import Program, program_in_motion
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.named_reactions import named_reactions
-from eomgen.mechanics.reactions import Indeterminate, Reactions
+from eomgen.mechanics.reacting.named_reactions import named_reactions
+from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions
 from eomgen.symbolic.graph import Scalar
 
 

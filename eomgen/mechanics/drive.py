@@ -13,7 +13,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import frictions
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.part import altered
 from eomgen.model.table import Table

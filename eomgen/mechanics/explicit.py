@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.freedom import redundant_rows
+from eomgen.mechanics.loops.freedom import redundant_rows
 from eomgen.mechanics.system import System
 from eomgen.symbolic import cramer
 from eomgen.symbolic.graph import Node, Scalar, is_zero

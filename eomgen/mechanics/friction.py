@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.balance_solution import values_at_a_state
-from eomgen.mechanics.components import joint_friction, rubbing_of
 from eomgen.mechanics.explicit import bordered_rows, regular_rows
-from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.reacting.balance_solution import values_at_a_state
+from eomgen.mechanics.reacting.components import joint_friction, rubbing_of
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic import cramer, linear

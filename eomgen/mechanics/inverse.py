@@ -18,8 +18,8 @@ import numpy as np
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.armature import armature_bias, armature_mass, joint_row
 from eomgen.mechanics.assembly import Row
-from eomgen.mechanics.closure import generic_state
 from eomgen.mechanics.friction import rubs
+from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.recursion import applied_wrenches, bias_forces
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.energies import energy_of_force, energy_of_motion, power
+from eomgen.mechanics.constants.energies import energy_of_force, energy_of_motion, power
 from eomgen.mechanics.fields.field import (
     Field,
     acceleration_pole,
@@ -31,8 +31,8 @@ from eomgen.mechanics.instant.centers import finite_center
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
 from eomgen.mechanics.masses.inertia_about import Asked
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS, AskedReactions, name_of
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS, AskedReactions, name_of
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.forces.load import Place

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.free_speed import FreeSpeed
-from eomgen.mechanics.relations import relations_of
+from eomgen.mechanics.constants.relations import relations_of
+from eomgen.mechanics.loops.free_speed import FreeSpeed
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import substituted

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.declared_speeds import Solved, with_declared_speeds
-from eomgen.mechanics.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.kinematics import Motion, motion_of
 from eomgen.mechanics.loads import Loads, loads_of
+from eomgen.mechanics.loops.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.scope import Scope, scope_of
 from eomgen.mechanics.shortened import shorter
 from eomgen.mechanics.ties import Ties, holds_identically, ties_of

@@ -11,13 +11,13 @@ import numpy as np
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closure import generic_state, on_spheres
 from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.equilibrium import imbalance
 from eomgen.mechanics.friction import frictions
 from eomgen.mechanics.kinematics import spin_between
+from eomgen.mechanics.loops.closure import generic_state, on_spheres
 from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.equilibrium import imbalance
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.proof.check import Check
 from eomgen.symbolic.dense import independent, scaled_condition, solution

@@ -5,7 +5,7 @@ from __future__ import annotations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.report import energy_steps, motion_steps, projection_steps

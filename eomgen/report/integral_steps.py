@@ -7,10 +7,10 @@ from itertools import groupby
 
 from eomgen.errors import EomgenError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.constants_of_motion import Constant, momenta_of_the_whole
+from eomgen.mechanics.constants.constants_of_motion import Constant, momenta_of_the_whole
+from eomgen.mechanics.constants.integrals import Integral, energy_integral, momentum_integrals
+from eomgen.mechanics.constants.laws import laws_of_motion
 from eomgen.mechanics.explicit import short_accelerations
-from eomgen.mechanics.integrals import Integral, energy_integral, momentum_integrals
-from eomgen.mechanics.laws import laws_of_motion
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import page

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Container
 from dataclasses import dataclass
 
-from eomgen.mechanics.balance import Balance
-from eomgen.mechanics.components import Component
 from eomgen.mechanics.friction import Rub, rubbing_contacts
-from eomgen.mechanics.named_reactions import NamedReaction, unit_of
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.balance import Balance
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.named_reactions import NamedReaction, unit_of
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.ties import Row
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered

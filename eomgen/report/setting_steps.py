@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.elimination import dependent_coordinates
-from eomgen.mechanics.integrability import integrability_of
+from eomgen.mechanics.loops.elimination import dependent_coordinates
+from eomgen.mechanics.loops.integrability import integrability_of
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters

@@ -14,8 +14,8 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.stabilization import Rates
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.loops.stabilization import Rates
+from eomgen.mechanics.loops.start import start_state
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model

@@ -20,8 +20,8 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closed_instant import position_equations
-from eomgen.mechanics.relations import Relations, relations_of
+from eomgen.mechanics.constants.relations import Relations, relations_of
+from eomgen.mechanics.loops.closed_instant import position_equations
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
 from eomgen.simulation.arrival import first_arrival

@@ -22,8 +22,8 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.spheres import Places, on_spheres, spheres_of
-from eomgen.mechanics.closure import gaps_of
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.loops.closure import gaps_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
 from eomgen.symbolic.graph import Scalar

@@ -18,8 +18,8 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.reactions import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.graph import Scalar

@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.reactions import Indeterminate
+from eomgen.mechanics.reacting.reactions import Indeterminate
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, on_pieces

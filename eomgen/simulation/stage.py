@@ -12,8 +12,8 @@ from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.edges import edges_of
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.loops.edges import edges_of
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import is_conservative, refuse_massless
 from eomgen.model.constraints.row import Edge

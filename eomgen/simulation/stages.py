@@ -13,10 +13,10 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.freedom import freedoms, redundant_rows
 from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.release import released, stays_straight
-from eomgen.mechanics.stabilization import Rates, stabilized
+from eomgen.mechanics.loops.freedom import freedoms, redundant_rows
+from eomgen.mechanics.loops.stabilization import Rates, stabilized
+from eomgen.mechanics.reacting.release import released, stays_straight
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model

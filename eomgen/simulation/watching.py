@@ -17,8 +17,8 @@ from typing import Any, Literal
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.freedom import redundant_rows
-from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.loops.freedom import redundant_rows
+from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.model.contacts import Contact

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.errors import EomgenError, MissingValues
-from eomgen.mechanics.branches import Branches, branches_of_loops
 from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.freedom import Freedom, freedom_of
 from eomgen.mechanics.instant.snapshot import mobility_of
-from eomgen.mechanics.integrability import VelocityRow
-from eomgen.mechanics.start import Start, start_of_motion
+from eomgen.mechanics.loops.branches import Branches, branches_of_loops
+from eomgen.mechanics.loops.freedom import Freedom, freedom_of
+from eomgen.mechanics.loops.integrability import VelocityRow
+from eomgen.mechanics.loops.start import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.statics.structure import Structure, structure_of
 from eomgen.mechanics.system import system_of

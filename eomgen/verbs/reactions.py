@@ -15,8 +15,8 @@ from eomgen.answers import Answer
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.balance import balance_of
-from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reacting.balance import balance_of
+from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.fields import AtRest, Equation

@@ -26,8 +26,8 @@ from eomgen.mechanics import (
     tree,
 )
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.balance import Balance, BodyEquation
-from eomgen.mechanics.equilibrium import imbalance
+from eomgen.mechanics.reacting.balance import Balance, BodyEquation
+from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
 from eomgen.model.unknowns import in_loads

@@ -15,7 +15,7 @@ from moving import equal
 import eomgen
 from eomgen import certificate
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics import elimination
+from eomgen.mechanics.loops import elimination
 from eomgen.mechanics.system import free_system_of, system_of
 from eomgen.proof import identities
 from eomgen.symbolic import cramer

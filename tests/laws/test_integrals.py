@@ -10,8 +10,8 @@ import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.integrals import first_integrals
-from eomgen.mechanics.laws import laws_of_motion
+from eomgen.mechanics.constants.integrals import first_integrals
+from eomgen.mechanics.constants.laws import laws_of_motion
 from eomgen.mechanics.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.situation import Situation, situation_of

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import system_of
 from eomgen.symbolic.derivative import derivative, symbols_of

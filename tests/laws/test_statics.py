@@ -141,7 +141,7 @@ def test_virtual_work_does_not_use_the_solution_of_the_balance(monkeypatch):
     def refused(*_, **__):
         raise AssertionError("the balance was solved")
 
-    monkeypatch.setattr("eomgen.mechanics.reactions.solution_of_balance", refused)
+    monkeypatch.setattr("eomgen.mechanics.reacting.reactions.solution_of_balance", refused)
     named = asked_reactions(structure)["reaction_couple(E)"]
     assert to_text(by_virtual_work(structure, named).value) == "-20*p*a^2"
 

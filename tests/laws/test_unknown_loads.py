@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 
 LEVER = """

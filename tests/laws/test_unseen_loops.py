@@ -15,8 +15,8 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import EomgenError
-from eomgen.mechanics.branches import branches_of_loops
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.loops.branches import branches_of_loops
+from eomgen.mechanics.loops.start import start_of_motion
 from eomgen.mechanics.system import system_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*(Statically indeterminate|No single value):RuntimeWarning")

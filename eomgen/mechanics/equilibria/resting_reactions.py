@@ -7,9 +7,9 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equilibria.search import Equilibrium
-from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import Node, Scalar

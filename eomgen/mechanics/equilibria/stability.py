@@ -20,7 +20,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
-from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic import cramer, linear

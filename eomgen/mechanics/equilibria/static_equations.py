@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.loops.closed_instant import position_equations
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.work import generalized_forces, powered_forces
 from eomgen.model.contacts import rough_contacts

@@ -13,7 +13,7 @@ from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.fields.curves import WORK, Curve, curve_of
 from eomgen.mechanics.fields.field import field_of, rotation_center
 from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
-from eomgen.mechanics.freedom import freedoms
+from eomgen.mechanics.loops.freedom import freedoms
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.graph import is_zero

@@ -16,7 +16,7 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.closure import State, generic_state, number
+from eomgen.mechanics.loops.closure import State, generic_state, number
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import tangent
 from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
-from eomgen.mechanics.components import Component, components_of
-from eomgen.mechanics.effects import Axes
-from eomgen.mechanics.freedom import is_particle
 from eomgen.mechanics.instant.mechanism import Mechanism
+from eomgen.mechanics.loops.freedom import is_particle
+from eomgen.mechanics.reacting.components import Component, components_of
+from eomgen.mechanics.reacting.effects import Axes
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import is_zero

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.fields.field import Field, field_of
-from eomgen.mechanics.freedom import is_particle
 from eomgen.mechanics.instant.construction import Found, Pair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.mechanics.kinematics import Link
+from eomgen.mechanics.loops.freedom import is_particle
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.worth import ROUNDED, Worth

@@ -25,9 +25,9 @@ from eomgen.mechanics.instant.given_rows import (
     tie_lines,
 )
 from eomgen.mechanics.instant.loose import freed
+from eomgen.mechanics.loops.start import fixed_by_position, start_state
 from eomgen.mechanics.outputs import Quantities
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.statics.rest import at_rest
 from eomgen.mechanics.system import System, free_system_of, reduced
 from eomgen.model.fields import Equation

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.loops.closed_instant import position_equations
 from eomgen.mechanics.small_motions.field import Matrix, Numbers, at
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.system import System

@@ -10,13 +10,13 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closed_instant import position_equations
 from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.loops.closed_instant import position_equations
+from eomgen.mechanics.loops.start import fixed_by_position, start_state
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row

@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
-from eomgen.mechanics.named_reactions import name_of, named_reactions
+from eomgen.mechanics.reacting.named_reactions import name_of, named_reactions
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, sizes_of
 from eomgen.mechanics.statics.section_forces import KINDS
 from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import Axes, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.fields.field import field_of
 from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import Axes, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Sizes
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce

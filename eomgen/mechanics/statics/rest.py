@@ -8,12 +8,12 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.closure import gaps_of, number
 from eomgen.mechanics.loads import start_value, with_unit_quaternions
+from eomgen.mechanics.loops.closure import gaps_of, number
+from eomgen.mechanics.loops.start import fixed_by_position, start_state
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope
-from eomgen.mechanics.start import fixed_by_position, start_state
 from eomgen.mechanics.system import System
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters

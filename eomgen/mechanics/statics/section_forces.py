@@ -18,7 +18,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.member_loads import Line, MemberLoads
 from eomgen.symbolic.functions import over, sqrt

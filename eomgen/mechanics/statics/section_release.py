@@ -14,8 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.effects import Effect
-from eomgen.mechanics.named_reactions import named
+from eomgen.mechanics.reacting.effects import Effect
+from eomgen.mechanics.reacting.named_reactions import named
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of
 from eomgen.mechanics.statics.member_loads import place_of
 from eomgen.mechanics.statics.structure import Structure

@@ -18,10 +18,10 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import Balance, balance_of
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import Axes
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reacting.balance import Balance, balance_of
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import Axes
 from eomgen.mechanics.statics.rest import State, at_rest, values_for
 from eomgen.mechanics.statics.unknown_loads import slope
 from eomgen.mechanics.statics.velocity_plan import Plan

@@ -8,8 +8,8 @@ The bodies are at rest: rates and accelerations are 0.
 from __future__ import annotations
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import Balance, BodyEquation
-from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.loops.closure import generic_state
+from eomgen.mechanics.reacting.balance import Balance, BodyEquation
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import depends_on, derivative, substituted

@@ -12,10 +12,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.effects import Axes, Effect
 from eomgen.mechanics.fields.field import Field, rotation_center
 from eomgen.mechanics.loads import in_ground_axes
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reacting.effects import Axes, Effect
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.symbolic.derivative import substituted

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.loads import SystemScene
-from eomgen.mechanics.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.reacting.effects import Effect, efforts_of
+from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.statics.blocks import turning_by_one
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import RunFailed
+from eomgen.mechanics.loops.start import start_state
 from eomgen.mechanics.masses.inertia_about import in_ground
-from eomgen.mechanics.start import start_state
 from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.report.drawing import Sketch, draw_model

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.reaction_outputs import name_of
+from eomgen.mechanics.reacting.reaction_outputs import name_of
 from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.small_motions.modes import Frequency, Modes

@@ -9,7 +9,7 @@ from typing import Any
 from eomgen.mechanics.equilibria.resting_reactions import reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
-from eomgen.mechanics.freedom import freedoms
+from eomgen.mechanics.loops.freedom import freedoms
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.mechanics.worth import known_parameters, numbers_of

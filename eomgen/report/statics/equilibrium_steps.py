@@ -6,7 +6,7 @@ from eomgen.mechanics.equilibria.resting_reactions import RestingReaction, react
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.worth import known_parameters, numbers_of
 from eomgen.report.bounded import page
 from eomgen.report.naming import Written, with_roots_named

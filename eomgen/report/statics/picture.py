@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import RunFailed
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import Axes, Effect
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import Axes, Effect
 from eomgen.mechanics.statics.blocks import members_of
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.two_ways import StaticReactions

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.statics.loose_motion import motion_in_words
 from eomgen.mechanics.statics.rest_contacts import Condition
 from eomgen.mechanics.statics.structure import Structure

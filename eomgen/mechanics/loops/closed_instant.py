@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.laws import laws_of_motion
+from eomgen.mechanics.constants.laws import laws_of_motion
+from eomgen.mechanics.constants.relations import Relations, relations_of
 from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.relations import Relations, relations_of
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.closure import State, generic_state
 from eomgen.mechanics.loads import SystemScene
+from eomgen.mechanics.loops.closure import State, generic_state
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.ties import Row, Ties, holds_identically

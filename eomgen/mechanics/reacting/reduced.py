@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closure import generic_state
+from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.system import System
 from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent_rows

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.closure import gaps_of, movable
-from eomgen.mechanics.consistency import is_guess
-from eomgen.mechanics.elimination import dependent_coordinates
 from eomgen.mechanics.loads import SystemScene
+from eomgen.mechanics.loops.closure import gaps_of, movable
+from eomgen.mechanics.loops.consistency import is_guess
+from eomgen.mechanics.loops.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.dense import independent_rows

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.errors import EomgenError, NotYet
-from eomgen.mechanics.closure import State, generic_state
 from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.elimination import dependent_coordinates, elimination_of
-from eomgen.mechanics.integrability import Integrability, integrability_of
 from eomgen.mechanics.kinematics import Link, Motion, motion_of
+from eomgen.mechanics.loops.closure import State, generic_state
+from eomgen.mechanics.loops.elimination import dependent_coordinates, elimination_of
+from eomgen.mechanics.loops.integrability import Integrability, integrability_of
 from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.drive import drive, multiplier
-from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import System
 from eomgen.model.constraints.members import ends_asked

@@ -13,8 +13,8 @@ from itertools import combinations
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.coupled_motion import Pair, pair_solution
-from eomgen.mechanics.linear_motion import Constants, Line, solution
+from eomgen.mechanics.constants.coupled_motion import Pair, pair_solution
+from eomgen.mechanics.constants.linear_motion import Constants, Line, solution
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System

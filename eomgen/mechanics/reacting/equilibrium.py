@@ -17,13 +17,13 @@ from random import Random
 
 import numpy as np
 
-from eomgen.mechanics.balance import DIRECTIONS, Balance
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import PLANE_ROWS, SPACE_ROWS, Effect, joint_effects
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.loads import in_ground_axes, weights
 from eomgen.mechanics.maximal import Numbers, State
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.reacting.balance import DIRECTIONS, Balance
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import PLANE_ROWS, SPACE_ROWS, Effect, joint_effects
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.graph import Scalar, is_zero

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.closure import closed, gaps_of, generic_state, movable, scattered_state
+from eomgen.mechanics.loops.closure import closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.ties import Ties
 from eomgen.model.parts import Model
 from eomgen.symbolic.dense import balanced

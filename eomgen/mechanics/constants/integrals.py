@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import EomgenError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.constants_of_motion import jacobi
+from eomgen.mechanics.constants.constants_of_motion import jacobi
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
-from eomgen.mechanics.closure import closed, gaps_of, number
-from eomgen.mechanics.consistency import bilateral, is_guess, nearest_places, nearest_speeds
-from eomgen.mechanics.elimination import dependent_coordinates
-from eomgen.mechanics.forks import Fork, at_rest, fork_at, leads_on, speeds_along
+from eomgen.mechanics.loops.closure import closed, gaps_of, number
+from eomgen.mechanics.loops.consistency import bilateral, is_guess, nearest_places, nearest_speeds
+from eomgen.mechanics.loops.elimination import dependent_coordinates
+from eomgen.mechanics.loops.forks import Fork, at_rest, fork_at, leads_on, speeds_along
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
 from eomgen.model.contacts import contacts_of

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.integrals import energy_integral
-from eomgen.mechanics.linear_motion import Constants, Line, particular
+from eomgen.mechanics.constants.integrals import energy_integral
+from eomgen.mechanics.constants.linear_motion import Constants, Line, particular
+from eomgen.mechanics.constants.relations import LONGEST, Relations, at_start
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.relations import LONGEST, Relations, at_start
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import depends_on, derivative, substituted

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import Balance, balance_of
-from eomgen.mechanics.balance_solution import solution_of_balance
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.named_reactions import named_reactions
+from eomgen.mechanics.reacting.balance import Balance, balance_of
+from eomgen.mechanics.reacting.balance_solution import solution_of_balance
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import Effect, efforts_of
+from eomgen.mechanics.reacting.named_reactions import named_reactions
+from eomgen.mechanics.reacting.unheld import refuse_unheld
 from eomgen.mechanics.statics.rest import at_rest
 from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
-from eomgen.mechanics.unheld import refuse_unheld
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution

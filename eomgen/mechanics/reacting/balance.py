@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.components import Component, components_of
-from eomgen.mechanics.effects import Axes, effects_of_load, joint_effects, turned
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import weights
+from eomgen.mechanics.reacting.components import Component, components_of
+from eomgen.mechanics.reacting.effects import Axes, effects_of_load, joint_effects, turned
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically, slide_power
 from eomgen.model.forces.load import PointForce

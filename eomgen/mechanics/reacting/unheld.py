@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import DIRECTIONS, Balance
-from eomgen.mechanics.closure import generic_state
-from eomgen.mechanics.freedom import freedoms
 from eomgen.mechanics.inertia import mass_properties
+from eomgen.mechanics.loops.closure import generic_state
+from eomgen.mechanics.loops.freedom import freedoms
+from eomgen.mechanics.reacting.balance import DIRECTIONS, Balance
 from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.system import System

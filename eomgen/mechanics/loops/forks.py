@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.freedom import rank_of_ties
+from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.ties import Ties
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import evaluate, fifty_digits

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.closure import generic_state
-from eomgen.mechanics.integrals import momentum_integrals
+from eomgen.mechanics.constants.integrals import momentum_integrals
+from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.symbolic import linear

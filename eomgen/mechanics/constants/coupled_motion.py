@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.linear_motion import Constants, waves
+from eomgen.mechanics.constants.linear_motion import Constants, waves
 from eomgen.symbolic.functions import over, sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.solving import vanishes

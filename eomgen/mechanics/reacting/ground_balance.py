@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.mechanics.balance import Balance
 from eomgen.mechanics.kinematics import Link
+from eomgen.mechanics.reacting.balance import Balance
 from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Scalar, is_zero

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.balance import Balance
-from eomgen.mechanics.components import Component
-from eomgen.mechanics.effects import Effect, efforts_of
+from eomgen.mechanics.reacting.balance import Balance
+from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.effects import Effect, efforts_of
 from eomgen.model.constraints.members import ends_asked
 from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.expressions import Call, Expression, Reference

@@ -7,10 +7,10 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance import Balance, BodyEquation
-from eomgen.mechanics.closure import generic_state
-from eomgen.mechanics.freedom import rank_of_ties
-from eomgen.mechanics.ground_balance import along_ground
+from eomgen.mechanics.loops.closure import generic_state
+from eomgen.mechanics.loops.freedom import rank_of_ties
+from eomgen.mechanics.reacting.balance import Balance, BodyEquation
+from eomgen.mechanics.reacting.ground_balance import along_ground
 from eomgen.mechanics.statics.unknown_loads import with_unknowns
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted

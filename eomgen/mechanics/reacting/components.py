@@ -8,8 +8,8 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.contacts import CLOSED, friction_factor
-from eomgen.mechanics.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
 from eomgen.mechanics.kinematics import Link, Motion
+from eomgen.mechanics.reacting.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.forces.load import Couple, PointForce

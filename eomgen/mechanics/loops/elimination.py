@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError
-from eomgen.mechanics.closure import generic_state, scattered_state
+from eomgen.mechanics.loops.closure import generic_state, scattered_state
 from eomgen.mechanics.scope import Scope, with_speeds_named
 from eomgen.mechanics.shortened import shorter
 from eomgen.mechanics.ties import Ties, holds_identically

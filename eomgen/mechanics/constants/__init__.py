@@ -1,0 +1,1 @@
+"""What stays constant along the motion, and the laws of motion that follow."""

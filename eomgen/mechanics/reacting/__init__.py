@@ -1,0 +1,1 @@
+"""Reactions: the balance of every body, component by component."""
