@@ -173,6 +173,12 @@ def by_every_method() -> tuple[tuple[str, str], ...]:
     return tuple(found)
 
 
+@cache
+def by_methods() -> tuple[tuple[str, str], ...]:
+    """The same, large models by one method alone."""
+    return tuple((name, method) for name, method in by_every_method() if name not in LARGE or method == "lagrange")
+
+
 def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
     """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier.
 

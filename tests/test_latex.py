@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from derivations import by_every_method, derivable, equations
+from derivations import by_methods, derivable, equations
 
 from eomgen.report import rendered
 from eomgen.report.derivation import derivation_of
@@ -64,7 +64,7 @@ def formulas(markdown: str) -> list[str]:
     return displays + re.findall(r"\$([^$\n]+)\$", rest)
 
 
-@pytest.mark.parametrize(("name", "method"), by_every_method())
+@pytest.mark.parametrize(("name", "method"), by_methods())
 def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
     """every command is known to both, every brace and environment closes, only aligned and cases are used"""
     found = formulas(rendered(equations(name, method).derivation, "markdown"))

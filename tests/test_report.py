@@ -11,6 +11,7 @@ import pytest
 from derivations import (
     LARGE,
     by_every_method,
+    by_methods,
     derivable,
     equations,
     free_system,
@@ -288,7 +289,7 @@ def test_the_payload_has_the_keys_that_others_rely_on():
     assert "definitions" not in data
 
 
-@pytest.mark.parametrize(("name", "method"), by_every_method())
+@pytest.mark.parametrize(("name", "method"), by_methods())
 def test_every_symbol_that_is_used_is_named_in_the_nomenclature(name, method):
     """symbols of the formulas are rows of a table or defined; letters are in the notation"""
     derivation = equations(name, method).derivation

@@ -12,20 +12,9 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics import (
-    balance,
-    components,
-    contacts,
-    effects,
-    friction,
-    inertia,
-    kinematics,
-    reactions,
-    recursion,
-    ties,
-    tree,
-)
+from eomgen.mechanics import contacts, friction, inertia, kinematics, recursion, ties, tree
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.reacting import balance, components, effects, reactions
 from eomgen.mechanics.reacting.balance import Balance, BodyEquation
 from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
