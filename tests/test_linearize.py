@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
+from eomgen.report import rendered
 
 MODELS = Path(__file__).parent.parent / "models"
 BARS = str(MODELS / "seeds" / "ch22_p3.toml")
@@ -119,3 +120,35 @@ def test_exact_matrices_at_the_values_are_the_numbers():
         at_values = exact.subs({symbol: values[symbol.name] for symbol in exact.free_symbols})
         assert [float(x) for x in at_values] == pytest.approx(numbers.ravel().tolist(), rel=1e-14)
     assert list(found.exact["B"]) == [1, 0]
+
+
+def test_an_input_that_does_not_reach_a_coordinate_has_the_transfer_function_zero():
+    """W[a, tau] = 0, in numbers as in formulas"""
+    text = """eomgen = 1
+name = "collar"
+space = "space"
+[coordinates]
+a = 0.3
+s = 0.05
+[inputs]
+tau = 0
+[bodies.arm]
+mass = 2
+center = [0, 0, -0.35]
+inertia = [0.08, 0.08, 0.001]
+joint = { kind = "revolute", axis = [1, 0, 0], angle = "a", torque = "tau" }
+[bodies.collar]
+mass = 0.5
+inertia = [0.001, 0.001, 0.002]
+joint = { kind = "prismatic", on = "arm", axis = [0, 0, 1], displacement = "s" }
+[forces.spring]
+kind = "spring"
+points = ["arm.origin", "collar.origin"]
+stiffness = 80
+length = 0.7
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+    printed = rendered(eomgen.linearize(eomgen.loads(text)).derivation, "text")
+    assert "W[s, tau] = 0\n" in printed and "()" not in printed

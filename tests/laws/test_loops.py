@@ -244,3 +244,38 @@ def test_check_tells_the_branches(run_verb):
     out, _ = run_verb("check", str(MODELS / "four_bar.toml"))
     assert "loops at the start: beta = 0.481838, gamma = 1.56796 (-)" in out
     assert "they also close with the same alpha at beta = -1.20954, gamma = 3.98752 (+)" in out
+
+
+RSSR = """eomgen = 1
+name = "RSSR"
+space = "space"
+[coordinates]
+a = 0.4
+b = { near = 1 }
+[bodies.crank]
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+points = { end = [0.2, 0, 0] }
+joint = { kind = "revolute", axis = [0, 1, 0], angle = "a" }
+[bodies.rocker]
+mass = 2
+inertia = [0.1, 0.1, 0.1]
+points = { end = [0.5, 0, 0] }
+joint = { kind = "revolute", at = [0.1, 0.8, 0], axis = [0, 1, 1], angle = "b" }
+[constraints.coupler]
+kind = "link"
+points = ["crank.end", "rocker.end"]
+length = 0.8
+"""
+
+
+@pytest.mark.parametrize("guess", [-2, -1, 0.3, 1, 2.5, 8])
+def test_a_loop_closes_at_the_place_nearest_to_the_guess(guess):
+    """of two ways and all whole turns of them, wherever Newton's method leaps"""
+    def found(near: float) -> float:
+        model = eomgen.loads(RSSR.replace("near = 1", f"near = {near}"))
+        return start_of_motion(eomgen.derive(model).system).values["b"]
+
+    start, ways = found(guess), [found(-0.2), found(2.9)]
+    every = [way + 2 * np.pi * turns for way in ways for turns in (-1, 0, 1)]
+    assert abs(start - guess) == pytest.approx(min(abs(way - guess) for way in every), abs=1e-9)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.loops.closure import closed, gaps_of, generic_state, movable, scattered_state
+from eomgen.mechanics.loops.closure import CLOSED, closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.ties import Ties
 from eomgen.model.parts import Model
 from eomgen.symbolic.dense import balanced
@@ -29,6 +29,7 @@ ROUNDS = 12  # of walking along the ties towards the values given
 STILL = 1e-12  # of a step of such a walk, against a turn of 1 rad
 DEPENDENT = 1e-9  # of a singular value of the balanced rows
 APART = 1e-6  # of two configurations
+LEAP = 1.0  # of a guess [rad, m], beyond which other guesses are tried too
 SPREADS = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
 EASY = 1e3  # times farther a guess may move than a given value, for the same
 ROUNDING = 1e-12  # of a coordinate
@@ -133,13 +134,32 @@ def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
 
 
 def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
-    """By moving these alone: from where they stand, then from other guesses."""
+    """By moving these alone: from where they stand, then from other guesses; the nearest where Newton's method leaps."""
     given = [q for q in free if q not in guessed]
+    leaps: list[tuple[float, State]] = []
     for start in _guesses(state, [q for q in free if q in guessed]):
         found = _walked(ties, start, free, state, guessed)
-        if found is not None and not far(ties, state, found, given) and regular(ties, found, free):
+        if found is None or far(ties, state, found, given) or not regular(ties, found, free):
+            continue
+        found = _turned_back(ties, state, found, guessed)
+        apart = max((abs(float(found[q] - state[q])) for q in guessed), default=0.0)
+        if apart <= LEAP:
             return found
-    return None
+        leaps.append((apart, found))
+    return min(leaps, key=lambda leap: leap[0])[1] if leaps else None
+
+
+def _turned_back(ties: Ties, before: State, found: State, guessed: Sequence[Node]) -> State:
+    """The place with whole turns taken back where the ties hold as well without them."""
+    turn = 2 * evaluate((ties.motion.scope.graph.pi,), {}, fifty_digits())[0]
+    for q in guessed:
+        turns = round(float((found[q] - before[q]) / turn))
+        if not turns:
+            continue
+        back = found | {q: found[q] - turns * turn}
+        if all(abs(x) <= CLOSED for x in evaluate(gaps_of(ties), back, fifty_digits())):
+            found = back
+    return found
 
 
 def _guesses(state: State, guessed: Sequence[Node]) -> Iterator[State]:

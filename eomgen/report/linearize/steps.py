@@ -318,5 +318,7 @@ def _quotient(modes: Modes, f: TransferFunction) -> Side:
     if exact is not None and not any(isinstance(c, float) for c in f.below.coefficients):
         s = laplace_variable(exact)
         return _side(over(_written(f.above, s), _written(f.below, s)))
+    if not any(f.above.coefficients):
+        return 0
     above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))
     return Law(f"({above.text})/({below.text})", rf"\frac{{{above.latex}}}{{{below.latex}}}")
