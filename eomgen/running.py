@@ -30,7 +30,7 @@ from eomgen.simulation.independence import Independence
 from eomgen.simulation.integrate import SAMPLES, check, integrate
 from eomgen.simulation.joined import thinned
 from eomgen.simulation.knots import knots_of
-from eomgen.simulation.passages import Nearness
+from eomgen.simulation.nearness import Nearness
 from eomgen.simulation.phases import run_phases
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import with_reactions

@@ -10,10 +10,11 @@ import numpy as np
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
 from eomgen.simulation.events import Events
-from eomgen.simulation.passages import Flow, Nearness, Passage, march_across
+from eomgen.simulation.nearness import Nearness
+from eomgen.simulation.passages import Flow, Passage, march_across
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import METHODS, Slope
-from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Stepping, march
+from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Run, Stepping, march
 from eomgen.simulation.trajectory import Phase, Trajectory
 
 SAMPLES = 1001
@@ -75,12 +76,8 @@ def integrate(
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
-    flow, passages = Flow(f, how, rhs.spheres, projection, slope), tuple[Passage, ...]()
-    if nearness is None:
-        run = march(f, (start, end), x0, how=how, instants=instants, events=events, spheres=rhs.spheres,
-                    projection=projection, slope=slope)  # fmt: skip
-    else:
-        run, passages = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
+    flow = Flow(f, how, rhs.spheres, projection, slope)
+    run, passages = _followed(flow, (start, end), x0, instants, events, nearness)
     gap, gap_rate = _open(run.t, run.x, projection, gaps)
     T, V = (None, None) if energy is None else _rows(energy(run.t, run.x), run.t)
     return Trajectory(
@@ -99,6 +96,18 @@ def integrate(
         evaluations=run.evaluations,
         passages=tuple((passage.start, passage.end) for passage in passages),
     )
+
+
+def _followed(
+    flow: Flow, span: tuple[float, float], x0: np.ndarray, instants: np.ndarray | None, events: Events | None,
+    nearness: Nearness | None,
+) -> tuple[Run, Sequence[Passage]]:  # fmt: skip
+    """The states of the run, and the singular positions that it passed where somebody looks for them."""
+    if nearness is not None:
+        return march_across(flow, span, x0, nearness, instants=instants, events=events)
+    run = march(flow.f, span, x0, how=flow.how, instants=instants, events=events, spheres=flow.spheres,
+                projection=flow.projection, slope=flow.slope)  # fmt: skip
+    return run, ()
 
 
 def _open(

@@ -134,7 +134,7 @@ def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
 
 
 def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
-    """By moving these alone: from where they stand, then from other guesses; the nearest where Newton's method leaps."""
+    """By moving these alone, from where they stand, then from other guesses; the nearest of those that leap."""
     given = [q for q in free if q not in guessed]
     leaps: list[tuple[float, State]] = []
     for start in _guesses(state, [q for q in free if q in guessed]):

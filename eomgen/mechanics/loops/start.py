@@ -8,8 +8,7 @@ these do not, the nearest values are taken at which they do (`consistency`), and
 from __future__ import annotations
 
 import math
-import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,17 +17,16 @@ from eomgen.mechanics.loops.closure import closed, gaps_of, number
 from eomgen.mechanics.loops.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.loops.elimination import dependent_coordinates
 from eomgen.mechanics.loops.forks import Fork, at_rest, fork_at, leads_on, speeds_along
+from eomgen.mechanics.loops.open_ties import NEGLIGIBLE, excess, listed, refuse_open_gaps, refuse_open_rates
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import first_guesses, numeric_parameters, start_values
-from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits, order
+from eomgen.symbolic.derivative import substituted, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 
-OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
 ROUNDING = 1e-17  # of a coordinate or speed found by the ties, in SI: 0
-NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so little is rounding
 
 State = dict[Node, Any]
 
@@ -71,7 +69,7 @@ class Start:
         """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
         if not self.changes:
             return ""
-        names, how = _listed(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
+        names, how = listed(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
         hold = "holds" if len(self.ties) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
 
@@ -103,9 +101,9 @@ def start_of_motion(
     sought = fixed_by_position(system)
     state = (closed(system.ties, before, sought) or before) if sought else before
     state, open_gaps = _with_gaps_closed(system, state, start or {})
-    _refuse_open_gaps(system, state)
+    refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, start or {})
-    _refuse_open_rates(system, state)
+    refuse_open_rates(system, state)
     state, fork, turned = _along_a_branch(system, state, start or {})
     names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
     found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
@@ -173,7 +171,7 @@ def _speeds(system: System, start: Mapping[str, float]) -> tuple[list[Node], lis
 
 def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
     """The ties whose scalars ought to be zero and are not."""
-    return tuple(dict.fromkeys(row.tie for row, x in pairs if _excess(x, symbols, state)))
+    return tuple(dict.fromkeys(row.tie for row, x in pairs if excess(x, symbols, state)))
 
 
 def _that_stay(system: System, apart: Sequence[str]) -> Ties:
@@ -288,82 +286,3 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     for name, node in symbols.inputs.items():
         state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
     return state
-
-
-# -- whether the ties hold ---------------------------------------------------------------------------
-
-
-def _refuse_open_gaps(system: System, state: State) -> None:
-    """Raises DerivationError for the tie that is open by most."""
-    q = system.symbols.q
-    gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
-    found = _worst(gaps, q, state)
-    if found is None:
-        return
-    row, gap, size = found
-    what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise DerivationError(what, f"constraints.{row.tie}", _mend(system, gap))
-
-
-def _mend(system: System, gap: Scalar) -> str:
-    """What closes a gap: another guess, a coordinate marked dependent, other start values."""
-    dependent = dependent_coordinates(system.scope)
-    standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
-    sought = [name for name in standing if name in dependent]
-    if sought:
-        return f"give start values at which it can close, or another guess: `near` of {_listed(sought)}"
-    free = [name for name in standing if not system.scope.model.coordinates[name].driven]
-    if not free:
-        return "change the given motions"
-    return f"give start values that close it, or mark a coordinate as `dependent`: {_listed(free)}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(f"'{name}'" for name in names)
-
-
-def _refuse_open_rates(system: System, state: State) -> None:
-    """Raises DerivationError for the closing tie whose velocity row is off by most."""
-    u = system.symbols.u
-    found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
-    if found is None:
-        return
-    row, _, size = found
-    speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
-    what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
-    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {_listed(speeds)}")
-
-
-def _worst(
-    pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State
-) -> tuple[Row, Scalar, float] | None:
-    """(row, scalar, size) of the largest scalar that ought to be zero and is not; None where all are."""
-    found = [(row, x, _excess(x, symbols, state)) for row, x in pairs]
-    return max((each for each in found if each[2]), key=lambda each: each[2], default=None)
-
-
-def _excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:
-    """|x|, where it is more than rounding: against its terms, and against what the symbols would have to move."""
-    try:
-        slopes = evaluate(gradient(x, symbols), state, fifty_digits())
-        value, terms = _value_and_terms(x, state)
-    except (NoValue, ZeroDivisionError):
-        return float("inf")
-    steepest = float(max((abs(slope) for slope in slopes), default=0))
-    return value if value > OPEN * terms and value > NEGLIGIBLE * steepest else 0.0
-
-
-def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
-    """(|x|, the same with every sum taken of absolute values): how large the terms are that cancel."""
-    nodes = order((x,))
-    values = dict(zip(nodes, evaluate(nodes, state, fifty_digits()), strict=True))
-    terms = {node: abs(value) for node, value in values.items()}
-    for node in nodes:
-        if node.op in _OF_TERMS:
-            terms[node] = _OF_TERMS[node.op](*(terms[a] if type(a) is Node else abs(number(a)) for a in node.args))
-    return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
-
-
-_OF_TERMS: dict[str, Callable[..., Any]] = {
-    "add": operator.add, "sub": operator.add, "mul": operator.mul, "neg": operator.pos,
-}  # fmt: skip
