@@ -42,6 +42,7 @@ from eomgen.symbolic.text import text_size, to_text
 from eomgen.symbolic.transplant import transplanted
 
 LONGEST = 20_000  # characters of an exact answer
+NO_VALUE = "it has no finite value {}"
 
 
 @dataclass(frozen=True)
@@ -219,7 +220,20 @@ class _Solver:
         failure = self.journeys[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
+        without = answer.value is None and answer.message == NO_VALUE.format("at the start")
+        if without and self._rubs_at_rest:
+            resting = self._rubs_at_rest
+            what = f"on the surface of {resting} nothing slides yet at the start, and friction has no direction there"
+            return replace(answer, message=f"{what}; ask it at an instant after: `at`")
         return answer
+
+    @cached_property
+    def _rubs_at_rest(self) -> str:
+        """The contacts on surfaces that begin to slide from rest, by their names."""
+        situation = self.situation
+        values = {**known_parameters(situation.system.scope), **self.journeys[False].numbers}
+        rows = [row for row in situation.system.ties.rows if row.shares and row.friction is not None]
+        return ", ".join(f"'{row.tie}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 
     def _regular(self, answer: Answer, output: Output) -> Answer:
         """The answer with the value that it has where its closed form divides by what vanishes at the start."""
@@ -308,18 +322,35 @@ class _Solver:
         else:
             moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
         situation, method = moment.situation, moment.method
-        try:
-            exact = situation.simple(self._in_unit(situation.at(output.value, moment.exact), output))
-        except MissingValues:
-            found = self._constant(moment, output)
-            if found is None:
-                return _valued(Answer(method=method), self._number_at(moment, output), "at the instant")
-            exact, method = situation.simple(self._in_unit(found, output)), "constant of motion"
+        found = self._exactly(moment, output)
+        if found is None:
+            found, method = self._constant(moment, output), "constant of motion"
+        if found is None:
+            return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
+        exact = situation.simple(self._in_unit(found, output))
         text = to_text(exact) if text_size(exact) <= LONGEST else None
         try:
             return _valued(Answer(text, None, "", method), self._at_start(exact), "at the instant")
         except MissingValues as error:
             return Answer(text, None, "", method, error.what)
+
+    def _exactly(self, moment: Moment, output: Output) -> Scalar | None:
+        """The value by what is known of the instant exactly; None where that is too little."""
+        if self._is_long_and_open(moment, output):
+            return None
+        try:
+            return moment.situation.at(output.value, moment.exact)
+        except MissingValues:
+            return None
+
+    def _is_long_and_open(self, moment: Moment, output: Output) -> bool:
+        """Whether a formula too long to be shown holds what is known of the instant in numbers alone."""
+        situation, symbols = moment.situation, moment.situation.system.symbols
+        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in moment.exact]
+        if isinstance(output.at, AtRest) or not missing or not moment.numbers:
+            return False
+        closed = situation.eliminated(situation.raw(output.value))
+        return depends_on(closed, missing) and text_size(closed) > LONGEST
 
     def _constant(self, moment: Moment, output: Output) -> Scalar | None:
         """What stays constant along every motion, as it is at the start; None: it changes, or a contact has."""
@@ -361,4 +392,4 @@ def _unanswered(output: Output, error: EomgenError) -> Answer:
 def _valued(answer: Answer, value: float, where: str) -> Answer:
     if math.isfinite(value):
         return replace(answer, value=float(value) + 0.0)  # -0 is 0
-    return replace(answer, message=f"it has no finite value {where}")
+    return replace(answer, message=NO_VALUE.format(where))

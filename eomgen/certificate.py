@@ -17,6 +17,7 @@ from eomgen.mechanics.friction import rubs
 from eomgen.mechanics.system import System
 from eomgen.proof import identities, trials
 from eomgen.proof.check import Check
+from eomgen.symbolic.growing import growing
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ class Certificate:
         return {"ok": self.ok, "checks": rows}
 
 
+@growing()
 def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None) -> Certificate:
     """Check the equations of a system.
 
@@ -64,7 +66,7 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
         checks.append(identities.closing_rows(system, assembly))
     if system.elimination is not None:
         checks.append(trials.eliminated_rows(system))
-    checks.append(trials.friction(system) if rubs(system) else trials.free_bodies(system, assembly))
+    checks.append(trials.friction(system, assembly) if rubs(system) else trials.free_bodies(system, assembly))
     checks += trials.balance(system, assembly)
     if rhs is not None:
         checks.append(trials.code(system, assembly, rhs))

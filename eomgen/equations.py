@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,21 +12,28 @@ import numpy as np
 from eomgen.certificate import Certificate, certify
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.codegen.program import Program, right_hand_side
-from eomgen.codegen.reactions import ReactionFunction, reactions_program
+from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.friction import with_rest
 from eomgen.mechanics.inverse import inverse_of
 from eomgen.mechanics.loops.start import start_state
 from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
+from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.growing import growing
+from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.text import text_size
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
+
+FEW = 200  # operations of a matrix that a person reads
+WORK = 2_000  # products of terms for one of its entries
 
 
 @dataclass(frozen=True)
@@ -85,9 +92,9 @@ class Equations:
         Raises:
             ModelError: a free coordinate moves no mass.
         """
-        refuse_massless(self.graph)
+        refuse_massless(self.system, self.graph)
         with growing():
-            return right_hand_side(with_accelerations(self.system, self.graph), self.system.inputs)
+            return right_hand_side(self._explicit, self.system.inputs)
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -101,8 +108,18 @@ class Equations:
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
-        refuse_massless(self.graph)
-        return reactions_program(self.reactions, with_accelerations(self.system, self.graph), self.system.inputs)
+        refuse_massless(self.system, self.graph)
+        values = determinate(self.reactions)
+        found = dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
+        return reactions_program(found, self._explicit, self.system.inputs)
+
+    @property
+    def _explicit(self) -> Assembly:
+        """The equations of motion as code has them: explicit where that is shorter, finite where nothing slides."""
+        assembly = with_accelerations(self.system, self.graph)
+        if not assembly.friction or assembly.accelerations is None:
+            return assembly
+        return replace(assembly, accelerations=with_rest(self.system, assembly.accelerations))
 
     def certify(self, target: str | None = "numpy") -> Certificate:
         """Check the equations by independent routes, and the code that `target` emits against the symbols."""
@@ -196,12 +213,19 @@ class Equations:
 
 
 def _matrix(rows: tuple[tuple[Any, ...], ...], columns: int) -> Any:
-    """Graph scalars as a sympy matrix, sub-expressions shared."""
+    """Graph scalars as a sympy matrix: as a person writes them where they are few, else sub-expressions shared."""
     import sympy
 
     from eomgen.symbolic.sympy_form import to_sympy
 
-    return sympy.ImmutableDenseMatrix(len(rows), columns, to_sympy([x for row in rows for x in row]))
+    entries = [x for row in rows for x in row]
+    written = _written(entries) if operations(entries).total <= FEW else entries
+    return sympy.ImmutableDenseMatrix(len(rows), columns, to_sympy(written))
+
+
+def _written(entries: Sequence[Any]) -> list[Any]:
+    """Each multiplied out where that is shorter."""
+    return [min(x, y, key=text_size) for x, y in zip(readable_all(entries, WORK), entries, strict=True)]
 
 
 def _column(entries: tuple[Any, ...]) -> Any:

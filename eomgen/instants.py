@@ -116,7 +116,13 @@ class _Search:
         closed = ClosedInstant(self.system, self.assembly, self.accelerations, self.condition, self.start, located)
         by_time = closed.by_laws()
         if moving <= by_time.keys() or not depends_on(self.condition, moving):
-            return by_time, "law of motion" if by_time.keys() & moving else ""
+            return by_time, "law of motion" if by_time.keys() & self._own else ""
         by_energy = closed.by_integrals()
         way = "energy theorem" if by_energy.keys() & {*symbols.u} else "law of motion" if by_time else ""
         return {**by_energy, **by_time}, way
+
+    @property
+    def _own(self) -> set[Node]:
+        """The coordinates and speeds that no given motion says."""
+        symbols, table = self.system.symbols, self.system.scope.model.coordinates
+        return {*symbols.u, *(q for q in symbols.q if not table[q.name].driven)}

@@ -66,8 +66,8 @@ def placed(situation: Situation, known: Mapping[Node, Scalar], numbers: Mapping[
     system = situation.system
     unknown = [q for q in system.symbols.q if q not in known]
     gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
-    if not unknown or not gaps or not numbers:
-        return dict(known)
+    if not unknown or not gaps or not numbers or len(gaps) < len(unknown) == len(system.symbols.q):
+        return dict(known)  # nothing to begin with
     located = Located({**parameters_of(situation), **numbers}, situation.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
     return {**known, **places_of(equations, unknown, located)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.equations import Equations
@@ -13,6 +14,7 @@ from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
+from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion
 from eomgen.running import run
 from eomgen.simulation.course import modes_at_start
@@ -57,6 +59,7 @@ def simulate(
     time: float,
     parameters: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
+    inputs: Mapping[str, Any] | None = None,
     rtol: float = 1e-9,
     atol: float = 1e-9,
     target: str | None = None,
@@ -71,6 +74,7 @@ def simulate(
         time: how long [s].
         parameters: values that replace the model's.
         start: start values and speeds (`theta`, `theta'`) that replace the model's.
+        inputs: values that replace the model's: numbers, expressions of t, or `eomgen.samples(times, values)`.
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves.
@@ -81,9 +85,9 @@ def simulate(
         MissingValues: parameters without a value, all named.
     """
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
+    equations = derive(with_inputs(model, inputs or {}))
     found = run(
-        derive(model), time=time, parameters=parameters, start=start, target=target, samples=samples, how=how,
-        until=until,
+        equations, time=time, parameters=parameters, start=start, target=target, samples=samples, how=how, until=until,
     )  # fmt: skip
     if found.reactions and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,6 @@ from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.gimbal import locks_of
 from eomgen.mechanics.loops.edges import NEAR, edges_of, left_of, stopped_at
 from eomgen.mechanics.loops.elimination import singular_blocks
-from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.loops.stabilization import stabilized
 from eomgen.mechanics.loops.start import Start, start_of_motion
 from eomgen.mechanics.wellposed import is_conservative
@@ -26,11 +25,10 @@ from eomgen.simulation.conditions import Condition, condition_of
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.endings import MET
 from eomgen.simulation.events import TOUCH, Events
-from eomgen.simulation.independence import Independence
 from eomgen.simulation.integrate import SAMPLES, check, integrate
 from eomgen.simulation.joined import thinned
 from eomgen.simulation.knots import knots_of
-from eomgen.simulation.nearness import Nearness
+from eomgen.simulation.measures import independence_of, measure, nearness_of
 from eomgen.simulation.phases import run_phases
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import with_reactions
@@ -121,7 +119,7 @@ def _one_phase(
     """(the right-hand side, the motion) of a model whose contacts do not change."""
     equations = pulling(equations, how.rates) if how.stabilization == "baumgarte" else equations
     system, assembly, rhs = equations.system, equations.graph, equations.rhs(target)
-    projection, energies = projection_of(system, p, target), _along(equations, (assembly.T, assembly.V), p)
+    projection, energies = projection_of(system, p, target), measure(system, (assembly.T, assembly.V), p)
     found = integrate(
         rhs,
         time=time,
@@ -139,30 +137,11 @@ def _one_phase(
         most_steps=how.most_steps,
         events=_events(equations, p, condition, TOUCH * how.rtol),
         slope=slope_of(system, assembly, p, target) if how.method in IMPLICIT else None,
-        nearness=_nearness(equations, p),
+        nearness=nearness_of(system, assembly, p),
         knots=how.knots,
     )
     found = _at_edge(equations, found, p)
     return rhs, found if found.status == "singular" else _watched(equations, found, rhs, p, how, projection)
-
-
-def _nearness(equations: Equations, p: np.ndarray) -> Nearness | None:
-    """How near a motion is to positions in which the ties do not determine it; None without ties."""
-    blocks = singular_blocks(equations.system.elimination, equations.system.scope)
-    determinants = _along(equations, tuple(block.determinant for block in blocks), p) if blocks else None
-    rows = _independence(equations, p)
-    what = tuple(map(str, blocks))
-    return None if determinants is None and rows is None else Nearness(determinants, rows, what)
-
-
-def _independence(equations: Equations, p: np.ndarray) -> Independence | None:
-    """How independent the rows are that close by multipliers; None without such."""
-    ties = equations.system.ties
-    rank = rank_of_ties(ties)
-    if not rank:
-        return None
-    J = _along(equations, tuple(x for row in equations.graph.J for x in row), p)
-    return Independence(J, tuple(row.tie for row in ties.closing), rank)
 
 
 def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
@@ -198,7 +177,7 @@ def _at_edge(equations: Equations, found: Trajectory, p: np.ndarray) -> Trajecto
     edges = edges_of(equations.system.motion)
     if found.status != "event" or not edges:
         return found
-    left = _along(equations, tuple(edge.vanishes for edge in edges), p)(found.t[-1:], found.x[-1:])[0]
+    left = measure(equations.system, tuple(edge.vanishes for edge in edges), p)(found.t[-1:], found.x[-1:])[0]
     k = int(np.argmin(left))
     if left[k] > 2 * NEAR:
         return found
@@ -234,27 +213,16 @@ def _watched(
 
     blocks = singular_blocks(system.elimination, system.scope)
     if blocks:
-        determinants = _along(equations, tuple(block.determinant for block in blocks), p)
+        determinants = measure(system, tuple(block.determinant for block in blocks), p)
         found = ended(found, determinants, [str(block) for block in blocks])
     if system.declared:
-        determinants = _along(equations, tuple(solved.determinant for solved in system.declared), p)
+        determinants = measure(system, tuple(solved.determinant for solved in system.declared), p)
         found = ended(found, determinants, list(map(str, system.declared)), place=CHOOSE)
     locks = locks_of(system.motion)
     if locks:
-        determinants = _along(equations, tuple(lock.determinant for lock in locks), p)
+        determinants = measure(system, tuple(lock.determinant for lock in locks), p)
         found = ended(found, determinants, list(map(str, locks)), place=LOCKED)
-    rows = _independence(equations, p)
+    rows = independence_of(system, equations.graph, p)
     if rows is not None and len(found.t):
         found = ended(found, rows, [rows.words(found.t, found.x)])
     return found
-
-
-def _along(equations: Equations, outputs: tuple[Any, ...], p: np.ndarray) -> Callable[[Any, Any], np.ndarray]:
-    """(t n, x n x states) -> the outputs at each state, n x outputs."""
-    function = compiled(program_of(outputs, equations.graph.symbols, inputs=equations.system.inputs), "numpy")
-    one = function.at(p)
-
-    def along(t: Any, x: Any) -> np.ndarray:
-        return one(t[0], x[0])[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
-
-    return along

@@ -26,6 +26,7 @@ SCHEMA_VERSION = 1
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
 LATER = ("verify", "sweep")
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
 
 
 class Verbs(click.Group):
@@ -52,6 +53,7 @@ class Verbs(click.Group):
 
     def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
         wants_json = "--json" in words
+        os.environ.setdefault(*ONE_THREAD)
         try:
             return super().main(words, name, complete_var, standalone_mode=False, **extra) or 0
         except click.ClickException as error:

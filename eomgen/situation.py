@@ -8,7 +8,7 @@ are put into the equations first, and these are solved there: so nothing is divi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -42,7 +42,7 @@ from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.expressions import Call, Expression
 from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import legible, readable_all
 
 WORK = 50_000  # products of terms for making one formula readable
@@ -75,7 +75,7 @@ class Situation:
         """
         refuse_motion(self.model)
         assembly = with_friction(self.system, recursive.assemble(self.system))
-        refuse_massless(assembly)
+        refuse_massless(self.system, assembly)
         return assembly
 
     @cached_property
@@ -165,8 +165,11 @@ class Situation:
         found = evaluate(closed, values, FLOAT)[0]
         if math.isfinite(found) and self._agrees(found, closed, values):
             return found
-        scalar = self.at(formula, exact_numbers(numbers))  # a pivot vanishes there: solved anew
-        return evaluate((scalar,), values, FLOAT)[0]
+        scalar = self._solved_at(formula, exact_numbers(numbers), readable=False)  # a pivot vanishes there
+        try:
+            return float(evaluate((scalar,), {x: precise(value) for x, value in values.items()}, fifty_digits())[0])
+        except (NoValue, ZeroDivisionError):
+            return evaluate((scalar,), values, FLOAT)[0]
 
     def _agrees(self, found: float, closed: tuple[Scalar], values: Mapping[Node, float]) -> bool:
         """Whether a form that divides by what may vanish there has the same value with 50 digits."""
@@ -186,7 +189,15 @@ class Situation:
         Raises:
             MissingValues: it holds one; the names tell which.
         """
-        state = self.complete(state, formula)
+        return self.simple(self._solved_at(formula, state))
+
+    def _solved_at(self, formula: Expression, state: State, *, readable: bool = True) -> Scalar:
+        """The formula at a state, the equations of motion solved anew there.
+
+        Args:
+            readable: whether it is to be read; a number is found sooner from what is not.
+        """
+        state = self.complete(state, formula, readable=readable)
         quantities = Quantities(self.system, state)
         scalar = formula.evaluate(self.system.scope.names, quantities.value)
         (scalar,) = substituted((scalar,), state)
@@ -196,9 +207,9 @@ class Situation:
                 if depends_on(scalar, (x,))]  # fmt: skip
         if left:
             raise MissingValues(tuple(left))
-        return self.simple(scalar)
+        return scalar
 
-    def complete(self, state: State, formula: Expression | None = None) -> State:
+    def complete(self, state: State, formula: Expression | None = None, *, readable: bool = True) -> State:
         """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
@@ -206,7 +217,7 @@ class Situation:
             return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state
-        return {**state, **self._unknowns_at(state)}
+        return {**state, **self._unknowns_at(state, readable)}
 
     def method_for(self, formula: Expression) -> str:
         """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
@@ -223,21 +234,25 @@ class Situation:
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 
-    def _unknowns_at(self, state: State) -> dict[Node, Scalar]:
+    def _unknowns_at(self, state: State, readable: bool) -> dict[Node, Scalar]:
         """Accelerations and multipliers at a state: the equations solved there."""
         symbols, assembly = self.system.symbols, self.assembly
         if assembly.friction:
             values = substituted(tuple(self.unknowns.values()), state)
-            return dict(zip(self.unknowns, (self.simple(x) for x in values), strict=True))
+            return dict(zip(self.unknowns, (self.simple(x) if readable else x for x in values), strict=True))
         kept = regular_rows(self.system)
         rows, right = bordered_rows(assembly, kept)
-        entries = readable_all(substituted([x for row in rows for x in row.values()], state), WORK, self.positive)
+        entries = substituted([x for row in rows for x in row.values()], state)
+        needed = substituted(right, state)
+        if readable:
+            entries, needed = (readable_all(x, WORK, self.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
-        needed = readable_all(substituted(right, state), WORK, self.positive)
         solution = linear.solved(rows, needed, len(right), values_at_a_state(self.system, entries))
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
-        return {names[j]: self.simple(x) for j, x in solution.constants.items() if solution.determined(j)}
+        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # what holds one is no answer
+        found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}
+        return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 
 
 def situation_of(model: Model, modes: Modes | None = None) -> Situation:
@@ -265,14 +280,29 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
     if len(symbols.a) - len(kept) <= FEW:
         with suppress(DerivationError):
             return by_independent(system, assembly, kept)
-    free = solved(assembly.M, assembly.forcing)
     J = [assembly.J[i] for i in kept]
-    columns = [solved(assembly.M, row) for row in J]
+    M, forcing = _measured(assembly, kept) if _some_massless(assembly) else (assembly.M, assembly.forcing)
+    free = solved(M, forcing)
+    columns = [solved(M, row) for row in J]
     S = [[inner(row, column) for column in columns] for row in J]
     lam = solved(S, [-(assembly.gamma[i] + inner(row, free)) for i, row in zip(kept, J, strict=True)])
     a = tuple(a + inner(lam, [column[k] for column in columns]) for k, a in enumerate(free))
     multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def _some_massless(assembly: Assembly) -> bool:
+    """Whether ties alone say what some acceleration is."""
+    return any(is_zero(row[k]) for k, row in enumerate(assembly.M))
+
+
+def _measured(assembly: Assembly, kept: Sequence[int]) -> tuple[Sequence[Row], Row]:
+    """M + J^T J and F - J^T gamma, with the same a and lam as J a = -gamma, and regular where the ties make M so."""
+    J, n = [assembly.J[i] for i in kept], range(len(assembly.M))
+    gamma = [assembly.gamma[i] for i in kept]
+    columns = [[row[k] for row in J] for k in n]
+    M = [tuple(assembly.M[i][j] + inner(columns[i], columns[j]) for j in n) for i in n]
+    return M, tuple(assembly.forcing[k] - inner(columns[k], gamma) for k in n)
 
 
 def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
@@ -281,6 +311,9 @@ def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -
         return {}
     kept = regular_rows(system)
     n = len(assembly.M)
+    if n + len(kept) <= cramer.LARGEST_BLOCK:  # what divides by a pivot of J has no value where that vanishes
+        found = by_determinants(assembly, kept)
+        return {x: found[x] for x in system.symbols.lam}
     rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
     right = [inner(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
     entries = [x for row in rows for x in row.values()]

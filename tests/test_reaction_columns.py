@@ -19,8 +19,8 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.outputs import Quantities
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import named_reactions
-from eomgen.mechanics.reacting.reactions import Indeterminate
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.trials import accelerations_at

@@ -16,6 +16,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
+from eomgen.symbolic.dense import of_one_length
 
 DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
 SHARE = 1e-6  # of a multiplier in a combination that vanishes
@@ -57,8 +58,7 @@ def _left(J: np.ndarray) -> np.ndarray:
     """n with n^T J = 0, one a row; all where J has no value."""
     if not J.size or not np.all(np.isfinite(J)):
         return np.eye(len(J))
-    lengths = np.linalg.norm(J, axis=1, keepdims=True)
-    U, sizes, _ = np.linalg.svd(J / np.where(lengths > 0, lengths, 1.0))
+    U, sizes, _ = np.linalg.svd(of_one_length(J))
     left: np.ndarray = U[:, int(np.sum(sizes > DEPENDENT)) :].T
     return left
 

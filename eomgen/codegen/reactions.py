@@ -11,8 +11,9 @@ import numpy as np
 from eomgen.codegen.program import Program, program_in_motion
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import named_reactions
-from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions
+from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.symbolic.graph import Scalar
 
 
@@ -49,12 +50,12 @@ def determinate(reactions: Reactions) -> dict[str, Scalar]:
 
 
 def reactions_program(
-    reactions: Reactions, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None
+    values: Mapping[str, Scalar], assembly: Assembly, inputs: Mapping[str, Scalar] | None = None
 ) -> tuple[tuple[str, ...], Program]:
     """(names, the program of their values), the accelerations from the same equations as in the right-hand side.
 
     Args:
+        values: as of `determinate`.
         inputs: the model's own expression of each input, in t and parameters.
     """
-    values = determinate(reactions)
     return tuple(values), program_in_motion(tuple(values.values()), assembly, inputs)

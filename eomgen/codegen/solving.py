@@ -9,6 +9,7 @@ from __future__ import annotations
 DEPENDENT = 1e-11  # of a row's pivot: the squared sine of its angle to the rows before it
 SINGULAR = 1e-14  # of a diagonal entry
 LOST = 1e-6  # of a diagonal entry: below it M is not relied on without the rows
+NOTHING = 1e-28  # of the largest pivot, the square of a length: rounding
 
 
 def solve_bordered(M, J, f, g, zeros=None):
@@ -93,7 +94,8 @@ def _weights(M, J):
     masses = [M[i][i] for i in range(len(M))]
     mean = sum(masses) / len(M) if J and sum(masses) > 0 else 1
     sizes = [sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses, strict=True)) for row in J]
-    return [1 / size if size > 0 else 0 for size in sizes]
+    nothing = NOTHING * max(sizes, default=0)
+    return [1 / size if size > nothing else 0 for size in sizes]
 
 
 def _weighted(M, J, weights, reach):
@@ -154,9 +156,11 @@ def _flexibility(L, Y, rows):
 
 def _multiplier_factors(S):
     """(S factored in place, its rows in the order of elimination): largest pivot first, dependent rows passed over."""
-    first, left, order = [S[m][m] for m in range(len(S))], list(range(len(S))), []
+    first, order = [S[m][m] for m in range(len(S))], []
+    nothing = NOTHING * max(first, default=0)
+    left = [m for m in range(len(S)) if first[m] > nothing]
     while left:
-        pivot = max(left, key=lambda m: S[m][m] / first[m] if first[m] > 0 else 0)
+        pivot = max(left, key=lambda m: S[m][m] / first[m])
         if not S[pivot][pivot] > DEPENDENT * first[pivot]:
             break
         left.remove(pivot)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.errors import NotYet
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.friction import Resistance
 from eomgen.symbolic.functions import function
@@ -39,22 +38,13 @@ CLOSED = Mode()
 
 
 def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: Mode) -> tuple[TieRow, ...]:
-    """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two).
-
-    Raises:
-        NotYet: friction where the contact has no single tangent.
-    """
+    """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two)."""
     if not mode.closed:
         return ()
     law = getattr(constraint, "friction", None)
-    if law is None:
+    if law is None or mode.sense != 0 or law.coulomb is None:
         return rows
     rubbing = [row for row in rows if row.tangent]
-    if not rubbing:
-        raise NotYet(f"friction of a '{constraint.kind}' is not derived here: its normal force has two components",
-                     mend="it is derived in the plane")  # fmt: skip
-    if mode.sense != 0 or law.coulomb is None:
-        return rows
     pairs = ((name, row, push) for row in rubbing for name, push in (("t", row.tangent), ("s", row.cross_tangent)))
     held = (TieRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
     return (*rows, *held)

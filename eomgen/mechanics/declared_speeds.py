@@ -144,7 +144,10 @@ def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node
     what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
     named = ", ".join(x.name for x in replaced) or "none"
     if len(declared) < len(replaced):
-        mend = "declare one speed for each rate that stands in them, or leave out those that keep their rate"
+        mend = (
+            "declare one speed for each rate that stands in them, or leave out those that keep their rate; "
+            "a coordinate that ties determine may be `dependent`"
+        )
     else:
         mend = "one for each freedom: leave out what follows from the others"
     raise ModelError(f"{what} ({named})", "speeds", mend)

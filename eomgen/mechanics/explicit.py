@@ -11,6 +11,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.loops.freedom import redundant_rows
 from eomgen.mechanics.system import System
+from eomgen.mechanics.wellposed import massless_motions
 from eomgen.symbolic import cramer
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
@@ -57,7 +58,7 @@ def short_accelerations(system: System, assembly: Assembly) -> Row | None:
     if assembly.friction:
         return assembly.accelerations
     kept = regular_rows(system) if assembly.J else []
-    if len(assembly.M) + len(kept) > MOST:
+    if len(assembly.M) + len(kept) > MOST or massless_motions(system, assembly):
         return None
     try:
         found = by_determinants(assembly, kept)

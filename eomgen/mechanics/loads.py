@@ -18,7 +18,8 @@ from eomgen.mechanics.kinematics import GROUND, Motion, ground_place
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope, primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
-from eomgen.model.values import exact_parameters
+from eomgen.model.quaternions import quaternions_of
+from eomgen.model.values import exact_parameters, no_orientation
 from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.exact import equal_at_random_states
@@ -274,10 +275,16 @@ def start_value(scope, coordinate) -> Scalar:
 
 
 def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
-    """Start values with every quaternion over its norm."""
+    """Start values with every quaternion over its norm.
+
+    Raises:
+        ModelError: one is 0.
+    """
     found = dict(start)
-    for four in scope.quaternions:
+    for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
         norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+        if is_zero(norm):
+            raise no_orientation(part.body)
         found |= {e: over(start[e], norm) for e in four}
     return found
 

@@ -16,6 +16,7 @@ its lam: so the elimination is checked too.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import joint_forces, placeless_forces
-from eomgen.symbolic.dense import independent, solution
+from eomgen.symbolic.dense import independent, solution, without_rounding
 from eomgen.symbolic.derivative import gradient
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
@@ -47,16 +48,20 @@ class Numbers:
 
     def at(self, scalars: tuple[Scalar, ...], shift: int = 0) -> list[Any]:
         """Values at the state, or a step of 1e-15 later (shift = 1) or earlier (-1) on the path with constant u."""
-        values = dict(self.state)
-        if shift:
-            arithmetic = fifty_digits()
-            rates = evaluate(self.system.scope.rates, self.state, arithmetic)
-            h = arithmetic.number(1) * shift * _step(arithmetic)
-            for q, rate in zip(self.system.scope.symbols.q, rates, strict=True):
-                values[q] = values[q] + h * rate
-            t = self.system.scope.symbols.t
-            values[t] = values[t] + h
-        return evaluate(scalars, values, fifty_digits())
+        state = self._later if shift > 0 else self._earlier if shift < 0 else self.state
+        return evaluate(scalars, state, fifty_digits())
+
+    _later = cached_property(lambda self: self._shifted(1))
+    _earlier = cached_property(lambda self: self._shifted(-1))
+
+    def _shifted(self, sign: int) -> State:
+        """The state a step of 1e-15 later or earlier."""
+        arithmetic, values, symbols = fifty_digits(), dict(self.state), self.system.scope.symbols
+        h = sign * _step(arithmetic)
+        for q, rate in zip(symbols.q, evaluate(self.system.scope.rates, self.state, arithmetic), strict=True):
+            values[q] = values[q] + h * rate
+        values[symbols.t] = values[symbols.t] + h
+        return values
 
     def array(self, scalars: Any) -> np.ndarray:
         """Values as floats, in the shape of the nested tuples."""
@@ -124,7 +129,10 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     for i, j, value in armature_mass(system.motion):
         A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
-    regular = independent(A[multipliers, speeds], smallest=REDUNDANT)
+    J = without_rounding(A[multipliers, speeds])
+    A[:, multipliers] *= np.any(J, axis=1)  # what says nothing pushes nothing
+    A[multipliers, speeds] = J
+    regular = independent(J, smallest=REDUNDANT)
     return solution(A, right, regular=regular, smallest=REDUNDANT)[speeds]
 
 

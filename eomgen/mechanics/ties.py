@@ -58,6 +58,8 @@ class Row:
         part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
         cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
         shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
+        round: of a contact that holds on all sides of a line: its friction is for a unit of |N|, of which this row's
+            multiplier is one component and those of the rows before are the others.
     """
 
     tie: str
@@ -77,6 +79,7 @@ class Row:
     cross_tangent: tuple[Push, ...] = ()
     across: Scalar | None = None
     shares: tuple[Scalar, ...] = ()
+    round: bool = False
 
     @property
     def identical(self) -> bool:
@@ -185,7 +188,8 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
     return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
-               row.tangent, sliding, part=row.part, across=across, cross_tangent=row.cross_tangent)  # fmt: skip
+               row.tangent, sliding, part=row.part, across=across, cross_tangent=row.cross_tangent,
+               round=row.round)  # fmt: skip
 
 
 def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from eomgen.errors import ModelError, Problem
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.kinematics import Link
+from eomgen.mechanics.loops.closure import generic_state, number, scattered_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import from_potential
 from eomgen.symbolic.derivative import depends_on
+from eomgen.symbolic.evaluation import FLOAT, ZERO_AT_50, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.graph import Node, is_zero
+
+REGULAR = 1e-9  # of the least eigenvalue of M, its diagonal 1: below it M is looked at closely
+FAINT = 1e-12  # of an entry of the diagonal of M, against the largest: it may be rounding
+IDLE = 1e-13  # of the least singular value of M and J, against the largest
+STILL = 1e-6  # of a speed, against the largest
+
+State = dict[Node, Any]
 
 
 def is_conservative(system: System, assembly: Assembly) -> bool:
@@ -21,17 +36,21 @@ def is_conservative(system: System, assembly: Assembly) -> bool:
     return equal_at_random_states(zip(assembly.Q, elastic, strict=True)).equal if elastic else True
 
 
-def refuse_massless(assembly: Assembly) -> None:
-    """A free coordinate that moves no mass has no acceleration.
+def refuse_massless(system: System, assembly: Assembly) -> None:
+    """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
 
     Raises:
-        ModelError: naming every such coordinate.
+        ModelError: naming every such coordinate, or the body that can turn idly.
     """
+    if problems := massless_motions(system, assembly):
+        raise ModelError(problems)
+
+
+def massless_motions(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+    """The motions that move no mass; () where every acceleration is determined."""
     held = [any(not is_zero(row[k]) for row in assembly.J) for k in range(len(assembly.M))]
     moves_nothing = [u.name for k, u in enumerate(assembly.symbols.u) if is_zero(assembly.M[k][k]) and not held[k]]
-    problems = tuple(map(_massless, moves_nothing))
-    if problems:
-        raise ModelError(problems)
+    return tuple(map(_massless, moves_nothing)) or _idle(system, assembly)
 
 
 def _massless(speed: str) -> Problem:
@@ -41,3 +60,67 @@ def _massless(speed: str) -> Problem:
                        mend="give the bodies that it moves a mass")  # fmt: skip
     return Problem(f"coordinates.{q}", f"the free coordinate '{q}' moves no mass, so it has no acceleration",
                    mend="give the bodies that it moves a mass, or drive the coordinate by `motion`")  # fmt: skip
+
+
+# -- motions that move no mass -----------------------------------------------------------------------
+
+
+def _idle(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+    """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
+    if not assembly.M:
+        return ()
+    try:
+        if _has_energy(assembly, scattered_state(system.ties)):
+            return ()
+        state = generic_state(system.ties)
+        u = _without_energy(assembly, state)
+        return () if u is None else (_idle_problem(system, u, state),)
+    except (MissingValues, DerivationError, NoValue):
+        return ()  # whoever needs accelerations says what is missing
+
+
+def _has_energy(assembly: Assembly, state: State) -> bool:
+    """Whether all motions have, those that the ties forbid too: M is regular."""
+    values = {node: float(x) for node, x in state.items()}
+    M = np.array(evaluate([x for row in assembly.M for x in row], values, FLOAT)).reshape(len(assembly.M), -1)
+    sizes = np.diag(M)
+    if not np.all(np.isfinite(M)) or not np.all(sizes > FAINT * max(sizes)):
+        return False
+    return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > REGULAR)
+
+
+def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | None:
+    """Speeds with M u = 0 and J u = 0, the largest 1; None where there are none."""
+    u = assembly.symbols.u
+    entries = evaluate([x for row in (*assembly.M, *assembly.J) for x in row], state, fifty_digits())
+    rows = np.array(entries, dtype=float).reshape(-1, len(u))
+    sizes = np.diag(rows[: len(u)])
+    scale = 1 / np.sqrt(np.where(sizes > ZERO_AT_50 * max(sizes), sizes, 1.0))
+    M, J = scale[:, None] * rows[: len(u)] * scale, rows[len(u) :] * scale
+    lengths = np.linalg.norm(J, axis=1, keepdims=True)
+    _, values, directions = np.linalg.svd(np.vstack([M, J / np.where(lengths > 0, lengths, 1.0)]))
+    if values[-1] > IDLE * values[0]:
+        return None
+    least = scale * directions[-1]
+    return dict(zip(u, least / np.max(np.abs(least)), strict=True))
+
+
+def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
+    """Which body turns idly, or which coordinates move nothing."""
+    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > STILL]
+    names = ", ".join(f"'{name}'" for name in moving)
+    for link in system.motion.links:
+        if max(abs(w) for w in _spin(link, u, state)) > STILL:
+            what = f"body '{link.name}' can turn about an axis about which it has no inertia"
+            mend = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
+            return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", mend=mend)
+    what = f"the free coordinates {names} can move together without moving a mass"
+    mend = "give the bodies that they move a mass, or leave out what moves nothing of its own"
+    return Problem("coordinates", f"{what}: nothing determines their accelerations", mend=mend)
+
+
+def _spin(link: Link, u: Mapping[Node, float], state: State) -> list[float]:
+    """The part of a body's angular velocity that is linear in u, at these speeds."""
+    ways = [state | {node: number(k * x) for node, x in u.items()} for k in (1, 0)]
+    with_u, without = (evaluate(link.twist.w, way, fifty_digits()) for way in ways)
+    return [float(x - y) for x, y in zip(with_u, without, strict=True)]

@@ -21,6 +21,7 @@ class Contact:
         unilateral: it can end.
         friction: its law, or None.
         surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
+        round: it holds on all sides of a line in space: N has two components, and no sign.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Contact:
     unilateral: bool
     friction: Resistance | None
     surface: bool = False
+    round: bool = False
 
     @property
     def words(self) -> str:
@@ -52,12 +54,12 @@ class Contact:
 def contacts_of(model: Model) -> tuple[Contact, ...]:
     """Every tie that can end or rubs, and every body that rubs on its path."""
     laws = ((name, getattr(body.joint, "friction", None)) for name, body in model.bodies.items())
-    return (*_ties(model), *(Contact(name, "path", False, law) for name, law in laws if law is not None))
+    return (*_ties(model), *(_on_path(model, name, law) for name, law in laws if law is not None))
 
 
 def rough_contacts(model: Model) -> tuple[Contact, ...]:
     """Every tie with dry friction, and every body on a path of which a piece has it."""
-    pieces = (Contact(name, "path", False, piece.friction)
+    pieces = (_on_path(model, name, piece.friction)
               for name, body in model.bodies.items() for piece in pieces_of(body))  # fmt: skip
     return tuple(contact for contact in (*_ties(model), *pieces) if contact.mu is not None)
 
@@ -67,9 +69,14 @@ def pieces_of(body: Body) -> tuple[Any, ...]:
     return getattr(body.joint, "pieces", None) or ()
 
 
+def _on_path(model: Model, body: str, law: Resistance | None) -> Contact:
+    return Contact(body, "path", False, law, round=model.space == "space")
+
+
 def _ties(model: Model) -> Iterator[Contact]:
     for name, tie in model.constraints.items():
         friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
         if unilateral or friction is not None:
-            surface = model.space == "space" and friction is not None
-            yield Contact(name, tie.kind, unilateral, friction, surface)
+            rough = model.space == "space" and friction is not None
+            of_line = tie.kind == "slider"
+            yield Contact(name, tie.kind, unilateral, friction, rough and not of_line, rough and of_line)

@@ -19,6 +19,7 @@ PARAMETERS = "parameters"  # what names may stand in an expression: parameters o
 TIME = "parameters and time"
 CONFIGURATION = "parameters, coordinates and time"
 RATES = "parameters, coordinates, their rates and time"
+SPEEDS = "parameters, coordinates, their rates, speeds and time"
 MOTION = "parameters, coordinates, rates, speeds, inputs and time"
 EVERYTHING = "all names, accelerations and functions of the motion"
 

@@ -7,6 +7,7 @@ from eomgen.model.fields import (
     CONFIGURATION,
     MOTION,
     RATES,
+    SPEEDS,
     TIME,
     AxialRule,
     FlagRule,
@@ -45,7 +46,8 @@ Energy = Annotated[Expression, FormulaRule("J", "", CONFIGURATION)]
 Law = Annotated[Expression, FormulaRule(None, "", MOTION)]
 Force = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
-RateLaw = Annotated[Expression, FormulaRule(None, "", RATES, functions=(*PLACES, *VELOCITIES))]
+RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
+VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"))]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
 MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic",))]

@@ -88,9 +88,14 @@ def _normed(e: list[float], body: str) -> list[float]:
     """
     norm = math.sqrt(sum(x * x for x in e))
     if norm == 0:
-        raise ModelError(f"the quaternion of body '{body}' starts at 0", f"bodies.{body}.joint.quaternion",
-                         "start = 1 of its first coordinate: no turn")  # fmt: skip
+        raise no_orientation(body)
     return [x / norm for x in e]
+
+
+def no_orientation(body: str) -> ModelError:
+    """That a quaternion starts at 0."""
+    return ModelError(f"the quaternion of body '{body}' starts at 0", f"bodies.{body}.joint.quaternion",
+                      "start = 1 of its first coordinate: no turn")  # fmt: skip
 
 
 def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from random import Random
 from typing import Any
@@ -12,7 +13,7 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.friction import frictions
+from eomgen.mechanics.friction import frictions, rubbing_contacts, sizes_of
 from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.loops.closure import generic_state, on_spheres
 from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
@@ -20,9 +21,9 @@ from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.proof.check import Check
-from eomgen.symbolic.dense import independent, scaled_condition, solution
+from eomgen.symbolic.dense import independent, scaled_condition, solution, without_rounding
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
 
 FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
@@ -96,17 +97,17 @@ def twists(system: System) -> Check:
     def check(state: State) -> str:
         arithmetic = fifty_digits()
         h = arithmetic.number(1) / 10**15
-        after, before = (_moved(system, state, sign * h) for sign in (1, -1))
-        for link in system.motion.links:
-            R, p = link.pose.R, link.pose.p
-            flat = tuple(x for row in R for x in row) + tuple(p)
-            late, early = (evaluate(flat, values, arithmetic) for values in (after, before))
-            rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
-            here = evaluate(flat, state, arithmetic)
+        links = system.motion.links
+        poses = tuple(x for link in links for x in (*(x for row in link.pose.R for x in row), *link.pose.p))
+        late, early = (evaluate(poses, _moved(system, state, sign * h), arithmetic) for sign in (1, -1))
+        all_rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
+        now = evaluate(poses, state, arithmetic)
+        motions = evaluate(tuple(x for link in links for x in (*link.twist.w, *link.twist.v)), state, arithmetic)
+        for k, link in enumerate(links):
+            rates, here, twist = all_rates[12 * k :], now[12 * k :], motions[6 * k : 6 * k + 6]
             R_now = matrix_of((here[0:3], here[3:6], here[6:9]))
             spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
             velocity = apply(transposed(R_now), vector_of(rates[9:12]))
-            twist = evaluate((*link.twist.w, *link.twist.v), state, arithmetic)
             pairs = zip(twist, (*spin, *velocity), strict=True)
             if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in pairs):
                 return f"the twist of '{link.name}' is not the rate of its pose"
@@ -136,10 +137,17 @@ def free_bodies(system: System, assembly: Assembly) -> Check:
     return _at_a_state(system, "accelerations agree with those of the free bodies", "floating point", check)
 
 
-def friction(system: System) -> Check:
-    """Whatever rubs is braked: factor * v < 0 for a contact that pushes, v its sliding velocity."""
+def friction(system: System, assembly: Assembly) -> Check:
+    """Whatever rubs is braked: factor * v < 0 for a contact that pushes, v its sliding velocity.
+
+    What holds on all sides rubs with F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the balance of the bodies.
+    """
+    laws = _laws_of_round(system) if sizes_of(system) else []
 
     def check(state: State) -> str:
+        for name, law in laws:
+            if not _holds(law, assembly, state):
+                return f"the friction of '{name}' is not that of its normal force"
         for name, factor, sliding in frictions(system):
             mode = system.modes.get(name, CLOSED)
             v = sliding if mode.sense is None else mode.sense
@@ -149,6 +157,22 @@ def friction(system: System) -> Check:
         return ""
 
     return _at_a_state(system, "friction takes power from what slides", "50 digits", check)
+
+
+def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
+    """(contact, (F, factor, N_1, N_2)) of everything that rubs and holds on all sides."""
+    reactions = reactions_of(system)
+    rounds = [rub for rub in rubbing_contacts(system, reactions.components) if rub.normals]
+    return [(r.name, (reactions.value(r.component), r.factor, *map(reactions.value, r.normals))) for r in rounds]
+
+
+def _holds(law: tuple[Scalar, ...], assembly: Assembly, state: State) -> bool:
+    """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""
+    digits = fifty_digits()
+    a = [digits.number(1) * float(value) for value in accelerations_at(assembly, state)]
+    values = evaluate(law, state | dict(zip(assembly.symbols.a, a, strict=True)), digits)
+    F, factor, *N = map(float, values)
+    return math.isclose(F, factor * math.hypot(*N), rel_tol=FLOAT_TOLERANCE, abs_tol=FLOAT_TOLERANCE)
 
 
 def balance(system: System, assembly: Assembly) -> Iterable[Check]:
@@ -187,17 +211,19 @@ def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
     """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, by dense linear algebra.
 
     Raises:
-        NoValue: M is singular at the state.
+        NoValue: some motion that the ties allow moves no mass at the state.
     """
     n, k = len(assembly.M), len(assembly.J)
     entries = [x for row in assembly.M for x in row] + [x for row in assembly.J for x in row]
     values = [float(v) for v in evaluate((*entries, *assembly.forcing, *assembly.gamma), state, fifty_digits())]
     M = np.reshape(values[: n * n], (n, n))
-    J = np.reshape(values[n * n : n * n + k * n], (k, n))
+    J = without_rounding(np.reshape(values[n * n : n * n + k * n], (k, n)))
     right = np.array(values[n * n + k * n :]) * np.array([1] * n + [-1] * k)
     if n == 0:
         return np.zeros(0)
-    if scaled_condition(M) > SINGULAR:
+    lengths = np.linalg.norm(J, axis=1, keepdims=True)
+    rows = J / np.where(lengths > 0, lengths, 1.0)
+    if scaled_condition(M + np.trace(M) / n * rows.T @ rows) > SINGULAR:  # what no mass measures the ties may say
         raise NoValue("the mass matrix is singular")
     if k == 0:
         return np.linalg.solve(M, right)

@@ -14,10 +14,10 @@ from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, decided, length_in_print, readable_value
-from eomgen.report.statements import Formula, Prose, Step
+from eomgen.report.statements import Formula, Omitted, Prose, Step
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.functions import function
+from eomgen.symbolic.functions import function, sqrt
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.normal_form import simplest
 from eomgen.symbolic.text import text_size
@@ -58,13 +58,21 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     statements = [*map(Formula, definitions)]
     for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
+        if rub.normals:
+            factor, force = substituted((rub.factor, letters.balance.given[rub.component]), senses)
+            size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in rub.normals), start=0))
+            shown_force = reader.shown(force)
+            definitions += [] if isinstance(shown_force, Omitted) else [(normal, shown_force)]
+            statements.append(Formula((normal, readable_value(reader, factor) * size, shown_force)))
+            forces = [total + share * normal for total, share in zip(forces, rub.along, strict=True)]
+            continue
         value = _normal(readings, rub.component, assembly, senses)
         along = [x.factor for x in letters.reactions.components[rub.component].friction]
         factors, row = substituted(along, senses), substituted(rub.force, senses)
         definitions.append((normal, value))
         statements.append(Formula((normal, value)))
         for friction, factor in zip(frictions, factors, strict=True):
-            statements.append(Formula((friction, reader.shown(factor) * normal)))
+            statements.append(Formula((friction, readable_value(reader, factor) * normal)))
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
     return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))

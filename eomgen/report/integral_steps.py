@@ -45,9 +45,10 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
         rates = [each for each in cyclic if speeds[each.coordinate].name != each.coordinate]
         if rates:
             statements.append(_cyclic(tuple(moving[each.coordinate] for each in rates)))
-        for each in (*rates, *(other for other in cyclic if other not in rates)):
-            if each not in rates:
-                statements.append(Prose(("The momentum of the speed ", speeds[each.coordinate], " stays constant:")))
+            pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in rates]
+            statements += page(reader, pairs)
+        for each in (other for other in cyclic if other not in rates):
+            statements.append(Prose(("The momentum of the speed ", speeds[each.coordinate], " stays constant:")))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
     energies = energy_integral(system, assembly)
     for energy in energies:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reactions import Indeterminate
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import LONGEST, Reader, length_in_print, without_cases

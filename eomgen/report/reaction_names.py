@@ -71,7 +71,7 @@ class Lettered:
 def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
     """A symbol for every reaction, none of them a name of the model."""
     graph = reactions.balance.system.scope.graph
-    rubs = tuple(rubbing_contacts(reactions.balance.system, reactions))
+    rubs = tuple(rubbing_contacts(reactions.balance.system, reactions.components))
     used: set[str] = set()
 
     def symbol(name: str) -> Node:
@@ -120,7 +120,7 @@ def meaning(balance: Balance, component: Component) -> str:
     if kind == "couple":
         return f"couple {on}, {_sense(balance, component)}"
     if kind in ("t", "s"):
-        return f"{_friction(balance, component, kind)}, without sliding"
+        return _friction(balance, component, kind) + (", without sliding" if component.rubs is None else "")
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"

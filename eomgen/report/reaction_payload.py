@@ -7,8 +7,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reactions import Indeterminate
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import Reader, readable_value, without_cases

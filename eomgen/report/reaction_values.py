@@ -14,7 +14,8 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.explicit import short_accelerations
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reacting.reactions import Combination, Reactions, reactions_of
+from eomgen.mechanics.reacting.balance_solution import Combination
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, length_in_print, readable_value
 from eomgen.symbolic.derivative import depends_on, substituted

@@ -146,7 +146,10 @@ class Reader:
             return x
         found: Scalar = product.coefficient
         for base, e in product.numerator:
-            found = found * x.graph.pow(self.shown(base), e) if e == 2 else found * x.graph.pow(base, e)
+            written = self.shown(base) if e == 2 else base
+            if isinstance(written, Omitted):
+                return x
+            found = found * x.graph.pow(written, e)
         for base, e in product.denominator:
             found = x.graph.div(found, x.graph.pow(base, e))
         short = self._read(x)

@@ -7,7 +7,7 @@ forces (`settling`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,7 +68,20 @@ class Course:
         if bound.row:
             what = f"strand {bound.row} of the string '{bound.owner}' goes slack alone, and what follows is not derived"
             return Standing(crossing.t, values, stage.configuration, failure=what)
+        if bound.kind == "stops" and stage.contact(bound.owner).surface:
+            values = self._stopped(stage, bound.owner, crossing.t, values)
         return _decided(self, crossing.t, values, pieces, before=stage.configuration, ended=ended)
+
+    def _stopped(self, stage: Stage, name: str, t: float, values: dict[str, float]) -> dict[str, float]:
+        """The state in which a contact does not slide: on a surface a speed comes near to 0, and stops there."""
+        modes = Table({**stage.configuration.modes, name: Mode(sense=0)})
+        try:
+            held = self.stages.of(replace(stage.configuration, modes=modes))
+        except DerivationError:  # nothing can hold it: the next phase says so
+            return values
+        if held.projection is None:
+            return values
+        return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
 def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: Rates | None = None) -> Course:

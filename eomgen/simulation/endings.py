@@ -52,7 +52,9 @@ def _begins(before: Stretch, stretch: Stretch, until: Condition) -> bool:
 def _sizes(stretch: Stretch, until: Condition) -> np.ndarray:
     """The absolute values of what ought to be 0, at the instants of a phase and at its end."""
     run, stage = stretch.run, stretch.stage
-    t, x = np.append(run.t, run.end), np.vstack([run.x, run.last])
+    stops, after = stretch.bound is not None and stretch.bound.kind == "stops", stretch.after
+    last = stage.state(after.values) if stops and after is not None else run.last  # on a surface near to 0, then 0
+    t, x = np.append(run.t, run.end), np.vstack([run.x, last])
     return np.abs(stage.evaluated(t, x, (until(stage),))[:, 0])
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.symbolic.dense import NOTHING
+
 SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
 
 
@@ -64,4 +66,6 @@ def _lengths(J: np.ndarray) -> np.ndarray:
 
 
 def _divisor(lengths: np.ndarray) -> np.ndarray:
-    return lengths if lengths.all() else np.where(lengths > 0, lengths, 1.0)
+    """The lengths; infinite of rows that are rounding."""
+    nothing = NOTHING * np.max(lengths, initial=0.0)
+    return lengths if np.all(lengths > nothing) else np.where(lengths > nothing, lengths, np.inf)

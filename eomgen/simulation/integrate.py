@@ -15,6 +15,7 @@ from eomgen.simulation.passages import Flow, Passage, march_across
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import METHODS, Slope
 from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Run, Stepping, march
+from eomgen.simulation.track import measured
 from eomgen.simulation.trajectory import Phase, Trajectory
 
 SAMPLES = 1001
@@ -78,15 +79,15 @@ def integrate(
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
     flow = Flow(f, how, rhs.spheres, projection, slope)
     run, passages = _followed(flow, (start, end), x0, instants, events, nearness)
-    gap, gap_rate = _open(run.t, run.x, projection, gaps)
-    T, V = (None, None) if energy is None else _rows(energy(run.t, run.x), run.t)
+    E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
+    gap, gap_rate = _open(*measured(run.t, run.x, run.tracks), projection, gaps)
     return Trajectory(
         t=run.t,
         x=run.x,
         coordinates=rhs.coordinates,
         speeds=rhs.speeds,
-        energy=None if T is None or V is None else T + V,
-        drift=None if T is None or V is None or not conservative else drift_of(T, V),
+        energy=E,
+        drift=drift,
         gap=gap,
         gap_rate=gap_rate,
         phases=(Phase(start, run.end, run.message, (0, len(run.t))),),
@@ -127,6 +128,15 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
     standing = np.max(np.abs(E), initial=0.0)
     scale = moving if moving > STANDING * standing else standing
     return float(np.max(np.abs(E - E[:1]), initial=0.0) / (scale if scale > 0 else 1.0))
+
+
+def _energy(run: Run, energy: Function, conservative: bool) -> tuple[np.ndarray, float | None]:
+    """(T + V at the instants asked for, its drift, at the integrator's steps too)."""
+    T, V = _rows(energy(run.t, run.x), run.t)
+    if not conservative:
+        return T + V, None
+    t, x = measured(run.t, run.x, run.tracks)
+    return T + V, drift_of(*_rows(energy(t, x), t))
 
 
 def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from eomgen.simulation.contacts import changed
 from eomgen.simulation.course import Course
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.stretch import Stretch
+from eomgen.simulation.track import measured
 from eomgen.simulation.trajectory import Phase, Trajectory
 
 
@@ -31,7 +32,7 @@ def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
         coordinates=coordinates,
         speeds=speeds,
         energy=np.concatenate([T + V for T, V in energies]),
-        drift=_drift(stretches, energies),
+        drift=_drift(stretches),
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.stage)
@@ -40,6 +41,7 @@ def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
         message=stretches[-1].run.message,
         steps=sum(stretch.run.steps for stretch in stretches),
         evaluations=sum(stretch.run.evaluations for stretch in stretches),
+        passages=tuple(passage for stretch in stretches for passage in stretch.run.carried),
     )  # fmt: skip
 
 
@@ -50,15 +52,18 @@ def _union(stretches: Sequence[Stretch]) -> tuple[tuple[str, ...], tuple[str, ..
     return tuple(coordinates), tuple(speeds)
 
 
-def _drift(stretches: Sequence[Stretch], energies: Sequence[np.ndarray]) -> float | None:
+def _drift(stretches: Sequence[Stretch]) -> float | None:
     """The largest of the phases in which energy should stay."""
-    kept = [drift_of(T, V) for s, (T, V) in zip(stretches, energies, strict=True) if s.stage.conservative]
-    return max(kept, default=None)
+    return max((drift_of(*s.stage.energies(*_measured(s))) for s in stretches if s.stage.conservative), default=None)
+
+
+def _measured(stretch: Stretch) -> tuple[np.ndarray, np.ndarray]:
+    return measured(stretch.run.t, stretch.run.x, stretch.run.tracks)
 
 
 def _open(stretches: Sequence[Stretch]) -> tuple[float | None, float | None]:
     """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
-    found = [s.stage.projection.open(s.run.t, s.run.x) for s in stretches if s.stage.projection is not None]
+    found = [s.stage.projection.open(*_measured(s)) for s in stretches if s.stage.projection is not None]
     if not found:
         return None, None
     gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)

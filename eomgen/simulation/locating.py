@@ -1,7 +1,7 @@
 """System, condition, start -> the state at which the condition first holds after the start, in numbers.
 
-By integration in time; from an unstable rest or a dead centre, where time does not lead away or has no say which way,
-along the configurations by the energy theorem.
+By integration in time, across singular positions of the ties; from an unstable rest or a dead centre, where time does
+not lead away or has no say which way, along the configurations by the energy theorem.
 """
 
 from __future__ import annotations
@@ -22,11 +22,15 @@ from eomgen.mechanics.articulated import with_accelerations
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.constants.relations import Relations, relations_of
 from eomgen.mechanics.loops.closed_instant import position_equations
+from eomgen.mechanics.loops.elimination import singular_blocks
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
-from eomgen.simulation.arrival import first_arrival
+from eomgen.simulation.arrival import Arrival, first_arrival
 from eomgen.simulation.configurations import Configurations
-from eomgen.simulation.stepping import Stepping, march
+from eomgen.simulation.measures import nearness_of
+from eomgen.simulation.passages import PLACE
+from eomgen.simulation.projection import projection_of
+from eomgen.simulation.ways import Way
 from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.functions import inner
@@ -34,8 +38,8 @@ from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.solving import roots, vanishes
 
 RESTING = 1e-11  # of the rates at the start, against those of a configuration nearby
-TOLERANCE = 1e-12  # of the integration to a given time
-FINE = Stepping(rtol=TOLERANCE, atol=TOLERANCE, most_steps=100_000)
+TOLERANCE = 1e-12  # of a given time
+UNDETERMINED = 1e-6  # of a determinant at the start, below which rates by it are noise
 MEND = "give it a speed"
 
 State = dict[Node, Scalar]
@@ -74,7 +78,8 @@ class Locating:
             return self._at_time(), "integration in time"
         if self._is_singular() or self._rests():
             return self._along_configurations(), "energy theorem"
-        arrival = first_arrival(self._motion, self._function(self.condition), self.t0, self._x0)
+        arrival = self._first()
+        self._refuse_undetermined(arrival)
         return self._state(arrival.s, arrival.x), "integration in time"
 
     @property
@@ -122,10 +127,43 @@ class Locating:
         end = self._given_time()
         if end <= self.t0:
             return self._state(end, self._x0)
-        run = march(self._motion, (self.t0, end), self._x0, how=FINE, spheres=self._rhs.spheres)
+        run, _ = self._way_in_time.until(end)
         if run.status != "finished" or not np.all(np.isfinite(run.last)):
             raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
         return self._state(end, run.last)
+
+    @property
+    def _way_in_time(self) -> Way:
+        return Way(self._motion, self.t0, self._x0, self._rhs.spheres,
+                   lambda: nearness_of(self.system, self.assembly, self._p),
+                   lambda: projection_of(self.system, self._p, "numpy"))  # fmt: skip
+
+    def _first(self) -> Arrival:
+        """Where the condition first holds; by itself where the motion comes by no singular position before.
+
+        Raises:
+            NeverReached: it is not met.
+        """
+        way = self._way_in_time
+        if way.nearness() is not None:
+            condition = compiled(program_of((self.condition,), self.system.symbols), "numpy")
+            arrival, passed = way.first(lambda t, x: condition.many(t, x, self._p))
+            if passed:
+                return arrival
+        return first_arrival(self._motion, self._function(self.condition), self.t0, self._x0)
+
+    def _refuse_undetermined(self, arrival: Arrival) -> None:
+        """Refuse an instant at which the rates of dependent coordinates are 0/0.
+
+        Raises:
+            RunFailed: they are named.
+        """
+        blocks = singular_blocks(self.system.elimination, self.system.scope)
+        for block in blocks:
+            determinant = self._function(block.determinant)
+            if abs(determinant(arrival.s, arrival.x)) < UNDETERMINED * abs(determinant(self.t0, self._x0)):
+                raise RunFailed(f"{block} at that instant ({PLACE})",
+                                mend="leave out `dependent`: then their rates belong to the state")  # fmt: skip
 
     def _given_time(self) -> float:
         """The first t, from the start on, at which a condition on t alone holds."""

@@ -123,7 +123,7 @@ def _stopped(run: Run, crossing: Crossing) -> Run:
     """A run of one instant, that of an event."""
     message = f"Stopped by an event at t = {crossing.t:.6g} s."
     return replace(run, t=np.array([crossing.t]), x=crossing.x[None, :], end=crossing.t, last=crossing.x,
-                   status="event", message=message, steps=0, evaluations=0, crossing=crossing)  # fmt: skip
+                   status="event", message=message, steps=0, evaluations=0, crossing=crossing, tracks=())  # fmt: skip
 
 
 def _from(instants: np.ndarray | None, t: float) -> np.ndarray | None:
@@ -220,7 +220,8 @@ def _joined(runs: Sequence[Run], passages: Sequence[Passage], instants: np.ndarr
         kept = np.isin(times, instants) | ((times == last.end) if last.status != "finished" else False)
         times, states = times[kept], states[kept]
     return replace(last, t=times, x=states, steps=sum(run.steps for run in runs),
-                   evaluations=sum(run.evaluations for run in runs))  # fmt: skip
+                   evaluations=sum(run.evaluations for run in runs),
+                   tracks=tuple(track for run in runs for track in run.tracks))  # fmt: skip
 
 
 def _in_order(t: np.ndarray, x: np.ndarray) -> tuple[Any, Any]:

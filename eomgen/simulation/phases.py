@@ -16,6 +16,7 @@ from eomgen.simulation.endings import MET, Condition, ended
 from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.joined import joined
+from eomgen.simulation.passages import Flow, march_across
 from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Run, Stepping, march
@@ -93,13 +94,17 @@ def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
 
 
 def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
-    """One phase: to the end, to the condition, or to the first of its bounds."""
+    """One phase: to the end, to the condition, or to the first of its bounds; carried across singular positions."""
     x = stage.state(here.values)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(stage, here.t, x, plan)
-    slope = stage.slope if plan.how.method in IMPLICIT else None
-    return march(stage.rate, (here.t, plan.end), x, how=plan.how, instants=wanted, events=events,
-                 spheres=stage.rhs.spheres, projection=stage.projection, slope=slope)  # fmt: skip
+    slope, nearness = stage.slope if plan.how.method in IMPLICIT else None, stage.nearness
+    if nearness is None:
+        return march(stage.rate, (here.t, plan.end), x, how=plan.how, instants=wanted, events=events,
+                     spheres=stage.rhs.spheres, projection=stage.projection, slope=slope)  # fmt: skip
+    flow = Flow(stage.rate, plan.how, stage.rhs.spheres, stage.projection, slope)
+    run, passages = march_across(flow, (here.t, plan.end), x, nearness, instants=wanted, events=events)
+    return replace(run, carried=tuple((passage.start, passage.end) for passage in passages))
 
 
 def _events(stage: Stage, t: float, x: np.ndarray, plan: Plan) -> Events | None:

@@ -26,6 +26,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.loops.closure import gaps_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
+from eomgen.symbolic.dense import of_one_length, without_rounding
 from eomgen.symbolic.graph import Scalar
 
 ITERATIONS = 8
@@ -126,20 +127,19 @@ class Projection:
 
 
 def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """ds with the least ds^T M ds of those that come nearest to J ds = right; 0 where M measures nothing.
+    """ds with the least ds^T M ds of those that come nearest to J ds = right; ds^T ds where M leaves some unmeasured.
 
     M + J^T W J measures alike where J ds is given, and is positive definite also where M is so on J ds = 0 only. Then
     ds = M^-1 J^T lam with J M^-1 J^T lam = right, rows brought to one length, damped where they depend on one another.
     """
-    lengths = np.sqrt(np.sum(J * J, axis=1))
-    rows = J / np.where(lengths > 0, lengths, 1.0)[:, None]
+    rows, J = of_one_length(J), without_rounding(J)
     try:
         moved = np.linalg.solve(M + np.trace(M) / max(len(M), 1) * rows.T @ rows, J.T)
-        S = J @ moved
-        d = 1 / np.sqrt(np.where(lengths > 0, np.diagonal(S), 1.0))
-        lam = d * np.linalg.solve(d[:, None] * S * d + DAMPED**2 * np.eye(len(S)), d * right)
-    except np.linalg.LinAlgError:
-        return np.zeros(len(M))
+    except np.linalg.LinAlgError:  # bodies without mass
+        moved = J.T
+    S = J @ moved
+    d = 1 / np.sqrt(np.where(np.diagonal(S) > 0, np.diagonal(S), 1.0))
+    lam = d * np.linalg.solve(d[:, None] * S * d + DAMPED**2 * np.eye(len(S)), d * right)
     found: np.ndarray = moved @ lam
     return found
 

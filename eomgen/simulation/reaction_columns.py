@@ -2,8 +2,8 @@
 
     A(q) rho = b(q, u, a),   a of the right-hand side,   asked = C(q) rho + d(q, u)
 
-Where the columns of A are independent, A = Q R gives rho. Where they are not (a singular position), the null space of A
-says which of the reactions asked have a single value all the same; the others are nan there.
+Where the columns of A are independent, A = Q R gives rho, body by body. Where they are not (a singular position), the
+null space of A says which of the reactions asked have a single value all the same; the others are nan there.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.reactions import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.mechanics.reacting.balance import BodyEquation
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.simulation.peeling import SINGULAR, solved, steps_of
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.graph import Scalar
 
-SINGULAR = 1e-7  # of a column's distance from those before it, against its length
 TRACELESS = 1e-6  # of an asked reaction's part in the null space
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once
 ROUNDING = 1e-13  # of the largest entry of its column, below which an entry of A is none: no row is made of these
@@ -69,8 +70,9 @@ class ReactionColumns:
         a = rates[:, rates.shape[1] - len(self.rhs.speeds) :]
         numbers = self._numbers.many(t, np.hstack([x, a]), p)
         few = max(1, AT_ONCE // (1 + len(self.asked) * len(self._columns)))
-        pieces = [self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few)]
-        found = np.concatenate([np.zeros((0, len(self.names))), *(_solutions(A, b, C) + d for A, b, C, d in pieces)])
+        pieces = (self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few))
+        solutions = [_solutions(A, b, C, self._groups) + d for A, b, C, d in pieces]
+        found = np.concatenate([np.zeros((0, len(self.names))), *solutions])
         found[:, [name in self.indeterminate for name in self.names]] = np.nan
         return found
 
@@ -82,11 +84,28 @@ class ReactionColumns:
     @cached_property
     def _places(self) -> tuple[list[tuple[int, int, Scalar]], list[Scalar], list[tuple[int, int, Scalar]]]:
         """(entries of A, b, entries of C), an entry with its row and column."""
-        column = {j: k for k, j in enumerate(self._columns)}
-        equations = [e for e in self.reactions.balance.equations if any(j in column for j in e.coefficients)]
+        column, equations = {j: k for k, j in enumerate(self._columns)}, self._equations
         A = [(i, column[j], x) for i, e in enumerate(equations) for j, x in e.coefficients.items() if j in column]
+        b = [e.needed for e in equations]
+        for j, x in self.reactions.balance.given.items():
+            A.append((len(b), column[j], 1))
+            b.append(x)
         C = [(i, column[j], x) for i, n in enumerate(self.asked) for j, x in n.combination.items() if j in column]
-        return A, [e.needed for e in equations], C
+        return A, b, C
+
+    @cached_property
+    def _equations(self) -> list[BodyEquation]:
+        """Those in which something is solved for."""
+        columns = set(self._columns)
+        return [e for e in self.reactions.balance.equations if not columns.isdisjoint(e.coefficients)]
+
+    @cached_property
+    def _groups(self) -> list[list[int]]:
+        """The rows of A of each body, then each that gives one component."""
+        rows: dict[str, list[int]] = {}
+        for i, equation in enumerate(self._equations):
+            rows.setdefault(equation.body, []).append(i)
+        return [*rows.values(), *([i] for i in range(len(self._equations), len(self._places[1])))]
 
     @cached_property
     def _numbers(self) -> RightHandSide:
@@ -109,8 +128,12 @@ class ReactionColumns:
         return A, of_b, C, d
 
 
-def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
-    """C rho at every state, A rho = b; rows and columns of A are brought to one size first, for their units."""
+def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray, groups: Sequence[Sequence[int]]) -> np.ndarray:
+    """C rho at every state, A rho = b; rows and columns of A are brought to one size first, for their units.
+
+    Args:
+        groups: the rows of each body.
+    """
     found = np.full(C.shape[:2], np.nan)
     sound = np.isfinite(A).all(axis=(1, 2)) & np.isfinite(b).all(axis=1)
     if not A.shape[2] or not sound.any():
@@ -119,13 +142,9 @@ def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
     A = np.where(np.abs(A) > ROUNDING * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
-    R = np.asarray(np.linalg.qr(np.concatenate([A[sound], b[sound][:, :, None]], axis=2), mode="r"))
-    size = A.shape[2]
-    pivots, lengths = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2)), np.linalg.norm(A[sound], axis=1)
-    regular = (pivots > SINGULAR * lengths).all(axis=1)
+    rho, regular = solved(A[sound], b[sound], steps_of(A[sound], groups))
     at = np.flatnonzero(sound)
-    rho = np.linalg.solve(R[regular][:, :size, :size], R[regular][:, :size, size:])
-    found[at[regular]] = (C[at[regular]] @ rho)[:, :, 0]
+    found[at[regular]] = (C[at[regular]] @ rho[regular, :, None])[:, :, 0]
     for i in at[~regular]:
         found[i] = _where_singular(A[i], b[i], C[i])
     return found

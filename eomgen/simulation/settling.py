@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.reacting.reactions import Indeterminate
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, on_pieces
@@ -114,7 +114,7 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
         return [Mode(), OPEN]
     old = None if before is None else before.modes.get(contact.name)
     first = 1 if old is None else old.push
-    pushes = (1,) if contact.unilateral else (first, -first)
+    pushes = (1,) if contact.unilateral or contact.round else (first, -first)
     if contact.mu is None:
         modes = [Mode(push=push) for push in pushes]
     elif sense:

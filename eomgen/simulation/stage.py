@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,8 @@ from eomgen.mechanics.wellposed import is_conservative, refuse_massless
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.measures import nearness_of
+from eomgen.simulation.nearness import Nearness
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.slopes import slope_of
@@ -84,7 +86,7 @@ class Stage:
 
     @cached_property
     def rhs(self) -> RightHandSide:
-        refuse_massless(self.assembly)
+        refuse_massless(self.system, self.assembly)
         program = right_hand_side(with_accelerations(self.system, self.assembly), self.system.inputs)
         return compiled(program, self.target)
 
@@ -124,6 +126,22 @@ class Stage:
     def projection(self) -> Projection | None:
         """Onto the ties that hold; None where none closes."""
         return projection_of(self.system, self.p, self.target)
+
+    @property
+    def nearness(self) -> Nearness | None:
+        """A new measure of how near a motion comes to positions in which the ties do not determine it."""
+        return None if self._nearness is None else replace(self._nearness)
+
+    @cached_property
+    def _nearness(self) -> Nearness | None:
+        found = nearness_of(self.system, self.assembly, self.p)
+        if found is None or not self.loose:
+            return found
+        (determinants, rows), inner = (found.determinants, found.rows), self.inner
+        return replace(
+            found, determinants=None if determinants is None else lambda t, x: determinants(t, inner(x)),
+            rows=None if rows is None else replace(rows, rows=lambda t, x: rows.rows(t, inner(x))),
+        )  # fmt: skip
 
     @cached_property
     def slope(self) -> Slope | None:

@@ -15,6 +15,7 @@ from eomgen.simulation.holding import Hold
 from eomgen.simulation.knots import step
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import NotFinite, Rate, Slope, put, solver_of
+from eomgen.simulation.track import Track
 from eomgen.simulation.trajectory import Status
 
 MOST_STEPS = 10_000_000
@@ -68,6 +69,8 @@ class Run:
         t, x: the instants reached and the states there, one row each.
         end, last: how far it came [s], and the state there.
         crossing: the event that ended it.
+        tracks: states at the integrator's steps, the start among them.
+        carried: the start and the end of each passage through a singular position.
     """
 
     t: np.ndarray
@@ -79,6 +82,8 @@ class Run:
     steps: int
     evaluations: int
     crossing: Crossing | None = None
+    tracks: tuple[Track, ...] = ()
+    carried: tuple[tuple[float, float], ...] = ()
 
 
 class Lookout(Protocol):
@@ -110,9 +115,11 @@ class _Rows:
     hold: Hold
     t: list[np.ndarray]
     x: list[np.ndarray]
+    track: Track
 
     def add(self, span: tuple[float, float], x_new: np.ndarray, dense: Dense) -> None:
         """The instants of a step, its beginning left out, or its end; x_new is the state there."""
+        self.track.add(span[1], x_new)
         if self.instants is None:
             self._put(span[1], x_new)
             return
@@ -154,7 +161,7 @@ def march(
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
-    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]])
+    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], Track([start], [x0]))
     solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
     watch = Watch(events, start, x0) if events is not None else None
     status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how)
@@ -163,7 +170,7 @@ def march(
         rows.close(t, x)
     message = " ".join(part for part in (message or _reached(end), hold.remark) if part)
     times, states = np.concatenate(rows.t), np.concatenate(rows.x)
-    return Run(times, states, t, x, status, message, steps, solver.nfev, crossing)
+    return Run(times, states, t, x, status, message, steps, solver.nfev, crossing, (rows.track,))
 
 
 def _stepped(

@@ -51,9 +51,9 @@ class Trajectory:
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
         energy: T + V, n [J]; None where nobody gave it.
-        drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
-        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close, at the instants given; None where none
-            closes.
+        drift: largest |E - E(0)| over the largest T and |V - V(0)|, at the instants given and at the integrator's
+            steps; None where energy need not be constant.
+        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close, at the same; None where none closes.
         phases: in order.
         status: "finished" or what stopped it.
         message: the same as a sentence.

@@ -9,7 +9,7 @@ Each function is positive while the configuration holds:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -18,7 +18,8 @@ from typing import Any, Literal
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import Mode
 from eomgen.mechanics.loops.freedom import redundant_rows
-from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.model.contacts import Contact
@@ -138,7 +139,7 @@ class Watch:
             tensions = [value for what, value in signals.items() if what[0] == "N"]
             several = len(tensions) > 1
             found += [Bound(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
-        elif mode.sense != 0:
+        elif mode.sense != 0 and not contact.round:
             found.append(Bound(name, "turns", mode.push * signals["N"], "force"))
         if mode.sense == 0:
             grip = signals["mu"] * _size(signals["N"])
@@ -179,16 +180,20 @@ class Watch:
         """What lets a contact stick, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
         held = [r for r in self.system.ties.rows if r.tie == name and r.component in ("t", "s")]
         forces = [self._reaction(row) for row in held]
-        if len(forces) == 1:
-            return forces[0]
-        return sqrt(sum((force * force for force, _ in forces), start=0)), ""
+        return forces[0] if len(forces) == 1 else _resultant(forces)
 
     def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
-        """N of a support, the tensions of a string: (value, name of its column)."""
+        """N of a support, sqrt(N_1^2 + N_2^2) of what holds on all sides, the tensions of a string.
+
+        Each as (value, name of its column).
+        """
         if contact.kind == "path":
-            return [self._component(contact.name, "joint", "n", 1)]
-        rows = [r for r in self.system.ties.rows if r.tie == contact.name and r.component in ("n", "tension")]
-        return [self._reaction(row) for row in rows]
+            labels = ("n 1", "n 2") if contact.round else ("n",)
+            found = [self._component(contact.name, "joint", label, 1) for label in labels]
+        else:
+            mine = [r for r in self.system.ties.rows if r.tie == contact.name]
+            found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in ("n", "tension")]
+        return [_resultant(found)] if contact.round else found
 
     def _reaction(self, row: Row) -> tuple[Scalar, str]:
         """lam of a row: its multiplier where it closes, else from the balance of the bodies."""
@@ -217,6 +222,10 @@ def sliding_velocity(system: System, contact: Contact) -> Scalar:
     if contact.kind == "path":
         return system.motion.link(contact.name).s_rate[0]
     return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)
+
+
+def _resultant(forces: Sequence[tuple[Scalar, str]]) -> tuple[Scalar, str]:
+    return sqrt(sum((force * force for force, _ in forces), start=0)), ""
 
 
 def _size(x: Any) -> Scalar:

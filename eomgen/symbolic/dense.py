@@ -10,6 +10,7 @@ import numpy as np
 from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
+NOTHING = 1e-14  # of the longest row: so short is rounding
 
 
 def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
@@ -40,10 +41,22 @@ def rank(A: np.ndarray, *, smallest: float) -> int:
     return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 
 
+def of_one_length(A: np.ndarray) -> np.ndarray:
+    """The rows brought to length 1; those that are rounding are 0."""
+    lengths = np.linalg.norm(A, axis=1, keepdims=True)
+    brought: np.ndarray = A / np.where(lengths > NOTHING * np.max(lengths, initial=0.0), lengths, np.inf)
+    return brought
+
+
+def without_rounding(A: np.ndarray) -> np.ndarray:
+    """The matrix; rows that are rounding are 0."""
+    return np.where(np.any(of_one_length(A), axis=1, keepdims=True), A, 0.0)
+
+
 def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
     """The rows that do not follow from those before them: what these leave of a row is more than `smallest` of it."""
     found, Q = [], np.zeros((0, A.shape[1]))
-    for i, row in enumerate(A):
+    for i, row in enumerate(of_one_length(A)):
         left = row - Q.T @ (Q @ row)
         left = left - Q.T @ (Q @ left)  # once more, for what rounding left
         size = float(np.linalg.norm(left))
@@ -71,6 +84,23 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
                     if k != column:
                         other[k] = other.get(k, 0) - factor * x
     return rank
+
+
+def follows(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
+    """Whether a row of numbers of 50 digits is a combination of others that are independent."""
+    left, waiting = list(row), [list(each) for each in rows]
+    size = max(map(abs, left), default=0)
+    while waiting:
+        pivot = max(waiting, key=lambda line: max(map(abs, line)))
+        waiting.remove(pivot)
+        k = max(range(len(pivot)), key=lambda j: abs(pivot[j]))
+        if abs(pivot[k]) < ZERO_AT_50:
+            break
+        for other in (*waiting, left):
+            factor = other[k] / pivot[k]
+            other[:] = [x - factor * y for x, y in zip(other, pivot, strict=True)]
+            size = max(size, *map(abs, left)) if other is left else size
+    return max(map(abs, left), default=0) <= ZERO_AT_50 * size
 
 
 def scaled_condition(M: np.ndarray) -> float:

@@ -6,7 +6,7 @@ evaluation order. The rules of the functions stand once, in PARTIALS.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
 from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Graph, Node, Scalar
@@ -22,10 +22,16 @@ def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Sc
         outputs: scalars of one graph.
         seeds: the direction's component along each symbol; symbols that are left out stay still.
     """
-    rates = {x: rate for x, rate in seeds.items() if type(rate) is Node or rate != 0}
-    if not rates:
-        return (0,) * len(outputs)
-    for x in order(outputs):
+    moving = {x: rate for x, rate in seeds.items() if type(rate) is Node or rate != 0}
+    return _swept(outputs, moving, order(outputs), seeds) if moving else (0,) * len(outputs)
+
+
+def _swept(
+    outputs: Sequence[Scalar], moving: Mapping[Node, Scalar], nodes: Sequence[Node], seeds: Container[Node]
+) -> tuple[Scalar, ...]:
+    """The rates of the outputs, from what moves through the nodes in evaluation order; those of the seeds are given."""
+    rates = dict(moving)
+    for x in nodes:
         if x in seeds or x.op == "symbol":
             continue
         for a in x.args:
@@ -61,7 +67,8 @@ def jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[
     """The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer."""
     if len(outputs) < len(symbols):
         return tuple(gradient(x, symbols) for x in outputs)
-    columns = [tangent(outputs, {symbol: 1}) for symbol in symbols]
+    each = zip(symbols, _followers(order(outputs), symbols), strict=True)
+    columns = [_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each]
     return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
 
 
@@ -124,6 +131,25 @@ def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
         if x in symbols or (x.op != "symbol" and any(type(a) is Node and a in active for a in x.args)):
             active.add(x)
             found.append(x)
+    return found
+
+
+def _followers(nodes: Sequence[Node], symbols: Sequence[Node]) -> list[list[Node]]:
+    """For each symbol those of the nodes (in evaluation order) that depend on it."""
+    found: list[list[Node]] = [[] for _ in symbols]
+    on: dict[Scalar, int] = {}  # bit k: depends on symbol k
+    for k, symbol in enumerate(symbols):
+        on[symbol] = on.get(symbol, 0) | 1 << k
+    for x in nodes:
+        bits = on.get(x, 0)
+        for a in x.args if x.op != "symbol" else ():
+            bits |= on.get(a, 0) if type(a) is Node else 0
+        if bits:
+            on[x] = bits
+        while bits:
+            k = bits.bit_length() - 1
+            found[k].append(x)
+            bits ^= 1 << k
     return found
 
 

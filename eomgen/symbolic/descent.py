@@ -6,8 +6,7 @@ scaled first, for equations have units of their own.
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,11 +15,12 @@ import numpy as np
 
 from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.splines import sampled_of
+from eomgen.symbolic.layers import Layers
 
 STEPS = 80
+UNDAMPED = 8
 POLISHINGS = 200  # at a multiple root the error shrinks by a factor only
 CLOSE = 1e-7  # of the scaled equations, at which a root is near
 ROOT = 1e-30  # of a step, against the size of the unknown and 1
@@ -29,16 +29,6 @@ TOGETHER = 1e-6  # distance of two results of floats that become one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
 FALLS = 1e-3  # by which what is left falls in a step with the slopes of an earlier place, or they are taken anew
 RANK = 1e-12  # of the largest singular value
-
-_ON_ARRAYS: dict[str, Callable[..., Any]] = {
-    "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": np.true_divide,
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "pow": np.float_power,
-    "min": np.minimum, "max": np.maximum, "select": np.where, "pi": lambda: np.pi,
-    "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, float, np.pi), otypes=[float]),
-    **{op: getattr(np, op) for op in "sqrt sin cos tan sinh cosh tanh exp log abs sign less less_equal".split()},
-}  # fmt: skip
-ARRAYS = Arithmetic("arrays", float, _ON_ARRAYS, lambda x: np.nan)
-"""Floats, or arrays of them: many states at once."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +39,14 @@ class Descent:
         equations: what is to vanish.
         unknowns: the symbols sought.
         values: of every other symbol, with 50 digits.
+        telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
+            others may be free at a root, as the multipliers of redundant ties are.
     """
 
     equations: tuple[Scalar, ...]
     unknowns: tuple[Node, ...]
     values: Mapping[Node, Any]
+    telling: int | None = None
 
     def roots_near(self, guesses: np.ndarray, most: int | None = None) -> list[np.ndarray]:
         """From each guess the root that is reached; those that reach none are left out.
@@ -67,17 +60,18 @@ class Descent:
         if not self.equations or not self.unknowns:
             return [row for row in x]
         with np.errstate(all="ignore"):
+            x = np.vstack([self._undamped(x[0]), x])
             x = x[self._arrived(x)]
-        apart = _apart(x)
+        apart, n = _apart(x, self.telling), self.telling
         if most is not None:
-            apart = sorted(apart, key=lambda row: float(np.sum((row - guesses[0]) ** 2)))[:most]
+            apart = sorted(apart, key=lambda row: float(np.sum((row - guesses[0])[:n] ** 2)))[:most]
         polished = (self.polished(row) for row in apart)
         return [row for row in polished if row is not None]
 
     def polished(self, x: np.ndarray) -> np.ndarray | None:
         """The root near x to all digits of a float; None where there is none."""
         state = dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
-        inverse, before = None, np.inf
+        inverse, before = self._inverse(self.at_one(x)), np.inf
         try:
             for _ in range(POLISHINGS):
                 f = evaluate(self.equations, state, fifty_digits())
@@ -85,7 +79,7 @@ class Descent:
                 if max(abs(y) * r for y, r in zip(f, self._rows, strict=True)) < NOTHING:
                     break
                 if inverse is None or size > FALLS * before:
-                    inverse = self._inverse(state)
+                    inverse = self._inverse(self._at_digits(state))
                 step = self._columns * (inverse @ (-self._rows * np.array([float(y / size) for y in f])))
                 before, moved = size, [size * float(d) for d in step]
                 state |= {node: state[node] + d for node, d in zip(self.unknowns, moved, strict=True)}
@@ -96,14 +90,18 @@ class Descent:
         found = np.array([float(state[node]) for node in self.unknowns])
         return found if self._holds(state) and np.all(abs(found - x) <= WANDERS * (1 + abs(x))) else None
 
-    def _inverse(self, state: Mapping[Node, Any]) -> np.ndarray:
-        """The pseudo-inverse of df/dx, scaled."""
-        A = np.reshape([float(y) for y in evaluate(self._slopes, state, fifty_digits())], self._shape)
-        return np.linalg.pinv(self._rows[:, None] * A * self._columns, rcond=RANK)
+    def _inverse(self, A: np.ndarray) -> np.ndarray | None:
+        """The pseudo-inverse of df/dx, scaled; None where it has none."""
+        A = self._rows[:, None] * A * self._columns
+        return np.linalg.pinv(A, rcond=RANK) if np.all(np.isfinite(A)) else None
+
+    def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
+        """df/dx with 50 digits, rounded."""
+        return np.reshape([float(y) for y in evaluate(self._slopes, state, fifty_digits())], self._shape)
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""
-        return self._at(self._slopes, x[None, :]).reshape(self._shape)
+        return self._at(x[None, :])[1][0]
 
     def _holds(self, state: Mapping[Node, Any]) -> bool:
         f = np.array([float(y) for y in evaluate(self.equations, state, fifty_digits())])
@@ -121,20 +119,21 @@ class Descent:
         return tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
 
     @cached_property
-    def _floats(self) -> dict[Node, float]:
-        return {node: float(x) for node, x in self.values.items()}
+    def _layers(self) -> Layers:
+        floats = {node: float(x) for node, x in self.values.items()}
+        return Layers((*self.equations, *self._slopes), self.unknowns, floats)
 
-    def _at(self, scalars: Sequence[Scalar], x: np.ndarray) -> np.ndarray:
-        values = self._floats | {node: x[:, k] for k, node in enumerate(self.unknowns)}
-        found = evaluate(scalars, values, ARRAYS)
-        return np.stack([np.broadcast_to(y, len(x)) for y in found], axis=1).astype(float)
+    def _at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(f, df/dx) at each place."""
+        found, n = self._layers.at(x), len(self.equations)
+        return found[:, :n], found[:, n:].reshape(-1, *self._shape)
 
     @cached_property
     def _scales(self) -> tuple[np.ndarray, np.ndarray]:
         """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places."""
         places = np.random.default_rng(2).uniform(-1, 1, (16, len(self.unknowns)))
+        A = np.abs(self._at(places)[1])
         with np.errstate(all="ignore"):
-            A = np.abs(self._at(self._slopes, places)).reshape(-1, *self._shape)
             A = np.sqrt(np.nanmean(np.where(np.isfinite(A), A, np.nan) ** 2, axis=0))
         return balanced(np.where(np.isfinite(A), A, 1.0))[1:]
 
@@ -145,6 +144,15 @@ class Descent:
     @property
     def _columns(self) -> np.ndarray:
         return self._scales[1]
+
+    def _undamped(self, x: np.ndarray) -> np.ndarray:
+        """Where Newton's own steps lead from the first guess: damped ones creep along stiff valleys."""
+        for _ in range(UNDAMPED):
+            f, A = self._scaled(x[None, :])
+            if not np.all(np.isfinite(f)):
+                break
+            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=RANK)[0]
+        return x
 
     def _arrived(self, x: np.ndarray) -> np.ndarray:
         """Move x to roots in place; where that succeeded."""
@@ -168,9 +176,9 @@ class Descent:
         return np.isfinite(size) & (size < CLOSE)
 
     def _scaled(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        f = self._rows * self._at(self.equations, x)
-        A = self._at(self._slopes, x).reshape(-1, *self._shape) * self._rows[:, None] * self._columns
-        return f, np.where(np.isfinite(A), A, 0.0)
+        f, A = self._at(x)
+        A = A * self._rows[:, None] * self._columns
+        return self._rows * f, np.where(np.isfinite(A), A, 0.0)
 
 
 def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -182,11 +190,11 @@ def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
     return found
 
 
-def _apart(x: np.ndarray) -> list[np.ndarray]:
-    """Of the rows that are as good as equal, one."""
+def _apart(x: np.ndarray, telling: int | None) -> list[np.ndarray]:
+    """Of the rows that are as good as equal in the entries that tell, one."""
     found: list[np.ndarray] = []
     for row in x:
-        if not any(np.all(abs(row - other) <= TOGETHER * (1 + abs(row))) for other in found):
+        if not any(np.all((abs(row - other) <= TOGETHER * (1 + abs(row)))[:telling]) for other in found):
             found.append(row)
     return found
 

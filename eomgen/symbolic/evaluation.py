@@ -209,9 +209,16 @@ def _refusing(ops: str, arithmetic: str) -> dict[str, Callable[..., Any]]:
     return {op: _meaningless(op, arithmetic) for op in ops.split()}
 
 
+def _nearest(x: Number) -> float:
+    try:
+        return float(x)
+    except OverflowError:
+        return math.inf if x > 0 else -math.inf
+
+
 FLOAT = Arithmetic(
     "floats",
-    float,
+    _nearest,
     _RING
     | _ORDERED
     | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}

@@ -31,6 +31,7 @@ from eomgen.symbolic.graph import Node, Number, Scalar, linear_terms
 TRIES = 12  # states of the prime field to be tried for one with a value
 REAL_TRIES = 60
 RANGES = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))  # of the symbols at a real state
+EXPONENTS = (-4, 2)  # of their sizes in every other later state: beside a length of 0.08 stands a radius of 0.03
 TOLERANCE = Fraction(1, 10**30)  # of a comparison at 50 digits, relative to the larger of the two and 1
 ALGEBRAIC = frozenset("symbol neg add sub mul div".split())
 
@@ -76,10 +77,10 @@ def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int 
         DerivationError: no real state was found at which the expressions have values.
     """
     _, flat = united([x for pair in pairs for x in pair])
-    rng = Random(seed)
+    rng, nodes = Random(seed), order(flat)
     try:
         for _ in range(states):
-            state, values = _valued(flat, rng)
+            state, values = _valued(flat, nodes, rng)
             culprit = _first_different(values)
             if culprit is not None:
                 if state.independent:
@@ -103,7 +104,11 @@ def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic =
         NoMeaning: the root of something that is no constant (its sign would be lost), or the sine of pi/7.
         NoValue: a constant's root is not there.
     """
-    nodes = order(outputs)
+    return _exact_state(order(outputs), rng, arithmetic)
+
+
+def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> State:
+    """The same for nodes in evaluation order."""
     angles = {x.args[0]: linear_terms(x.args[0]) for x in nodes if x.op in ("sin", "cos")}
     circle = _Circle(arithmetic, rng, angles.values())
     values: dict[Node, Any] = {}
@@ -216,11 +221,11 @@ def _random(arithmetic: Arithmetic, rng: Random) -> Any:
     return arithmetic.number(Fraction(rng.randint(1, 40), rng.randint(1, 40)))
 
 
-def _valued(flat: Sequence[Scalar], rng: Random) -> tuple[State, list[Any]]:
+def _valued(flat: Sequence[Scalar], nodes: Sequence[Node], rng: Random) -> tuple[State, list[Any]]:
     """A state of the prime field at which everything has a value, and the values."""
     for _ in range(TRIES):
         try:
-            state = exact_state(flat, rng)
+            state = _exact_state(nodes, rng, PRIME_FIELD)
             return state, evaluate(flat, state.values, PRIME_FIELD)
         except NoMeaning:
             raise
@@ -237,7 +242,7 @@ def _at_fifty_digits(flat: Sequence[Scalar], rng: Random, states: int) -> Verdic
     arithmetic = fifty_digits()
     tolerance = arithmetic.number(TOLERANCE)
     for _ in range(states):
-        values = _real_values(flat, rng, arithmetic)
+        values = real_values(flat, rng, arithmetic)
         for i in range(len(values) // 2):
             a, b = values[2 * i], values[2 * i + 1]
             if abs(a - b) > tolerance * max(1, abs(a), abs(b)):
@@ -245,11 +250,11 @@ def _at_fifty_digits(flat: Sequence[Scalar], rng: Random, states: int) -> Verdic
     return Verdict(True, arithmetic.name)
 
 
-def _real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:
+def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:
     """Values at a random real state.
 
     Symbols are positive (roots of parameters exist), rates of either sign; of one size at first, then each of its own
-    size, so that sqrt(l^2 - x^2) exists, and some of them negative.
+    size, so that sqrt(l^2 - x^2) and sqrt(0.08^2 - r^2) exist, and some of them negative.
     """
     symbols = [x for x in order(flat) if x.op == "symbol"]
     for attempt in range(REAL_TRIES):
@@ -267,4 +272,6 @@ def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:
     """A random value of a symbol for the attempt-th real state."""
     low, high = RANGES[attempt] if attempt < len(RANGES) else rng.choice(RANGES)
     either = symbol.name.endswith("'") or (attempt > REAL_TRIES // 3 and rng.random() < 0.3)
-    return Fraction(rng.choice((-1, 1)) * rng.uniform(low, high) if either else rng.uniform(low, high))
+    any_size = attempt > len(RANGES) and attempt % 2 == 1
+    size = 10 ** rng.uniform(*EXPONENTS) if any_size else rng.uniform(low, high)
+    return Fraction(rng.choice((-1, 1)) * size if either else size)

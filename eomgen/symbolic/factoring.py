@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import Any
 
 from eomgen.symbolic.graph import Number
+from eomgen.symbolic.squares import holds_no_square
 from eomgen.symbolic.terms import Monomial, Terms, common_monomial, inverse, scaled, tidy, times
 
 LARGEST_DEGREE = 24
@@ -61,6 +62,8 @@ def square_root(f: Terms) -> Terms | None:
     if found is None:
         return None
     polynomial, atoms = found
+    if holds_no_square(polynomial):
+        return None
     number, parts = polynomial.sqf_list()
     outside = _root_of(Fraction(int(number.numerator), int(number.denominator)))
     if outside is None or any(n % 2 for _, n in parts):

@@ -52,6 +52,7 @@ class Graph:
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
         self.spheres: list[tuple[Node, ...]] = []
+        self.text_sizes: dict[Node, int] = {}  # those that were asked for
 
     def __len__(self) -> int:
         return len(self._nodes)

@@ -24,6 +24,7 @@ from eomgen.symbolic.intervals import INTERVALS, interval
 
 SMALLEST = 1e-7  # size of a box against the whole, below which it is not halved
 MOST_BOXES = 60_000  # examined in all
+WORK = 30_000_000  # operations in all, of long equations
 TOGETHER = 4096  # boxes of one evaluation
 HALF = 0.4837  # where a box is halved: roots at round numbers do not lie on borders
 JUMPS = frozenset(("sign", "select", "less", "less_equal"))
@@ -71,7 +72,8 @@ class _Boxes:
         slopes = tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
         roots, undecided = [np.zeros((0, len(low)))], [np.zeros((0, len(low)))]
         lows, highs, seen = low[None, :], high[None, :], 0
-        while len(lows) and seen < MOST_BOXES:
+        most = min(MOST_BOXES, WORK // len(order((*self.equations, *slopes))))
+        while len(lows) and seen < most:
             seen += len(lows[:TOGETHER])
             a, b, rest_a, rest_b = lows[:TOGETHER], highs[:TOGETHER], lows[TOGETHER:], highs[TOGETHER:]
             a, b = _kept(self._may_vanish(a, b), a, b)

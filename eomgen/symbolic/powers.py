@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from math import comb
 
 from eomgen.symbolic.graph import Number
@@ -13,6 +14,7 @@ Powers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosin
 Polynomial = dict[Powers, Number]
 
 LARGEST_DEGREE = 12  # of a wave to be written in powers
+KEPT = 20_000  # waves and sets of angles of which the form is remembered
 
 
 def power_form(waves: Mapping[Wave, Number], axes: tuple[Vector, ...]) -> Polynomial | None:
@@ -35,7 +37,12 @@ def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
 
     Angles that always come in one proportion are one axis: sin(a) cos(b + c) has the axes a and b + c.
     """
-    rows = [dict(w[1]) for w in waves if w]
+    return _axes_of(tuple(w[1] for w in waves if w))
+
+
+@lru_cache(maxsize=KEPT)
+def _axes_of(angles: tuple[Vector, ...]) -> tuple[Vector, ...]:
+    rows = list(map(dict, angles))
     groups: dict[tuple[Fraction, ...], list[tuple[int, Fraction]]] = {}
     for angle in sorted({angle for row in rows for angle in row}):
         column = [row.get(angle, 0) for row in rows]
@@ -49,6 +56,7 @@ def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
     return tuple(axes)
 
 
+@lru_cache(maxsize=KEPT)
 def _multiples(k: Vector, axes: tuple[Vector, ...]) -> tuple[int, ...] | None:
     """k as whole multiples of the axes, or None."""
     entries = dict(k)
@@ -65,6 +73,7 @@ def _multiples(k: Vector, axes: tuple[Vector, ...]) -> tuple[int, ...] | None:
     return None if entries else tuple(multiples)
 
 
+@lru_cache(maxsize=KEPT)
 def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> Polynomial:
     """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
     real: Polynomial = {(): 1}

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from eomgen.symbolic.expansion import Expansion
 from eomgen.symbolic.polynomials import Polynomials
+from eomgen.symbolic.squares import holds_no_square
 from eomgen.symbolic.terms import Key, Terms, TooLarge, common_monomial, constant
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
@@ -96,7 +97,10 @@ def powers_in(expansion: Expansion, terms: Terms) -> list[tuple[Terms, int]]:
         return [(terms, 1)]
     try:
         ring = Polynomials(expansion, (terms,))
-        number, parts = ring.of_one_degree(ring.of(terms)).sqf_list()
+        element = ring.of_one_degree(ring.of(terms))
+        if holds_no_square(element):
+            return [(terms, 1)]
+        number, parts = element.sqf_list()
         if any(e > 1 for _, e in parts):
             return [(ring.terms(ring.ring.ground_new(number)), 1), *((ring.terms(part), e) for part, e in parts)]
     except TooLarge:

@@ -113,6 +113,8 @@ def _size_of_form(form: Form) -> tuple[int, int, int, int]:
 def _forms(rays: Waves) -> list[Form]:
     """The waves of one direction: as they are, with s^2 eliminated, and with c^2 eliminated."""
     forms: list[Form] = [(0, _as_waves(rays))]
+    if _is_one_axis({w[1] for w in rays if w}):
+        return forms
     polynomial, axes = _polynomial(rays) or ({}, ())
     if axes and any(_is_multiple(w[1]) or w[1] != axes[0] for w in rays if w):
         for keep in ("cos", "sin"):
@@ -120,6 +122,11 @@ def _forms(rays: Waves) -> list[Form]:
             number = reduced.pop(((0, 0),), 0)
             forms.append((number, _as_sum(reduced, axes)))
     return forms
+
+
+def _is_one_axis(angles: set[Vector]) -> bool:
+    """Whether all is of one angle, which is no multiple of another."""
+    return len(angles) == 1 and gcd(*(c.numerator for k in angles for _, c in k)) == 1
 
 
 def _direction(k: Vector) -> Vector:

@@ -1,8 +1,8 @@
 """Equation, unknown -> its roots in closed form, as many as are known; nothing is guessed from numbers.
 
 Known are: polynomials that split into factors of degree 1 and 2 in a power of x, equations in the sine and cosine of
-one angle, in exponentials with one exponent, and those that a squaring or two rid of their roots. Roots that a
-squaring brought in are left out where numbers show that they are none.
+one angle, in exponentials with one exponent, and those that a squaring or two rid of their roots, or a sign or two of
+their magnitudes. Roots that these brought in are left out where numbers show that they are none.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from eomgen.symbolic.signs import sign_of_terms
 from eomgen.symbolic.terms import Terms, common_monomial, plus, scaled, tidy
 
 LIMIT = 50_000  # products of terms
-MOST_SQUARINGS = 2
+MOST_SQUARINGS = 2  # and signs of magnitudes
 TRIES = 8  # random states at which a root is tried
 VANISHES = 1e-7  # of a residual at such a state
 INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
@@ -115,6 +115,11 @@ class _Search:
             root = next(h for h in holders if atoms.is_a(h.index, "sqrt"))
             squared = substituted((atoms.node(_squared(expansion, f, root)),), fresh)[0]
             yield from replace(self, squarings=self.squarings - 1).roots(squared)
+        elif "abs" in ops and self.squarings:
+            size = next(h for h in holders if atoms.is_a(h.index, "abs"))
+            for x in (size.args[0], -size.args[0]):
+                (signed,) = substituted((substituted((atoms.node(f),), {size: x})[0],), fresh)
+                yield from replace(self, squarings=self.squarings - 1).roots(signed)
         elif len(holders) == 1 and ops <= INVERSE.keys():
             (holder,) = holders
             for value in self._powers(expansion, f, holder):

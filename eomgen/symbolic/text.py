@@ -128,14 +128,13 @@ def _tight(a: Scalar, printed: Printed) -> str:
 
 def text_size(x: Scalar) -> int:
     """At least the length of to_text(x), at the cost of the graph: nothing is printed."""
-    return _sizes([x])[x] if type(x) is Node else len(number_text(x))
-
-
-def _sizes(expressions: Iterable[Scalar]) -> dict[Node, int]:
-    sizes: dict[Node, int] = {}
-    for node in order(expressions):
-        sizes[node] = _size(node, sizes)
-    return sizes
+    if type(x) is not Node:
+        return len(number_text(x))
+    sizes = x.graph.text_sizes
+    for node in order((x,), sizes):
+        if node not in sizes:
+            sizes[node] = _size(node, sizes)
+    return sizes[x]
 
 
 def _size(node: Node, sizes: Mapping[Node, int]) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.errors import EomgenError, MissingValues
+from eomgen.errors import EomgenError, MissingValues, ModelError
 from eomgen.mechanics.contacts import Modes
 from eomgen.mechanics.instant.snapshot import mobility_of
 from eomgen.mechanics.loops.branches import Branches, branches_of_loops
@@ -19,9 +19,8 @@ from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.course import modes_at_start
 from eomgen.symbolic.text import to_text
+from eomgen.verbs.branch_lines import branch_lines
 from eomgen.verbs.outcome import Outcome, listed
-
-MOST_TOLD = 5  # other ways to close the loops
 
 
 def check(model: Model) -> Outcome:
@@ -47,7 +46,7 @@ def check(model: Model) -> Outcome:
     lines += [f"start: {refused}"] if refused else []
     lines += [f"start {begun.words}"] if begun is not None and begun.words else []
     lines += [f"the start is {begun.fork.words}"] if begun is not None and begun.fork is not None else []
-    lines += _branch_lines(branches)
+    lines += branch_lines(model, branches)
     lines += [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
     lines += [] if structure is None else [f"structure: {_held(structure)}"]
     lines += [f"open at the start: {listed(away)}"] if away else []
@@ -66,36 +65,33 @@ def check(model: Model) -> Outcome:
         "start_changed": [{"name": c.name, "from": c.before, "to": c.after, "given": c.given}
                           for c in (begun.changes if begun is not None else ())],
         "branches": [] if branches is None else [
-            {"values": dict(each.values), "sign": each.sign or None} for each in (branches.here, *branches.others)],
+            {"values": dict(each.values), "sign": each.sign or None, "left": {s.tie: s.left for s in each.sides}}
+            for each in (branches.here, *branches.others)],
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in waiting], "problems": [],
     }  # fmt: skip
     return Outcome("\n".join(lines) + "\n", payload)
 
 
 def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> tuple[Start | None, Branches | None, str]:
-    """(the start at which loops close, the ways in which they do, why there is none); None where nothing closes."""
-    if not freedom.closing or not model.coordinates:
+    """(the start at which loops close, the ways in which they do, why there is none); None where nothing closes.
+
+    Raises:
+        ModelError: declared speeds that do not stand for the rates.
+    """
+    if not model.coordinates or not (freedom.closing or model.speeds):
         return None, None, ""
     try:
         system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
+        if not freedom.closing:
+            return None, None, ""
         begun = start_of_motion(system)
         return begun, None if begun.fork else branches_of_loops(system, begun.values), ""
     except MissingValues:
         return None, None, ""
+    except ModelError:
+        raise
     except EomgenError as error:  # an error of the verbs that need a start
         return None, None, error.what
-
-
-def _branch_lines(branches: Branches | None) -> list[str]:
-    if branches is None:
-        return []
-    lines = [f"loops at the start: {branches.here}"]
-    others, more = list(map(str, branches.others[:MOST_TOLD])), len(branches.others) - MOST_TOLD
-    others += [f"and {more} more ways"] if more > 0 else []
-    kept = f" with the same {listed(branches.kept)}" if branches.kept else ""
-    if len(others) == 1:
-        return [*lines, f"they also close{kept} at {others[0]}"]
-    return [*lines, f"they also close{kept} at", *(f"  {each}" for each in others)] if others else lines
 
 
 def _truss(name: str, truss: Truss) -> str:

@@ -170,7 +170,7 @@ def test_a_wrong_sign_in_any_equation_of_a_body_is_out_of_balance(name, monkeypa
     assert imbalance(reactions.reactions_of(system), state, Random(1)) == ""
     planted = 0
     for what, wrong in balance_mutants(right):
-        monkeypatch.setattr(reactions, "balance_of", lambda system, wrong=wrong: wrong)
+        monkeypatch.setattr(reactions, "balance_of", lambda *_, wrong=wrong: wrong)
         planted += 1
         try:
             seen = imbalance(reactions.reactions_of(system), state, Random(1))
@@ -186,7 +186,7 @@ def pushing(law, value, sliding, mode):
 
 
 def other_way(system, found):
-    return [replace(rub, force=tuple(-x for x in rub.force)) for rub in rubbing_contacts(system, found)]
+    return [replace(rub, along=tuple(-x for x in rub.along)) for rub in rubbing_contacts(system, found)]
 
 
 def without_parent(axes, link, force, couple):

@@ -415,3 +415,72 @@ force = ["F", 0]
     x, phi = symbols.q
     (difference,) = substituted((phi - start[phi] + x / symbols.parameters["l"],), laws)
     assert equal_at_random_states([(difference, 0)]).equal
+
+
+TWO_BODIES = """
+eomgen = 1
+space = "SPACE"
+[parameters]
+m1 = 2
+m2 = 1
+G = 1
+[coordinates]
+x1 = 0
+y1 = { start = 0, speed = -0.3 }
+x2 = 1
+y2 = { start = 0, speed = 1.2 }
+[bodies.A]
+shape = { kind = "particle", mass = "m1" }
+joint = { kind = "placed", at = ["x1", "y1"Z1] }
+[bodies.B]
+shape = { kind = "particle", mass = "m2" }
+joint = { kind = "placed", at = ["x2", "y2"Z2] }
+[forces.pull]
+kind = "between"
+points = ["A.center", "B.center"]
+pull = "G*m1*m2/r^2"
+"""
+
+
+@pytest.mark.parametrize("space", ["plane", "space"])
+def test_momenta_of_the_whole_stay_though_no_coordinate_is_cyclic(space):
+    """Kepler's problem in coordinates of each body: P and L, beside roots that have no meaning in a prime field."""
+    height = "z1 = 0\nz2 = { start = 0, speed = 0.2 }\n" if space == "space" else ""
+    text = TWO_BODIES.replace("SPACE", space).replace("[bodies.A]", height + "[bodies.A]")
+    for k in "12":
+        text = text.replace(f"Z{k}", f', "z{k}"' if space == "space" else "")
+    model = eomgen.loads(text)
+    derivation = eomgen.derive(model).render("text")
+    assert "P_x = m1*x1' + m2*x2'" in derivation
+    assert "L_z = m1*x1*y1' - m1*y1*x1' - m2*y2*x2' + m2*x2*y2'" in derivation
+    assert ("P_z = m1*z1' + m2*z2'" in derivation) is (space == "space")
+    run = eomgen.simulate(model, time=5)
+    L = 2 * (run["x1"] * run["y1'"] - run["y1"] * run["x1'"]) + run["x2"] * run["y2'"] - run["y2"] * run["x2'"]
+    assert L == pytest.approx(np.full_like(L, 1.2), rel=1e-8)
+
+
+def test_jacobis_integral_is_found_beside_a_root():
+    """A bead on a spring in a tube that turns steadily: r' ^2/2 - Om^2 r^2/2 + V stays, with the length a root."""
+    text = """
+eomgen = 1
+space = "plane"
+[coordinates]
+psi = { motion = "2*t" }
+r = { start = 1, speed = 0.5 }
+[bodies.tube]
+joint = { kind = "revolute", angle = "psi" }
+[bodies.bead]
+shape = { kind = "particle", mass = 3 }
+joint = { kind = "prismatic", on = "tube", at = [0, 0.2], axis = [1, 0], displacement = "r" }
+[forces.spring]
+kind = "spring"
+points = ["tube.origin", "bead.center"]
+stiffness = 70
+length = 0.5
+"""
+    model = eomgen.loads(text)
+    assert "Jacobi's integral" in eomgen.derive(model).render("text")
+    run = eomgen.simulate(model, time=2)
+    r, rate = run["r"], run["r'"]
+    h = 1.5 * rate**2 - 1.5 * 4 * (r**2 + 0.04) + 35 * (np.hypot(r, 0.2) - 0.5) ** 2
+    assert h == pytest.approx(np.full_like(h, h[0]), rel=1e-7)

@@ -13,7 +13,8 @@ from random_systems import Writer
 
 import eomgen
 from eomgen.mechanics.drive import drive
-from eomgen.mechanics.reacting.reactions import Indeterminate, reactions_of
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System, system_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Scalar

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from rolling_bodies import RoundBody, rotation_of
@@ -285,9 +287,66 @@ def test_a_coin_that_falls_flat_ends_the_run():
     ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }", "the radius of 'body', which rolls, is not known"),
     ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\ntube = 0.1", "the tyre of 'body' has no 'axis'"),
     ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\nellipsoid = [1, 1, 2]", "it is one or the other"),
-    ("circle = { at = [0, 0, 0], radius = 3 }\nradius = 1\naxis = [0, 0, 1]", "only a ball rolls on something curved"),
+    ("circle = { at = [0, 0, 0], radius = 3, axis = [1, 0, 0]}\nradius = 1\naxis = [0, 0, 1]", "rolls in or on a pipe"),
 ])  # fmt: skip
 def test_a_rolling_contact_that_makes_no_sense_is_named(contact, what):
     """One error, at the tie."""
     with pytest.raises(ModelError, match=what):
         eomgen.loads(text(contact))
+
+
+# -- wheels on balls ---------------------------------------------------------------------------------
+
+DISC_ON = """
+eomgen = 1
+space = "space"
+parameters = { m = 2, R = 0.3, S = SIZE, g = 9.81 }
+forces.weight = { kind = "gravity", acceleration = [0, 0, "-g"] }
+constraints.c = { kind = "rolling", body = "disc", axis = [0, 0, 1], TRACK }
+[coordinates]
+x = START
+y = {}
+z = { dependent = true, near = NEAR }
+yaw = { start = YAW, speed = 0.3 }
+lean = { start = LEAN, speed = 0.1 }
+spin = { speed = 4 }
+[bodies.disc]
+shape = { kind = "disc", mass = "m", radius = "R" }
+joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxz", angles = ["yaw", "lean", "spin"] }
+"""
+LEVEL = "plane = { at = [0, 0, 0], normal = [0, 0, 1] }"
+
+
+def disc_on(track: str, size: float, near: float, start: float = 0, yaw: float = 0.2, lean: float = 1.3) -> str:
+    text = DISC_ON.replace("TRACK", track).replace("SIZE", f"{size:.0f}").replace("NEAR", str(near))
+    return text.replace("START", str(start)).replace("YAW", str(yaw)).replace("LEAN", str(lean))
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_a_disc_rolls_on_a_very_large_ball_as_on_a_plane(inside):
+    """Outside and inside: all accelerations, to the curvature R/S = 3e-8."""
+    track = f'circle = {{ at = [0, 0, "{"" if inside else "-"}S"], radius = "S", inside = {str(inside).lower()} }}'
+    found = []
+    for text in (disc_on(track, 1e7, 0.3), disc_on(LEVEL, 1, 0.3)):
+        rhs = eomgen.derive(eomgen.loads(text)).rhs("numpy")
+        found.append(rhs(0.0, rhs.x0, rhs.p0)[6:])
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
+
+
+def test_a_disc_in_the_vertical_circle_of_a_bowl_rolls_as_in_a_hoop():
+    """Upright through the lowest place: 3/2 (S - R) phi'' = -g sin(phi), phi of its centre from the vertical."""
+    S, R, phi = 2, 0.3, 0.4
+    start, near = (S - R) * math.sin(phi), -(S - R) * math.cos(phi)
+    text = disc_on('circle = { at = [0, 0, 0], radius = "S", inside = true }', S, near, start, 0, math.pi / 2)
+    text = text.replace(", speed = 0.3", "").replace(", speed = 0.1", "").replace("{ speed = 4 }", "0")
+    rhs = eomgen.derive(eomgen.loads(text)).rhs("numpy")
+    x = rhs(0.0, rhs.x0, rhs.p0)[6]
+    assert x == pytest.approx(-2 / 3 * 9.81 * math.sin(phi) * math.cos(phi), rel=1e-9)
+
+
+def test_a_disc_that_rolls_in_a_bowl_keeps_its_energy():
+    """The certificate holds, and T + V stays."""
+    text = disc_on('circle = { at = [0, 0, 0], radius = "S", inside = true }', 2, -1.7)
+    assert eomgen.derive(eomgen.loads(text)).certify().ok
+    run = eomgen.simulate(eomgen.loads(text), time=0.5, target="numpy")
+    assert run.ok and run.drift < 1e-8

@@ -284,3 +284,18 @@ def test_the_released_mechanism_stands_in_the_answer_for_machines():
     first, second = found.as_dict()["reactions"]["reaction_couple(E)"]["work"]["mechanism"]
     assert (first["parts"], first["center"], first["rotation"]) == (["CD"], ["10*a", "0"], ["0", "0", "1"])
     assert (second["parts"], second["center"], second["rotation"]) == (["DE"], ["20*a", "0"], ["0", "0", "-3/2"])
+
+
+def test_statics_holds_what_the_model_drives_where_it_starts():
+    """A bar that is turned at a rate carries at rest its weight alone: no centrifugal force, and both ways agree."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    parameters = { m = 0.5, g = 9.81, W = 3, l = 2 }
+    coordinates.psi = { motion = "W*t" }
+    bodies.bar.shape = { kind = "rod", mass = "m", length = "l" }
+    bodies.bar.joint = { kind = "revolute", angle = "psi" }
+    forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+    """
+    found = eomgen.statics(eomgen.loads(text))
+    assert found.ok and found.exact["reaction_x(bar)"] == "0" and found.exact["reaction_y(bar)"] == "m*g"

@@ -631,7 +631,6 @@ NOT_DERIVED = [
     (BEAD + '[constraints.c]\nkind = "equation"\nrate = "vx(bead.center)^2 - 1"\n', "not linear in the velocities"),
     (BEAD + '[constraints.c]\nkind = "equation"\nrate = "x\'*vx(bead.center)"\n', "not linear in the rates"),
     (BEAD + '[constraints.c]\nkind = "equation"\ngap = "angle(bead) - 1"\n', "no single angle in space"),
-    (WIRE + "friction = 0.2\n", "its normal force has two components"),
     (BEVEL.replace('kind = "revolute", axis = [1, 0, 0], angle = "p"',
                    'kind = "universal", axes = [[1, 0, 0], [0, 1, 0]], angles = ["p", "q"]')
      .replace(", torque = 3", ""), "the joint of body 'pinion' has no single angle"),

@@ -299,6 +299,7 @@ v = "vx(q1.end)"
 a = "ax(q1.end)"
 """  # fmt: skip
 
+
 @dataclass(frozen=True)
 class Piece:
     """A rigid body of a plane machine: where its mass centre is and how it is turned at q."""
@@ -525,3 +526,95 @@ def run_verb(capsys):
         return found[0], json.loads(found[1])
 
     return run
+
+
+SARRUS = """
+eomgen = 1
+name = "Sarrus linkage: a plate on two folding pairs of rods, in planes across each other"
+space = "space"
+coordinates = { a = "pi/3", b = "2*pi/3", c = "-2*pi/3", d = "pi/3", e = "2*pi/3" }
+[bodies.A1]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", at = [1, 0, 0], axis = [0, -1, 0], angle = "a" }
+[bodies.A2]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", on = "A1.end", axis = [0, -1, 0], angle = "b - a" }
+[bodies.plate]
+shape = { kind = "box", mass = 2, size = [1, 1, 0.1] }
+points = { P1 = [1, 0, 0], P2 = [0, 1, 0] }
+joint = { kind = "revolute", on = "A2.end", point = "P1", axis = [0, -1, 0], angle = "c" }
+[bodies.B1]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint.kind = "revolute"
+joint.at = [0, 1, 0]
+joint.turned = { axis = [0, 0, 1], angle = "pi/2" }
+joint.axis = [0, -1, 0]
+joint.angle = "d"
+[bodies.B2]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", on = "B1.end", axis = [0, -1, 0], angle = "e - d" }
+[constraints]
+last = { kind = "pin", points = ["B2.end", "plate.P2"], axis = [1, 0, 0] }
+[forces]
+weight = { kind = "gravity", acceleration = [0, 0, -9.81] }
+[outputs]
+v = { value = "vz(plate.center)", at = "a = 0" }
+later = { value = "a'", at = "a = -0.3" }
+"""
+
+
+def test_an_answer_in_a_change_point_is_that_of_the_branch_which_the_motion_is_on():
+    """Folded flat, a pair could spin with the plate at rest. z = 2 sin(a), V = 8 g sin(a).
+
+    T = (4 cos^2 a + 1/3 + 1/12 + (9 cos^2 a + sin^2 a)/4) a'^2: plate, two pairs of rods.
+    """
+
+    def rate(a: float) -> float:
+        share = 4 * np.cos(a) ** 2 + 5 / 12 + (9 * np.cos(a) ** 2 + np.sin(a) ** 2) / 4
+        return -np.sqrt(8 * 9.81 * (np.sin(np.pi / 3) - np.sin(a)) / share)
+
+    found = eomgen.solve(eomgen.loads(SARRUS.replace('later = { value = "a\'", at = "a = -0.3" }', "")))
+    assert found["v"].value == pytest.approx(2 * rate(0), rel=1e-7)
+    nears = zip("bcde", (2.1, -2.1, 1, 2.1), strict=True)
+    listed = ", ".join(f"{name} = {{ dependent = true, near = {near} }}" for name, near in nears)
+    dependent = SARRUS.replace('b = "2*pi/3", c = "-2*pi/3", d = "pi/3", e = "2*pi/3"', listed)
+    found = eomgen.solve(eomgen.loads(dependent))
+    assert found["v"].value is None and "does not determine 'b', 'c', 'd', 'e' at that instant" in found["v"].message
+    assert found["later"].value == pytest.approx(rate(-0.3), rel=1e-7)
+
+
+OBLIQUE = """
+eomgen = 1
+name = "Four-bar in an oblique plane"
+space = "space"
+[coordinates]
+a = { start = 1, speed = 4 }
+b = 0.48
+c = 1.57
+[bodies.base]
+joint = { kind = "fixed", turned = [{ axis = [1, 2, 3], angle = 0.7 }, { axis = [0, 1, 0], angle = 0.4 }], angle = 0 }
+points = { C = [1.1, 0, 0] }
+[bodies.crank]
+shape = { kind = "rod", mass = 1, length = 0.4 }
+joint = { kind = "revolute", on = "base", angle = "a" }
+[bodies.coupler]
+shape = { kind = "rod", mass = 2, length = 1 }
+joint = { kind = "revolute", on = "crank.end", angle = "b - a" }
+[bodies.rocker]
+shape = { kind = "rod", mass = 1, length = 0.8 }
+joint = { kind = "revolute", on = "base.C", angle = "c" }
+[constraints.B]
+kind = "pin"
+points = ["coupler.end", "rocker.end"]
+axis = [0.667964062264835, 0.14846889357813756, 0.7292331582987319]
+[forces.w]
+kind = "gravity"
+acceleration = [0, -9.81, 0]
+"""
+
+
+def test_a_hinge_whose_axis_is_written_in_decimals_moves_as_one_without():
+    """The axis is the plane's normal to 16 digits: its rows close to rounding, and say nothing."""
+    without = "\n".join(line for line in OBLIQUE.split("\n") if not line.startswith("axis = "))
+    hinged, pinned = (eomgen.simulate(eomgen.loads(text), time=1.0, rtol=1e-10) for text in (OBLIQUE, without))
+    assert hinged["a"][-1] == pytest.approx(pinned["a"][-1], rel=1e-7)

@@ -461,3 +461,455 @@ joint = { kind = "prismatic", axis = [1, 0], displacement = "s", stiffness = "k"
     assert "det(s_^2*M + s_*C + K) = m*s_^2 + k" in shown and "W[s, F] = 1/(m*s_^2 + k)" in shown
     twice = eomgen.linearize(eomgen.loads(f'eomgen = 1\nspace = "plane"\n{text}'), coordinates=["s", "s"])
     assert twice.coordinates == ("s",)
+
+
+# -- families of steady motions --------------------------------------------------------------------------------------
+
+GOVERNOR = """[parameters]
+m = {m}
+M = 3
+l = 0.4
+g = 9.81
+W = {W}
+[coordinates]
+psi = {{ speed = "W" }}
+a = {{ near = 0.9 }}
+[bodies.shaft]
+joint = {{ kind = "revolute", angle = "psi" }}
+[bodies.b1]
+shape = {{ kind = "particle", mass = "m" }}
+joint = {{ kind = "placed", on = "shaft", at = ["l*sin(a)", 0, "-l*cos(a)"] }}
+[bodies.b2]
+shape = {{ kind = "particle", mass = "m" }}
+joint = {{ kind = "placed", on = "shaft", at = ["-l*sin(a)", 0, "-l*cos(a)"] }}
+[bodies.sleeve]
+shape = {{ kind = "particle", mass = "M" }}
+joint = {{ kind = "placed", on = "shaft", at = [0, 0, "-2*l*cos(a)"] }}
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+"""
+
+
+def test_the_governor_of_watt_stands_at_its_angle_as_a_formula():
+    """cos a = (m + M) g/(m l W^2); four motions in a turn; omega^2 of the free one by the momentum m l^2 sin^2 a W"""
+    found = small(GOVERNOR.format(m=1, W=15), "space", "steady")
+    data = found.as_dict()
+    assert formula("acos(g*(m + M)/(l*m*W**2))", found.small.reference.exact[found.equations.coordinates[1]])
+    assert data["family"]["held"] == ["psi'"] and data["family"]["complete"]
+    a = np.arccos(4 * 9.81 / (0.4 * 225))
+    angles = sorted(x["state"]["a"]["value"] for x in data["family"]["motions"])
+    assert angles == pytest.approx([-a, 0, a, np.pi])
+    inertia = 2 * 0.4**2 * (1 + 2 * 3 * np.sin(a) ** 2)
+    stiffness = 2 * 0.4**2 * 225 * np.sin(a) ** 2 * (1 + 4 / np.tan(a) ** 2)
+    assert found.frequencies[0].mode.frequency == pytest.approx(np.sqrt(stiffness / inertia))
+    assert found.frequencies[0].exact is not None
+
+
+def test_a_top_has_both_its_precessions_as_formulas():
+    """(I_t - I_3) cos(theta) phi'^2 - I_3 psi' phi' + m g d = 0"""
+    found = eomgen.linearize(eomgen.load(MODELS / "heavy_top.toml"), "steady")
+    family = found.small.reference.family
+    values = {"theta": np.pi / 6, "psi'": 250.0}
+    rates = np.roots([2e-4 * np.cos(np.pi / 6), -5e-5 * 250, 0.1 * 9.81 * 0.04])
+    assert [x.name for x in family.held] == list(values)
+    assert sorted(x["phi'"] for x in ({n.name: v for n, v in at.items()} for at in family.others)) == pytest.approx(
+        sorted(rates)
+    )
+    assert len(family.closed) == 2 and all(family.closed) and found.modes.beside == ("stable to first order",) * 2
+
+
+def test_a_disc_rolls_in_a_circle_by_a_formula():
+    """phi' = -5/6 W cos(theta) - 2/3 g cot(theta)/(r W); 5/4 theta'' = W^2 sin(2 theta)/8 - 3/2 W w sin(theta)
+    - g/r cos(theta), with
+    W' sin(theta) = 2 (w - W cos(theta)) theta', 3/2 w' = W sin(theta) theta'
+
+    Source: O'Reilly, The dynamics of rolling disks and sliding disks, Nonlinear Dynamics 10 (1996) 287-305.
+    """
+    found = small("""[parameters]
+m = 2
+r = 0.3
+g = 9.81
+theta_0 = 1.3
+W = 2
+[coordinates]
+x = {}
+y = {}
+z = { near = "r" }
+psi = { speed = "W" }
+theta = "theta_0"
+phi = { near = 0, speed = -4 }
+[bodies.disc]
+shape = { kind = "disc", mass = "m", radius = "r" }
+joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxz", angles = ["psi", "theta", "phi"] }
+[constraints.floor]
+kind = "rolling"
+body = "disc"
+axis = [0, 0, 1]
+plane = { at = [0, 0, 0], normal = [0, 0, 1] }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+""", "space", "steady")  # fmt: skip
+    state = {x.name: value for x, value in found.small.reference.exact.items()}
+    assert formula("-5*W*cos(theta_0)/6 - 2*g*cos(theta_0)/(3*r*W*sin(theta_0))", state["phi'"])
+    assert formula("r*sin(theta_0)", state["z"])
+    theta, W, r, g = 1.3, 2, 0.3, 9.81
+    sine, cosine = np.sin(theta), np.cos(theta)
+    spin = -2 / 3 * g * cosine / (r * W * sine) + W * cosine / 6
+    dW, ds = 2 * (spin - W * cosine) / sine, 2 / 3 * W * sine  # with the lean, by the two integrals
+    K = -(W**2) * np.cos(2 * theta) / 4 + 1.5 * W * spin * cosine - g / r * sine
+    K += (-0.5 * W * sine * cosine + 1.5 * spin * sine) * dW + 1.5 * W * sine * ds
+    assert found.frequencies[0].mode.frequency == pytest.approx(np.sqrt(K / 1.25), rel=1e-9)
+    assert found.frequencies[0].exact is not None
+
+
+def test_of_a_family_as_few_values_change_as_the_equations_need():
+    """A conical pendulum with angle and rate stated: one of both stays; cos(theta) psi'^2 = g/l"""
+    found = small("""[parameters]
+l = 1
+g = 9.81
+[coordinates]
+psi = { speed = 3 }
+theta = 0.5
+[bodies.bob]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "placed", at = ["l*sin(theta)*cos(psi)", "l*sin(theta)*sin(psi)", "-l*cos(theta)"] }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+""", "space", "steady")  # fmt: skip
+    state = {name: x["value"] for name, x in found.as_dict()["state"].items()}
+    assert np.cos(state["theta"]) * state["psi'"] ** 2 == pytest.approx(9.81)
+    assert (state["theta"] == 0.5) != (state["psi'"] == 3) and found.is_exact
+
+
+def _rattleback_rates(y: np.ndarray) -> np.ndarray:
+    """(gamma', w') of a half ellipsoid that rolls: gamma the vertical, w, both in body axes; no-slip v = -w x r."""
+    m, g, squares = 1, 9.81, np.array([0.2, 0.03, 0.02]) ** 2
+    inertia = np.array([[0.0002, -0.00002, 0], [-0.00002, 0.0016, 0], [0, 0, 0.0017]])
+    up, w = y[:3], y[3:]
+    turned = np.cross(up, w)
+    size = np.sqrt(up @ (squares * up))
+    r = -squares * up / size + np.array([0, 0, 0.01])
+    moved = -squares * turned / size + squares * up * (up @ (squares * turned)) / size**3
+    v = -np.cross(w, r)
+    cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+    push = m * (-np.cross(w, moved) + np.cross(w, v) + g * up)  # F = push + m r x w'
+    right = np.cross(r, push) - np.cross(w, inertia @ w)
+    return np.array([*turned, *np.linalg.solve(inertia - m * cross @ cross, right)])
+
+
+@pytest.mark.parametrize("spin", [-12, 12])
+def test_a_rattleback_is_unstable_in_one_sense_of_its_spin(spin):
+    """Upright spin, against the slopes of the equations of Euler in plain numbers"""
+    text = (MODELS / "rattleback.toml").read_text()
+    for old, new in (("{ start = 0.01 }", "{}"), ("{ start = -0.02 }", "{}"), ("start = -2", f"start = {spin}")):
+        text = text.replace(old, new)
+    found = eomgen.linearize(eomgen.loads(text), "start").spectrum
+    at = np.array([0, 0, 1, 0, 0, spin])
+    steps = 1e-5 * np.eye(6)
+    A = np.array([(_rattleback_rates(at + d) - _rattleback_rates(at - d)) / 2e-5 for d in steps]).T
+    mine = sorted((x for x in found.eigenvalues if abs(x) > 1e-3), key=lambda x: (x.real, x.imag))
+    book = sorted((x for x in np.linalg.eigvals(A) if abs(x) > 1e-3), key=lambda x: (x.real, x.imag))
+    assert np.allclose(mine, book, rtol=1e-6) and found.stability == "unstable"
+
+
+def test_all_places_of_a_bead_on_a_driven_hoop():
+    """theta = 0, pi, and +-acos(g/(R omega^2)) beyond omega^2 = g/R, where the lowest place has become unstable"""
+    found = eomgen.linearize(eomgen.load(MODELS / "bead_on_turning_hoop.toml"), "equilibrium").as_dict()["family"]
+    places = {x["state"]["theta"]["exact"]: x["stability"] for x in found["motions"]}
+    aside = "acos(g/(R*omega^2))"
+    assert places == {"0": "unstable", aside: "stable", f"-{aside}": "stable", "pi": "unstable"} and found["complete"]
+
+
+def test_a_car_turns_steadily_by_its_understeer():
+    """r = V d/(L + K V^2), K = m (b C_r - a C_f)/(L C_f C_r), and the two eigenvalues of the bicycle model
+
+    Source: Pacejka, Tyre and Vehicle Dynamics, section 1.3.
+    """
+    m, J, a, b, C_f, C_r, V, d = 1500, 2500, 1.1, 1.6, 55000, 60000, 25, 0.02
+    found = small(f"""[parameters]
+V = {V}
+[coordinates]
+x = {{}}
+y = {{}}
+psi = {{}}
+[speeds]
+u = {{ rate = "x'*cos(psi) + y'*sin(psi)", start = "V" }}
+v = {{ rate = "-x'*sin(psi) + y'*cos(psi)" }}
+r = {{ rate = "psi'" }}
+[bodies.car]
+mass = {m}
+inertia = {J}
+points = {{ F = [{a}, 0], R = [-{b}, 0] }}
+joint = {{ kind = "planar", x = "x", y = "y", angle = "psi" }}
+[constraints.cruise]
+kind = "equation"
+rate = "u - V"
+[forces.front]
+kind = "force"
+point = "car.F"
+axes = "car"
+force = [0, "{C_f}*({d} - (v + {a}*r)/V)"]
+[forces.rear]
+kind = "force"
+point = "car.R"
+axes = "car"
+force = [0, "-{C_r}*(v - {b}*r)/V"]
+""", about="steady")
+    state = found.as_dict()["state"]
+    K = m * (b * C_r - a * C_f) / ((a + b) * C_f * C_r)
+    assert state["r"]["value"] == pytest.approx(V * d / (a + b + K * V * V)) and state["r"]["exact"]
+    A = -np.array([[(C_f + C_r) / (m * V), V + (a * C_f - b * C_r) / (m * V)],
+                   [(a * C_f - b * C_r) / (J * V), (a * a * C_f + b * b * C_r) / (J * V)]])  # fmt: skip
+    assert_same(found.spectrum.eigenvalues, [*np.linalg.eigvals(A), 0])
+
+
+def test_two_masses_on_a_rod_in_orbit_librate_by_the_root_of_three():
+    """n' = n sqrt(3) beside n of the orbit itself, of a rod much shorter than its orbit; metres beside 7000 km"""
+    n = 0.0011
+    found = small(f"""[coordinates]
+nu = {{ speed = {n} }}
+r = {{ near = 7e6 }}
+th = 0
+[bodies.orbit]
+joint = {{ kind = "revolute", angle = "nu" }}
+[bodies.hub]
+joint = {{ kind = "placed", on = "orbit", at = ["r", 0], angle = "th" }}
+[bodies.a]
+shape = {{ kind = "particle", mass = 100 }}
+joint = {{ kind = "placed", on = "hub", at = [50, 0] }}
+[bodies.b]
+shape = {{ kind = "particle", mass = 100 }}
+joint = {{ kind = "placed", on = "hub", at = [-50, 0] }}
+[points]
+E = [0, 0]
+[forces.a]
+kind = "between"
+points = ["E", "a.center"]
+pull = "4e16/r^2"
+[forces.b]
+kind = "between"
+points = ["E", "b.center"]
+pull = "4e16/r^2"
+""", about="steady")
+    assert found.as_dict()["state"]["r"]["value"] == pytest.approx((4e14 / n**2) ** (1 / 3), rel=1e-9)
+    assert [f.mode.frequency for f in found.frequencies] == pytest.approx([n, n * np.sqrt(3)], rel=1e-7)
+
+
+ROLLING_TORUS = """[parameters]
+m = 1
+r = 0.4
+a = 0.1
+g = 9.81
+V = 3
+A = 0.05
+J = 0.09
+[coordinates]
+x = 0
+y = 0
+z = { near = 0.5 }
+yaw = 0
+lean = 0
+spin = { speed = "V/(r + a)" }
+[bodies.w]
+mass = "m"
+inertia = ["A", "J", "A"]
+joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxy", angles = ["yaw", "lean", "spin"] }
+[constraints.road]
+kind = "rolling"
+body = "w"
+axis = [0, 1, 0]
+radius = "r"
+tube = "a"
+plane = { at = [0, 0, 0], normal = [0, 0, 1] }
+[forces.g]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+"""
+
+
+def test_a_wheel_with_a_tyre_rolls_upright_by_a_formula():
+    """(A + m R^2) w^2 = (J + m R^2) J W^2/A - m g r, R = r + a, W = V/R: what the ties say of speeds is exact"""
+    found = small(ROLLING_TORUS, "space", "start")
+    book = "sqrt(((J + m*(r + a)**2)*J*V**2/(A*(r + a)**2) - m*g*r)/(A + m*(r + a)**2))"
+    assert formula(book, found.frequencies[0].exact)
+
+
+def test_numbers_at_values_that_nobody_gave_are_refused():
+    """cos(theta) has no root in closed form, and W no value"""
+    text = """[parameters]
+W = {}
+[coordinates]
+psi = { speed = "W" }
+theta = { near = 1 }
+[bodies.bob]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "placed", at = ["sin(theta)*cos(psi)", "sin(theta)*sin(psi)", "-cos(theta) - theta^3/9"] }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+    with pytest.raises(eomgen.DerivationError, match="no closed form: 'W' need values"):
+        small(text, "space", "steady")
+
+
+def test_the_governed_engine_of_vyshnegradskii():
+    """cos(phi) = F/k, w^2 = g k/F; it settles where b J/m > 2 F/w
+
+    Source: Pontryagin, Ordinary Differential Equations, section 27.
+    """
+    g, F, k, m, J = 9.81, 10, 30, 1, 4
+    critical = 2 * F * m / (J * np.sqrt(g * k / F))
+    for b, stability in ((0.99 * critical, "unstable"), (1.01 * critical, "stable to first order")):
+        found = small(f"""[parameters]
+b = {float(b)}
+F = {F}
+k = {k}
+g = {g}
+[coordinates]
+psi = {{}}
+phi = {{ near = 1 }}
+[speeds]
+w = {{ rate = "psi'", start = 5 }}
+[bodies.engine]
+mass = 1
+inertia = [3, 3, {J}]
+joint = {{ kind = "revolute", angle = "psi", torque = "k*cos(phi) - F" }}
+[forces.a]
+kind = "generalized"
+coordinate = "phi"
+value = "{m}*(w^2*sin(phi)*cos(phi) - g*sin(phi)) - b*phi'"
+[bodies.b]
+mass = {m}
+joint = {{ kind = "prismatic", axis = [1, 0, 0], displacement = "phi", at = [10, 0, 0] }}
+""", "space", "steady")
+        state = {x.name: value for x, value in found.small.reference.exact.items()}
+        assert formula("acos(F/k)", state["phi"]) and formula("sqrt(g*k/F)", state["w"])
+        assert found.spectrum.stability == stability
+        assert len(found.small.reference.family.others) == 4
+
+
+def test_a_spinning_satellite_leans_in_its_orbit():
+    """The conical equilibria: cos a = C s'/((A - C) n), and the two upright places, by b = 0
+
+    Source: Likins, Stability of a symmetrical satellite in attitudes fixed in an orbiting reference frame,
+    J. Astronautical Sciences 12 (1965).
+    """
+    found = small("""[parameters]
+A = 10
+C = 14
+n = 0.001
+[coordinates]
+nu = { motion = "n*t" }
+a = { near = 1.2 }
+b = 0
+s = { speed = -0.0001 }
+[bodies.orbit]
+joint = { kind = "revolute", angle = "nu" }
+[bodies.sat]
+mass = 1
+inertia = ["A", "A", "C"]
+joint = { kind = "spherical", on = "orbit", orientation = "xyz", angles = ["a", "b", "s"] }
+[forces.gradient]
+kind = "potential"
+energy = "3/2*n^2*(C - A)*sin(b)^2"
+""", "space", "steady")
+    family = found.as_dict()["family"]
+    a = np.arccos(14 * -0.0001 / (-4 * 0.001))
+    assert sorted(x["state"]["a"]["value"] for x in family["motions"]) == pytest.approx([-a, 0, a, np.pi])
+    assert family["held"] == ["b", "s'"] and family["formulas"] and found.is_exact
+    A, C, n, s = 10, 14, 0.001, -0.0001  # to second order of Routh's function: h stays
+    h = C * (s + n * np.cos(a))
+    K = [[h * n * np.cos(a) - A * n**2 * np.cos(2 * a), 0],
+         [0, h * n * np.cos(a) - A * n**2 * np.cos(a) ** 2 + 3 * n**2 * (C - A)]]  # fmt: skip
+    G = h - 2 * A * n * np.cos(a)
+    across = eigenvalues([[A, 0], [0, A]], [[0, G], [-G, 0]], K)
+    assert_same([x for x in found.spectrum.eigenvalues if x], across, 1e-6)
+
+
+def test_transfer_functions_are_without_common_factors():
+    """x/F = (l s^2 + g)/(s^2 (M l s^2 + (M + m) g)) of a gantry crane, whatever its load's m l"""
+    found = small("""[parameters]
+M = 5
+m = 2
+l = 1.5
+g = 9.81
+[inputs]
+F = 0
+[coordinates]
+x = 0
+th = 0
+[bodies.trolley]
+mass = "M"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F" }
+[bodies.load]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", on = "trolley", at = ["l*sin(th)", "-l*cos(th)"] }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""").render("text")
+    assert "W[x, F] = (l*s^2 + g)/(M*l*s^4 + g*(M + m)*s^2)" in found
+    assert "W[th, F] = -1/(M*l*s^2 + g*(M + m))" in found
+
+
+def test_a_planet_circles_at_the_radius_of_kepler():
+    """r^3 = mu/n^2, without values of mu and n; beside it r swings with n"""
+    found = small("""[parameters]
+mu = { positive = true }
+m = 1
+n = { positive = true }
+[coordinates]
+th = { speed = "n" }
+r = { near = 1 }
+[bodies.p]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["r*cos(th)", "r*sin(th)"] }
+[points]
+O = [0, 0]
+[forces.sun]
+kind = "between"
+points = ["O", "p.center"]
+pull = "mu*m/r^2"
+""", about="steady")
+    radius = {x.name: value for x, value in found.small.reference.exact.items()}["r"]
+    assert formula("(mu/n**2)**(1/3)", radius)
+    assert formula("n", found.frequencies[0].exact)
+
+
+def test_a_sleigh_that_turns_is_steady_where_it_stops_turning():
+    """m a w^2 = 0 has a double root, to which Newton's method goes by halves"""
+    state = eomgen.linearize(eomgen.load(MODELS / "chaplygin_sleigh.toml"), "steady").as_dict()["state"]
+    assert state["omega"]["value"] == 0
+
+
+def test_dependent_coordinates_are_left_out_before_those_with_a_declared_speed():
+    """x, y of a skate follow from its turning, whose speed is w = 2 theta'"""
+    found = small("""[coordinates]
+x = { dependent = true }
+y = { dependent = true }
+theta = 0.3
+phi = 0.5
+[speeds]
+w = { rate = "2*theta'" }
+[bodies.board]
+mass = 2
+inertia = 1
+points = { edge = [0.5, 0], other = [-0.5, 0] }
+joint = { kind = "planar", x = "x", y = "y", angle = "theta" }
+[bodies.truck]
+mass = 1
+inertia = 0.5
+joint = { kind = "revolute", on = "board.edge", angle = "phi" }
+[constraints.front]
+kind = "skate"
+point = "truck.origin"
+along = [1, 0]
+[constraints.back]
+kind = "skate"
+point = "board.other"
+along = [1, 1]
+""")
+    assert found.coordinates == ("theta", "phi") and [q.name for q in found.small.left_out] == ["x", "y"]

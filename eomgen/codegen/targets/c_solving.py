@@ -74,6 +74,15 @@ static void solve(double *M, double *f)
 BORDER_TEXT = """\
 struct factors { double L[N*N], mobility[N], Y[K*N], S[K*K], weight[K]; int order[K], rank; }; /* mobility: D^-1 */
 
+/* each becomes 1/size; 0 of rows that are rounding */
+static void inverted(double *size)
+{
+    double nothing = 0;
+    for (int m = 0; m < K; m++) if (size[m] > nothing) nothing = size[m];
+    nothing *= 1e-28;
+    for (int m = 0; m < K; m++) size[m] = size[m] > nothing ? 1/size[m] : 0;
+}
+
 /* with it M + J^T W J is positive definite where M is so on J a = 0 only */
 static void weigh(const double *M, const double *J, double *weight)
 {
@@ -81,13 +90,13 @@ static void weigh(const double *M, const double *J, double *weight)
     for (int i = 0; i < N; i++) mean += M[i*N + i]/N;
     if (!(mean > 0)) mean = 1;
     for (int m = 0; m < K; m++) {
-        double size = 0;
+        weight[m] = 0;
         for (int i = 0; i < N; i++) {
             const double mass = M[i*N + i] > 0 ? M[i*N + i] : mean;
-            size += J[m*N + i]*J[m*N + i]/mass;
+            weight[m] += J[m*N + i]*J[m*N + i]/mass;
         }
-        weight[m] = size > 0 ? 1/size : 0;
     }
+    inverted(weight);
 }
 
 /* M, or where that is not positive definite M + J^T W J, factored: which of the two, NULL of neither */
@@ -130,8 +139,9 @@ static void eliminated(struct factors *F)
     double *S = F->S, whole[K], column[K];
     for (int m = 0; m < K; m++) {
         F->order[m] = m;
-        whole[m] = S[m*K + m] > 0 ? 1/S[m*K + m] : 0;
+        whole[m] = S[m*K + m];
     }
+    inverted(whole);
     for (F->rank = 0; F->rank < K; F->rank++) {
         const int c = F->rank;
         int pivot = -1;

@@ -2,7 +2,8 @@
 
     df/dt = g.a + r = 0  for all a with  M a = forcing        g = df/du,  r what is left at a = 0
 
-that is, the row (g, -r) follows from the rows (M, forcing): decided exactly, at random states of a prime field.
+that is, the row (g, -r) follows from the rows (M, forcing): decided exactly, at random states of a prime field, or with
+50 digits where roots have no meaning there.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
@@ -17,13 +19,15 @@ from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, velocity_of
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
 from eomgen.mechanics.system import System
+from eomgen.symbolic import dense
 from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate
-from eomgen.symbolic.exact import equal_at_random_states, exact_state
+from eomgen.symbolic.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.exact import equal_at_random_states, exact_state, real_values
 from eomgen.symbolic.functions import inner, over
 from eomgen.symbolic.graph import Scalar, is_zero
 from eomgen.symbolic.modular import follows
 from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, transposed, vector_of
+from eomgen.symbolic.text import text_size
 
 STATES = 2
 MOST_SPEEDS = 24  # of a system whose momenta are looked at
@@ -65,19 +69,28 @@ def stays(system: System, assembly: Assembly, functions: Sequence[Scalar]) -> tu
 
 
 def _following(rows: Sequence[Sequence[Scalar]], asked: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
-    """Of each row asked whether it follows from the rows, at random exact states."""
+    """Of each row asked whether it follows from the rows, at random states: exact ones, or else of 50 digits."""
     flat = [x for row in (*rows, *asked) for x in row]
-    rng, width = Random(5), len(rows[0])
-    found = [True] * len(asked)
-    try:
-        for _ in range(STATES):
-            values = evaluate(flat, exact_state(flat, rng).values, PRIME_FIELD)
-            table = [values[i : i + width] for i in range(0, len(values), width)]
-            known, others = table[: len(rows)], table[len(rows) :]
-            found = [yes and follows(known, row) for yes, row in zip(found, others, strict=True)]
-    except (NoMeaning, NoValue, ValueError):
-        return (False,) * len(asked)
-    return tuple(found)
+    for follow, values_of in ((follows, _exact_values), (dense.follows, _real_values)):
+        rng, found = Random(5), [True] * len(asked)
+        try:
+            for _ in range(STATES):
+                values = iter(values_of(flat, rng))
+                table = [[next(values) for _ in row] for row in (*rows, *asked)]
+                known, others = table[: len(rows)], table[len(rows) :]
+                found = [yes and follow(known, row) for yes, row in zip(found, others, strict=True)]
+            return tuple(found)
+        except (NoMeaning, NoValue, ValueError, DerivationError):
+            continue
+    return (False,) * len(asked)
+
+
+def _exact_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
+    return evaluate(flat, exact_state(flat, rng).values, PRIME_FIELD)
+
+
+def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
+    return real_values(flat, rng, fifty_digits())
 
 
 def jacobi(system: System, assembly: Assembly) -> Scalar | None:
@@ -90,25 +103,38 @@ def jacobi(system: System, assembly: Assembly) -> Scalar | None:
 
 
 def momenta_of_the_whole(system: System, assembly: Assembly, known: Sequence[Scalar]) -> tuple[Constant, ...]:
-    """Components of momentum and angular momentum that stay constant and are not among those known, in space."""
+    """Components of momentum and angular momentum that stay constant and are not among those known.
+
+    Angular momenta about the point about which most of them stay, of such points the one about which least is new.
+    """
     bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
     many = len(assembly.M) > MOST_SPEEDS
-    if system.scope.model.space != "space" or not bodies or many or shapeless(system.motion, bodies):
+    in_space = system.scope.model.space == "space"
+    if not bodies or many or (in_space and shapeless(system.motion, bodies)):
         return ()
     heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
     P = _momentum(system, heavy)
     constant = stays(system, assembly, P) if heavy else (False,) * 3
     places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
+    moments = [_constant_moments(system, assembly, bodies, about, point) for about, point in places.items()]
     found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
-    for about, point in places.items():
-        L = angular_momentum(system.motion, point, bodies)
-        components = stays(system, assembly, L)
-        found += [Constant("L", axis, about, x) for axis, x, yes in zip("xyz", L, components, strict=True) if yes]
-        if all(components) and len(bodies) == 1:
-            found.append(Constant("L", "", about, _square(system, point, bodies[0])))
-        if any(components):
-            break
-    return _new(found, known)
+    most = max(map(len, moments))
+    new = [_new(each, known) for each in moments if len(each) == most]
+    return (*_new(found, known), *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))))
+
+
+def _constant_moments(
+    system: System, assembly: Assembly, bodies: Sequence[str], about: str, point: Vector
+) -> list[Constant]:
+    """The components of the angular momentum about a point that stay, and in space the square of one body's."""
+    in_space = system.scope.model.space == "space"
+    axes = "xyz" if in_space else "z"
+    L = angular_momentum(system.motion, point, bodies)[-len(axes) :]
+    constant = stays(system, assembly, L)
+    found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
+    if in_space and all(constant) and len(bodies) == 1:
+        found.append(Constant("L", "", about, _square(system, point, bodies[0])))
+    return found
 
 
 def _has_inertia(system: System, body: str) -> bool:

@@ -69,6 +69,8 @@ class ClosedForms:
         simple = self._simple(located)
         if len(simple) == len(self.statics.q) and (held := self._held(simple)) is not None:
             return held
+        if len(simple) == len(self.statics.q):
+            simple = self._simple(located, starts=False)
         for equations, unknowns, known in self._closed_ways(simple):
             way = (equations, unknowns, tuple(known.values()))
             if self._vain.get(way, 0) >= PATIENCE:
@@ -102,7 +104,7 @@ class ClosedForms:
         if _entangled(statics) - linear <= MOST_EXACT and size <= LONGEST:
             yield statics.equations, statics.unknowns, {}
 
-    def _simple(self, located: Located) -> dict[Node, Scalar]:
+    def _simple(self, located: Located, *, starts: bool = True) -> dict[Node, Scalar]:
         """Quarter turns, zeros and start values that coordinates are near to; whether these hold is to be seen."""
         scope, found = self.statics.system.scope, dict[Node, Scalar]()
         turning = {e for four in scope.quaternions for e in four}
@@ -112,7 +114,7 @@ class ClosedForms:
             candidates: list[Scalar] = [0 if quarters == 0 else Fraction(quarters, 2) * q.graph.pi]
             if q in turning:
                 candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
-            candidates.append(start_value(scope, scope.model.coordinates[q.name]))
+            candidates += [start_value(scope, scope.model.coordinates[q.name])] * starts
             near = [x for x in candidates if abs(located.value(x) - number) <= NEAR * (1 + abs(number))]
             if near:
                 found[q] = near[0]

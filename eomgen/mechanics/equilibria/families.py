@@ -39,7 +39,7 @@ def each_once(
         found: coordinates and multipliers of each, the nearest to the guess first.
         floats: of the parameters.
     """
-    if not statics.norms and not statics.beside:
+    if not statics.q or (not statics.norms and not statics.beside):
         return list(found)
     slopes = jacobian(statics.forces, statics.q)
     kept: list[tuple[np.ndarray, np.ndarray]] = []

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.reacting.reactions import Indeterminate, reactions_of
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
+from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.model.contacts import contacts_of
 from eomgen.symbolic.derivative import symbols_of

@@ -12,11 +12,12 @@ import numpy as np
 
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import depends_on, jacobian
-from eomgen.symbolic.descent import ARRAYS, Descent
-from eomgen.symbolic.evaluation import evaluate, order
+from eomgen.symbolic.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.descent import Descent
+from eomgen.symbolic.evaluation import order
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.isolation import can_isolate, isolated
+from eomgen.symbolic.layers import Layers
 from eomgen.symbolic.normal_form import readable
 from eomgen.symbolic.solving import has_period
 
@@ -27,6 +28,8 @@ ASIDE = 0.0123  # by which a range is shifted: roots at round numbers do not lie
 GUESSES = 400  # of few coordinates; of more they are fewer
 FEW = 4
 MOST_PLACES = 24  # that many guesses lead to
+MOST_OF_LONG = 4  # of these where the equations are long
+LONG = 500  # operations
 MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn freely
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
@@ -64,6 +67,11 @@ def places_of_rest(statics: StaticEquations, values: Mapping[Node, Any], guess: 
     return _Search(statics, values, guess).places()
 
 
+def place_near(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> np.ndarray | None:
+    """One place of rest, coordinates and multipliers: that reached from the guess, else from places about it."""
+    return _Search(statics, values, guess).one()
+
+
 @dataclass(frozen=True)
 class _Search:
     statics: StaticEquations
@@ -76,22 +84,31 @@ class _Search:
 
     def places(self) -> Places:
         statics = self.statics
-        if not statics.q:
+        if not statics.unknowns:
             return self._sorted([np.zeros(0)], complete=True, where="")
         if self._is_linear:
             return self._linear()
         reduced = self._reduced
         if reduced is not None and len(statics.q) <= MOST_ISOLATED and can_isolate(reduced):
             return self._isolated(reduced)
-        most = MOST_PLACES if not statics.norms else MOST_OF_FAMILIES
+        few = MOST_PLACES if len(order(statics.equations)) < LONG else MOST_OF_LONG
+        most = few if not statics.norms else MOST_OF_FAMILIES
         found = self._descent.roots_near(self._with_multipliers(self._scattered()), most)
         found = [z for z in found if self._is_held(z)]
         return self._sorted(found, complete=False, where="from many guesses")
 
+    def one(self) -> np.ndarray | None:
+        """The place that is reached from the guess, else the nearest of those reached from places about it."""
+        for guesses in (self.guess[None, :], self._scattered()):
+            found = self._descent.roots_near(self._with_multipliers(guesses), 1)
+            if found:
+                return found[0]
+        return None
+
     @cached_property
     def _descent(self) -> Descent:
         equations = tuple(x for x in self.statics.equations if not is_zero(x))
-        return Descent(equations, self.statics.unknowns, self.values)
+        return Descent(equations, self.statics.unknowns, self.values, telling=len(self.statics.q) or None)
 
     # -- three ways --------------------------------------------------------------------------------
 
@@ -189,25 +206,26 @@ class _Search:
 
     def _with_multipliers(self, q: np.ndarray) -> np.ndarray:
         """Places with the multipliers that balance them best."""
-        if not self.statics.lam:
-            return q
-        J, Q = self._at(self.statics.J, q), self._at((self.statics.Q,), q)
+        if not self.statics.lam or not self.statics.q:
+            return np.hstack([q, np.zeros((len(q), len(self.statics.lam)))])
+        beside, lam = self.statics.beside, self.statics.lam
+        more = tuple(zip(*jacobian(beside, lam), strict=True)) if beside else tuple(() for _ in lam)
+        alone = substituted(beside, dict.fromkeys(lam, 0))
+        J = self._at([(*row, *also) for row, also in zip(self.statics.J, more, strict=True)], q)
+        Q = self._at(((*self.statics.Q, *alone),), q)
         rows = [np.append(x, _balancing(*each)) for x, *each in zip(q, J, Q[:, 0], strict=True)]
         return np.array(rows).reshape(len(q), len(self.statics.unknowns))
 
     def _at(self, rows: Sequence[Sequence[Scalar]], q: np.ndarray) -> np.ndarray:
         """Entries as numbers at many places, places x rows x columns."""
-        values = self.floats | dict(zip(self.statics.q, q.T, strict=True))
-        with np.errstate(all="ignore"):
-            found = evaluate([x for row in rows for x in row], values, ARRAYS)
-        flat = np.stack([np.broadcast_to(x, len(q)) for x in found], axis=1)
-        return flat.astype(float).reshape(len(q), len(rows), -1)
+        found = Layers(tuple(x for row in rows for x in row), self.statics.q, self.floats).at(q)
+        return found.reshape(len(q), len(rows), len(rows[0]) if rows else 0)
 
     def _is_held(self, z: np.ndarray) -> bool:
         """False near places where the ties are singular, and would need forces without limit to hold it."""
         n = len(self.statics.q)
         J = self.statics.slopes(self.statics.J, z[:n], self.floats)
-        if not len(J) or not np.all(np.isfinite(J)):
+        if not J.size or not np.all(np.isfinite(J)):
             return True
         Q, *others = (self.statics.slopes((self.statics.Q,), z[:n] + d, self.floats)[0] for d in (0, 0.3, -0.2))
         lam = np.linalg.lstsq(J.T, -Q, rcond=SINGULAR)[0]

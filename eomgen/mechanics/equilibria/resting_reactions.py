@@ -8,14 +8,16 @@ from fractions import Fraction
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.normal_form import LIMIT, simplest
 
 WORK = 20_000  # products of terms for one value
+ROUNDED = 300  # for one coefficient where the place is known in numbers only, and so are the reactions
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
         DerivationError: a force acts at no place, so that reactions do not follow.
     """
     system, state = system_at_rest(place), state_of(place)
-    reactions = reactions_of(system, state)
+    reactions = reactions_of(system, state, work=LIMIT if place.is_exact else ROUNDED)
     positive = positive_parameters(system.scope)
     found = []
     for named in named_reactions(reactions.balance):
@@ -68,7 +70,10 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
     return reactions, tuple(found)
 
 
-def reactions_or_why(place: Equilibrium) -> tuple[Reactions | None, tuple[RestingReaction, ...], str]:
+ReactionsOrWhy = tuple[Reactions | None, tuple[RestingReaction, ...], str]
+
+
+def reactions_or_why(place: Equilibrium) -> ReactionsOrWhy:
     """(reactions, each of them, why there are none)."""
     try:
         return *reactions_at(place), ""

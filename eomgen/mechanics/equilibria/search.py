@@ -16,21 +16,24 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, UsageError
+from eomgen.errors import DerivationError
+from eomgen.mechanics.equilibria.chosen import Chosen, chosen, holds_velocities, unheld
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
 from eomgen.mechanics.equilibria.families import each_once, nearest_first
+from eomgen.mechanics.equilibria.guesses import Guess
+from eomgen.mechanics.equilibria.locked import is_balanced
 from eomgen.mechanics.equilibria.one_sided import pulling
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
-from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, refuse_unrelated, static_equations
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, static_equations
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.places import Located
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.mechanics.system import System
-from eomgen.model.values import exact_parameters, first_guesses, start_values
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 
 NOTHING = 1e-25  # of a coordinate or multiplier, which is known to 50 digits
@@ -80,6 +83,7 @@ class Equilibria:
         complete: whether there are no others, where `where` says.
         where: in which range they were sought, in words.
         indifferent: coordinates that no force holds anywhere: they stay where they start.
+        chosen: coordinates that velocity ties let it rest at any value of, near the start: they stay there.
     """
 
     statics: StaticEquations
@@ -87,6 +91,7 @@ class Equilibria:
     complete: bool
     where: str
     indifferent: tuple[Node, ...]
+    chosen: tuple[Node, ...] = ()
 
     def nearest(self, guess: Mapping[str, float] | None = None) -> Equilibrium:
         """The place of rest that is reached from a guess (None: from the start).
@@ -161,8 +166,32 @@ class _Search:
 
     @cached_property
     def statics(self) -> StaticEquations:
+        """Without the coordinates that no equation holds, and those that may be chosen."""
+        found, chosen = self._held_by_forces, self._chosen.coordinates
+        return found.holding({q: self._fixed[q] for q in chosen}) if chosen else found
+
+    @cached_property
+    def _held_by_forces(self) -> StaticEquations:
         """Without the coordinates that no equation holds."""
-        return self.whole.without(self.whole.indifferent)
+        found, scope = self.whole.without(self.whole.indifferent), self.system.scope
+        idle = unheld(found) if self._slides else ()
+        return found.holding({q: start_value(scope, scope.model.coordinates[q.name]) for q in idle}) if idle else found
+
+    @property
+    def _indifferent(self) -> tuple[Node, ...]:
+        return tuple(q for q in self.whole.q if q not in self._held_by_forces.q)
+
+    @cached_property
+    def _chosen(self) -> Chosen:
+        statics = self._held_by_forces
+        if not self._slides:
+            return Chosen()
+        return replace(chosen(statics, self.values, self._guess.of(statics.q)), indifferent=self._indifferent)
+
+    @cached_property
+    def _slides(self) -> bool:
+        """Whether velocity ties leave it free to go where none of its coordinates says."""
+        return bool(self.whole.J) and holds_velocities(self.whole, self.values, self._guess.of(self.whole.q))
 
     @cached_property
     def valued(self) -> bool:
@@ -182,29 +211,27 @@ class _Search:
 
     @cached_property
     def _fixed(self) -> dict[Node, Scalar]:
-        """Driven coordinates, and those that nothing holds, where they start."""
-        scope = self.system.scope
-        return {q: start_value(scope, scope.model.coordinates[q.name])
-                for q in scope.symbols.q if q not in self.statics.q}  # fmt: skip
+        """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
+        scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
+        fixed = {q: start_value(scope, scope.model.coordinates[q.name]) for q in scope.symbols.q if q not in free}
+        return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
 
     @cached_property
-    def first(self) -> np.ndarray:
-        """The guess: `near` where it is given, else the start."""
-        model = self.system.scope.model
-        unknown = [name for name in self.guess if name not in model.coordinates]
-        if unknown:
-            raise UsageError(f"no coordinate '{unknown[0]}'", mend=f"one of {', '.join(model.coordinates)}")
-        trial = {name: self.floats[x] for name, x in self.system.symbols.parameters.items()}
-        at = start_values(model, trial)[0] | first_guesses(model, trial) | _near(self.system, self.values)
-        return np.array([float({**at, **self.guess}[q.name]) for q in self.statics.q])
+    def _guess(self) -> Guess:
+        return Guess(self.system, self.values, self.guess)
 
     @cached_property
     def _places(self) -> Places:
         """Where the forces balance, the nearest to the guess first."""
-        places = places_of_rest(self.statics, self.values, self.first)
-        for z in places.found[:1]:
-            refuse_unrelated(self.statics, z[: len(self.statics.q)], self.floats)
-        return replace(places, found=tuple(nearest_first(self.statics, places.found, self.first)))
+        first = self._guess.of(self.statics.q)
+        places = places_of_rest(self.statics, self.values, first)
+        found = [z for z in places.found if is_balanced(self.whole, self._at(z))]
+        return replace(places, found=tuple(nearest_first(self.statics, found, first)))
+
+    def _at(self, z: np.ndarray) -> dict[Node, float]:
+        """Values of everything at a place."""
+        fixed = dict(zip(self._fixed, evaluate(tuple(self._fixed.values()), self.floats, FLOAT), strict=True))
+        return {**self.floats, **fixed, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
 
     @cached_property
     def _forms(self) -> ClosedForms:
@@ -229,7 +256,8 @@ class _Search:
         complete = places.complete and (self.valued or len(found) == len(places.found))
         certain = self.valued or places.where == ANYWHERE
         where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
-        return Equilibria(self.statics, tuple(found), complete, where, self.whole.indifferent)
+        return Equilibria(self._held_by_forces, tuple(found), complete, where, self._indifferent,
+                          self._chosen.coordinates)  # fmt: skip
 
     def _equilibrium(self, z: np.ndarray, forms: ClosedForms) -> Equilibrium | None:
         """The place, exact where it can be; None where only trial values of the parameters lead to it."""
@@ -239,27 +267,20 @@ class _Search:
         if not self.valued and held is None:
             return None
         exact = {**self._fixed, **({} if held is None else held.state)}
-        stability = stability_of(self.statics, {**exact, **({} if held is None else held.particular)}, numbers,
-                                 self.values if self.valued else None)  # fmt: skip
-        own = {q: located.value(x) for q, x in self._fixed.items()} | self._determined(z)
+        fixed = {q: located.value(x) for q, x in self._fixed.items()}
+        stability = stability_of(
+            self.whole if self._slides else self.statics, {**exact, **({} if held is None else held.particular)},
+            {**fixed, **numbers}, self.values if self.valued else None, self._chosen if self._slides else None,
+        )  # fmt: skip
+        own = fixed | self._determined(z)
         own |= {q: 0.0 for q in own if q in exact and is_zero(exact[q])}  # no 1e-51 for it
         return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
 
     def _determined(self, z: np.ndarray) -> dict[Node, float]:
         """Coordinates, and the multipliers that have a single value."""
-        statics, n = self.statics, len(self.statics.q)
-        J = statics.slopes(statics.J, z[:n], self.floats)
+        statics, whole, n, at = self.statics, self.whole, len(self.statics.q), self._at(z)
+        J = whole.slopes(whole.J, np.array([at[q] for q in whole.q]), self.floats)
         single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
         kept = dict(zip(statics.q, z[:n], strict=True))
         kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
         return {node: 0.0 if abs(x) < NOTHING else float(x) for node, x in kept.items()}
-
-def _near(system: System, values: Mapping[Node, Any]) -> dict[str, float]:
-    """The first guesses of coordinates that are not dependent."""
-    scope, found = system.scope, {}
-    for name, part in scope.model.coordinates.items():
-        if part.near is not None:
-            found[name] = float(evaluate((scope.value(part.near),), values, fifty_digits())[0])
-    return found
-
-

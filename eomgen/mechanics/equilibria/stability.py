@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.equilibria.chosen import Chosen
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.mechanics.loops.freedom import rank_of_ties
@@ -36,6 +37,7 @@ WORK = 20_000  # products of terms for one entry of K
 MOST_EXACT = 6  # freedoms of a K that is written exactly
 ZERO = 1e-9  # of an eigenvalue of the scaled K, or of a derivative, below which it is 0
 SINGULAR = 1e-7  # of the ties at the place: singular values below this part of the largest are 0
+NOISE = 1e-14  # of an entry of K against its terms
 ROUNDING = 1e-14  # of an entry of J against the largest of its row, below which it is 0
 
 Matrix = tuple[tuple[Any, ...], ...]
@@ -63,7 +65,7 @@ class Stability:
 
 def stability_of(
     statics: StaticEquations, exact: Mapping[Node, Scalar], numbers: Mapping[Node, float],
-    values: Mapping[Node, Any] | None,
+    values: Mapping[Node, Any] | None, chosen: Chosen | None = None,
 ) -> Stability:  # fmt: skip
     """The stability of a place of rest.
 
@@ -71,11 +73,12 @@ def stability_of(
         exact: coordinates and multipliers in closed form, as far as they are known.
         numbers: all of them, and the parameters.
         values: of the parameters with 50 digits; None: some have none, and K is judged by the signs of its terms.
+        chosen: where ties hold velocities and no positions, what they leave open: K d = 0 for d to rest beside it.
     """
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
     try:
-        return _Place(statics, exact, numbers, values).stability()
+        return _Place(statics, exact, numbers, values, chosen).stability()
     except (NoValue, ZeroDivisionError):  # as of x^(1/3) at 0
         return Stability("undecided", "the forces have no derivatives there")
 
@@ -86,6 +89,7 @@ class _Place:
     exact: Mapping[Node, Scalar]
     numbers: Mapping[Node, float]
     values: Mapping[Node, Any] | None
+    chosen: Chosen | None
 
     @cached_property
     def known(self) -> bool:
@@ -111,11 +115,11 @@ class _Place:
             return Stability(INDIFFERENT, "the ties leave no freedom")
         nodes = tuple(statics.q[k] for k in along)
         K = self._exact_K(along) if self.known and len(along) <= MOST_EXACT else None
-        shown: Matrix = K if K is not None else _as_exact(self._numeric_K(J, along))
+        shown: Matrix = K if K is not None else _as_exact(self._numeric_K(J, along), self._size_of_terms)
         minors = _minors(K) if K is not None and self.values is None else ()
         if len(along) > 1 and not self._has_potential(along):
-            return Stability("no potential energy", "forces without a potential act, and K is not symmetric", nodes,
-                             shown)  # fmt: skip
+            why = "velocity ties push there" if self._is_conservative else "forces without a potential act"
+            return Stability("no potential energy", f"{why}, and K is not symmetric", nodes, shown)
         if self.values is None:
             kind, why = self._by_terms(K, minors)
         else:
@@ -137,10 +141,13 @@ class _Place:
         r = int(np.linalg.matrix_rank(scaled, tol=SINGULAR))
         if r < self._generic_rank:
             return None
-        own = {u.name[:-1] for u in self.statics.system.symbols.u}
+        own = {name for name, part in self.statics.system.scope.model.coordinates.items() if not part.dependent}
         turning = {e: -abs(float(self.state[e])) for four in self.statics.system.scope.quaternions for e in four
                    if e in self.statics.q}  # of a quaternion the largest follows from the others
         order = sorted(range(n), key=lambda k: (self.statics.q[k].name in own, turning.get(self.statics.q[k], 1.0)))
+        if self.chosen is not None:  # what no force holds follows, and then what is declared last
+            idle = {*self.chosen.indifferent, *self.chosen.coordinates}
+            order = sorted(range(n), key=lambda k: (self.statics.q[k].name in own, self.statics.q[k] not in idle, -k))
         chosen: list[int] = []
         for k in order:  # columns of the dependent coordinates, one by one
             if len(chosen) < r and np.linalg.matrix_rank(scaled[:, [*chosen, k]], tol=SINGULAR) > len(chosen):
@@ -202,13 +209,18 @@ class _Place:
 
     def _has_potential(self, along: Sequence[int]) -> bool:
         """Whether the forces come from a potential energy: dQ_i/dq_j = dQ_j/dq_i."""
-        Q = self.statics.unbalanced
-        slopes = jacobian(Q, self.statics.q)
-        pairs = [(slopes[i][j], slopes[j][i]) for i in range(len(Q)) for j in range(i)]
-        if all(is_zero(a - b) or vanishes(a - b) for a, b in pairs):
+        if self._is_conservative and self.chosen is None:
             return True
         K = self._numeric_K(self._numbers(self.statics.J), along)
         return bool(np.all(abs(K - K.T) <= ZERO * np.max(abs(K), initial=0)))
+
+    @cached_property
+    def _is_conservative(self) -> bool:
+        """Whether the forces that are no gradients by themselves have a potential."""
+        Q = self.statics.unbalanced
+        slopes = jacobian(Q, self.statics.q)
+        pairs = [(slopes[i][j], slopes[j][i]) for i in range(len(Q)) for j in range(i)]
+        return all(is_zero(a - b) or vanishes(a - b) for a, b in pairs)
 
     # -- signs ---------------------------------------------------------------------------------------
 
@@ -236,7 +248,9 @@ class _Place:
             return STABLE, "V has a minimum there"
         if np.min(eigenvalues) < -ZERO:
             return UNSTABLE, "V has a maximum there" if np.max(eigenvalues) < -ZERO else "V has a saddle there"
-        if single:
+        if self.chosen is not None and self.chosen.smooth:
+            return _drifting(int(np.sum(eigenvalues <= ZERO)), len(K))
+        if single and self.chosen is None:
             return by_higher_derivatives(self.statics, self.state)
         return "undecided", "the second variation of V vanishes in some direction"
 
@@ -254,8 +268,16 @@ class _Place:
         return max(found)
 
 
-def _as_exact(K: np.ndarray) -> Matrix:
-    return tuple(tuple(float(x) + 0.0 for x in row) for row in K)
+def _drifting(neutral: int, freedoms: int) -> tuple[str, str]:
+    """Of a place in a family of places of rest, where V falls nowhere."""
+    if neutral == freedoms:
+        return INDIFFERENT, "it rests wherever the ties let it go"
+    return STABLE, "V rises in every motion that leaves the places of rest"
+
+
+def _as_exact(K: np.ndarray, size: float) -> Matrix:
+    """The entries, what is rounding of their terms 0."""
+    return tuple(tuple(float(x) if abs(x) > NOISE * size else 0.0 for x in row) for row in K)
 
 
 def _minors(K: Matrix) -> tuple[Scalar, ...]:

@@ -25,7 +25,7 @@ from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
 from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.derivative import depends_on, substituted
 from eomgen.symbolic.evaluation import FLOAT, evaluate, order
 from eomgen.symbolic.expressions import as_expression
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -37,6 +37,7 @@ WORK = 5_000  # products of terms for one equation
 RANK = 1e-9  # of the largest singular value of scaled rows, below which one is 0
 
 Row = tuple[Scalar, ...]
+State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,17 @@ class StaticEquations:
         return replace(self, q=of(self.q), Q=of(self.Q), unbalanced=of(self.unbalanced), J=tuple(map(of, self.J)),
                        beside=(*self.beside, *beside))  # fmt: skip
 
+    def holding(self, at: State) -> StaticEquations:
+        """The same over the other coordinates, those named held at a place; the forces along them balance too."""
+        kept = [k for k, q in enumerate(self.q) if q not in at]
+        beside = [force for q, force in zip(self.q, self.forces, strict=True) if q in at]
+        Q, unbalanced, phi, others = (substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.beside))
+        rows = [substituted(row, at) for row in self.J]
+        more = tuple(x for x in substituted(tuple(beside), at) if not is_zero(x))
+        return replace(self, q=tuple(self.q[k] for k in kept), Q=tuple(Q[k] for k in kept),
+                       unbalanced=tuple(unbalanced[k] for k in kept), phi=phi, beside=(*others, *more),
+                       J=tuple(tuple(row[k] for k in kept) for row in rows))  # fmt: skip
+
     def slopes(self, rows: Sequence[Row], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
@@ -132,11 +144,10 @@ def static_equations(system: System) -> StaticEquations:
     """The equations of the system at rest, its drives held.
 
     Raises:
-        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a tie
-            that leaves no relation between positions.
+        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily.
     """
     _refuse_dry_friction(system)
-    system, held = _with_drives_held(system)
+    system, held = with_drives_held(system)
     free = system.free or system
     scope = free.scope
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
@@ -185,25 +196,10 @@ def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) 
     return tuple(x for x in found if depends_on(x, q))
 
 
-def refuse_unrelated(statics: StaticEquations, q: np.ndarray, values: Mapping[Node, float]) -> None:
-    """Refuse a velocity row that leaves no relation between positions.
-
-    Raises:
-        DerivationError: rest is then possible in many places.
-    """
-    relations = statics.slopes(jacobian(statics.phi, statics.q), q, values) if statics.phi else np.zeros((0, len(q)))
-    if rank(relations) >= rank(statics.slopes(statics.J, q, values)):
-        return
-    free = statics.system.free or statics.system
-    names = [row.tie for row in free.ties.closing if row.gap is None]
-    what = f"'{names[0] if names else 'a tie'}' holds velocities and no positions: rest is possible in many places"
-    raise DerivationError(what, f"constraints.{names[0]}" if names else "", "ask it of a system that is held in place")
-
-
 # -- what is held ------------------------------------------------------------------------------------
 
 
-def _with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
+def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
     """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
     scope = system.scope
     bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))

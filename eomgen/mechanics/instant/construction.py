@@ -17,6 +17,7 @@ from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.mechanics.loops.freedom import is_particle
 from eomgen.mechanics.reacting.components import Component, components_of
 from eomgen.mechanics.reacting.effects import Axes
+from eomgen.mechanics.ties import holds_identically
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.derivative import substituted
 from eomgen.symbolic.graph import is_zero
@@ -146,7 +147,8 @@ class _Search:
         return found
 
     def _wanders(self, component: Component) -> bool:
-        """Whether the seat of a joint, or a point that a tie names, moves in its body as the model says.
+        """Whether the seat of a joint, or a point that a tie names, moves in its body as the model says, or a tie has
+        rates beside those of the bodies.
 
         There no point of the body is held, and the line of the push says nothing of velocities.
         """
@@ -154,6 +156,9 @@ class _Search:
         if component.kind == "joint":
             link = motion.link(component.owner)
             return motion.moves((*link.before.p, *link.point))
+        rows = [row for row in self.mechanism.system.ties.rows if row.tie == component.owner]
+        if any(row.number == component.number and not holds_identically(row.direct) for row in rows):
+            return True
         tie = motion.scope.model.constraints[component.owner]
         points = (leaf.value for leaf in leaves_of(tie, ()) if getattr(leaf.rule, "of", "") == "point")
         return any(motion.moves(motion.place(point)[1]) for point in points)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 from typing import Any
@@ -27,6 +27,7 @@ from eomgen.symbolic.normal_form import collected_in, readable_all
 WORK = 50_000  # products of terms for one entry
 RANK = 1e-9  # of a row's distance from those before it, against its length
 EXACT = 1e-20  # of an entry, against the largest of its row
+UNSAID = ""
 OPEN = 1e-9  # of a gap, against the size of the mechanism
 
 Values = Mapping[Node, Any]
@@ -61,14 +62,24 @@ def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bo
         entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
         kept = {node: x for node, x in entries if not is_zero(x)}
         lines.append(Line(f"the tie '{row.tie}'", kept, -flat[len(ties.closing) * width + k]))
-    return lines
+    return [*_norm_lines(system, state, accelerations=accelerations), *lines]
 
 
-def speed_lines(system: System, speeds: Mapping[str, Expression]) -> list[Line]:
-    """The start speeds of coordinates as equations."""
-    table = {u.name: u for u in system.symbols.u}
-    return [Line(f"the start speed {name}", {table[name]: 1}, system.scope.value(speed))
-            for name, speed in speeds.items()]  # fmt: skip
+def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool) -> Iterator[Line]:
+    """e . e' = 0, or e . e'' = - e' . e', of every quaternion; nobody wrote them, so no message names them."""
+    scope, rates = system.scope, system.symbols.a if accelerations else system.symbols.u
+    for four in scope.quaternions:
+        gap = sum((e * scope.names[e.name + "'"] for e in four), start=0)
+        gap = scope.with_accelerations((gap,))[0] if accelerations else gap
+        (placed,) = readable_all(substituted((gap,), state), WORK, positive_parameters(scope))
+        yield linear_line(UNSAID, placed, rates, "")
+
+
+def speed_lines(system: System, speeds: Mapping[str, Expression], state: Mapping[Node, Scalar]) -> list[Line]:
+    """The start speeds of coordinates, and of declared speeds, as equations."""
+    scope, u = system.scope, system.symbols.u
+    gaps = substituted([scope.names[name] - scope.value(speed) for name, speed in speeds.items()], state)
+    return [linear_line(f"the start speed {name}", gap, u, "speeds") for name, gap in zip(speeds, gaps, strict=True)]
 
 
 def given_lines(
@@ -91,7 +102,7 @@ def given_lines(
         (gap,) = substituted((left - right,), state)
         if order == "velocity" and depends_on(gap, symbols.a):
             raise DerivationError(f"'{equation.text}' holds an acceleration", where, "put it under `acceleration`")
-        lines.append(linear_line(equation.text, gap, (*rates, *symbols.unknowns.values()), where))
+        lines.append(linear_line(f"'{equation.text}'", gap, (*rates, *symbols.unknowns.values()), where))
     return lines
 
 
@@ -120,10 +131,10 @@ def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) ->
     try:
         parts = collected_in(gap, unknowns)
     except DerivationError:
-        raise DerivationError(f"'{text}' is not linear in what it gives", where,
+        raise DerivationError(f"{text} is not linear in what it gives", where,
                               "give components: vx(...), vy(...), omega(...)") from None  # fmt: skip
     entries = {node: x for node, x in parts.items() if node is not None}
-    return Line(f"'{text}'", entries, -parts.get(None, 0))
+    return Line(text, entries, -parts.get(None, 0))
 
 
 def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
@@ -215,7 +226,7 @@ def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray, ties: int) 
         rest = matrix[i, -1] - shares @ basis[before][:, -1]
         if abs(rest) > RANK * max(1.0, float(np.max(np.abs(matrix[:, -1])))):
             others = dict.fromkeys(lines[kept[k]].said for k, share in zip(before, shares, strict=True)
-                                   if abs(share) > RANK)  # fmt: skip
+                                   if abs(share) > RANK and lines[kept[k]].said != UNSAID)  # fmt: skip
             against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
             if i < ties:
                 raise DerivationError(f"no motion has these velocities: {line.said}{against}", "given",

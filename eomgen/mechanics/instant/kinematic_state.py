@@ -128,7 +128,19 @@ class KinematicState:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it is where it is very long."""
-        return x if text_size(x) > LARGE else simplest(x, WORK, positive_parameters(self.system.scope))
+        known = self._written
+        if x not in known:
+            known[x] = x if text_size(x) > LARGE else simplest(x, WORK, self._positive)
+        return known[x]
+
+    @cached_property
+    def _written(self) -> dict[Scalar, Scalar]:
+        """What was made readable once."""
+        return {}
+
+    @cached_property
+    def _positive(self) -> frozenset[Node]:
+        return positive_parameters(self.system.scope)
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""

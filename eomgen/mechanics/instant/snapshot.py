@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from eomgen.errors import DerivationError, MissingValues, NotYet
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.instant.given_rows import (
     Line,
     given_lines,
@@ -110,11 +110,11 @@ class Snapshot:
         """
         symbols = self.system.symbols
         ties = tie_lines(self.system, self.places)
-        given = speed_lines(self.system, self.speeds)
+        given = speed_lines(self.system, self.speeds, self.places)
         given += given_lines(self.system, self.places, self.velocity, symbols.u, "velocity")
         for text, symbol in self.assumed.items():
             gap = self._at(parse(text, references=True), self.places) - symbol
-            given.append(linear_line(text, gap, symbols.u, "given"))
+            given.append(linear_line(f"'{text}'", gap, symbols.u, "given"))
         return self._known(ties, given, symbols.u, self.places)
 
     @cached_property
@@ -188,7 +188,7 @@ class Snapshot:
         """
         symbols, known = self.system.symbols, self.velocities
         rank = len(symbols.u) - known.freedoms
-        if rank < len(self.system.ties.closing) and not known.free:
+        if rank < len(self._bending) and not known.free:
             solution_of(self.system, self._bending, (), symbols.a, self._near)
 
     @cached_property
@@ -276,10 +276,6 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
         DerivationError: ties that do not close at the start.
     """
     free = free_system_of(freed(model))
-    if free.scope.quaternions:
-        (first, *_), *_ = free.scope.quaternions
-        raise NotYet(f"an instant of a body that is turned by a quaternion is not solved yet: '{first.name}'",
-                     f"coordinates.{first.name}", "describe the orientation by angles")  # fmt: skip
     places, numbers = _places(free)
     located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
     exact = by_coordinates or not located
@@ -289,6 +285,7 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     given = model.given
     speeds = {f"{name}'": part.speed for name, part in model.coordinates.items()
               if part.speed is not None and not part.driven}  # fmt: skip
+    speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
     velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
     return Snapshot(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
 

@@ -16,10 +16,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.loads import SystemScene
+from eomgen.mechanics.loops.branch_sides import Side, sides_of
 from eomgen.mechanics.loops.closure import gaps_of, movable
 from eomgen.mechanics.loops.consistency import is_guess
 from eomgen.mechanics.loops.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
+from eomgen.model.own_units import in_own_unit
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.dense import independent_rows
 from eomgen.symbolic.derivative import jacobian, symbols_of
@@ -45,14 +47,17 @@ class Branch:
     Args:
         values: of the coordinates that follow.
         sign: of det d phi/dq over them; 0 where rows are redundant: no choice of them is independent everywhere.
+        words: the values as their user writes them.
+        sides: on which side links of the plane are pinned together.
     """
 
     values: Mapping[str, float]
     sign: int
+    words: str = ""
+    sides: tuple[Side, ...] = ()
 
     def __str__(self) -> str:
-        named = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
-        return named + {1: " (+)", -1: " (-)", 0: ""}[self.sign]
+        return self.words + {1: " (+)", -1: " (-)", 0: ""}[self.sign]
 
 
 @dataclass(frozen=True)
@@ -96,6 +101,7 @@ class _Search:
     """Newton's method in floats.
 
     Args:
+        system: whose loops close.
         gaps, slopes: phi, and its derivatives by what is sought.
         rows: those that are independent.
         agreeing: what is positive where hinges and welds are not turned over.
@@ -104,6 +110,7 @@ class _Search:
         reach: how far lengths may lie from where they are.
     """
 
+    system: System
     gaps: tuple[Any, ...]
     slopes: tuple[Any, ...]
     rows: tuple[int, ...]
@@ -125,10 +132,10 @@ class _Search:
             phi, J = self._at(place)
             if not np.all(np.isfinite(J)):
                 return None
+            place = place - np.linalg.lstsq(J, phi, rcond=1e-12)[0]
             if np.max(np.abs(phi)) < CLOSED:
                 fits = self.is_regular(J) and self._is_upright(place)
                 return self.here + self.apart(place, self.here) if fits else None
-            place = place - np.linalg.lstsq(J, phi, rcond=1e-12)[0]
         return None
 
     def is_regular(self, J: np.ndarray) -> bool:
@@ -158,9 +165,11 @@ class _Search:
 
     def branch(self, place: np.ndarray) -> Branch:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
+        words = ", ".join(f"{name} = {in_own_unit(self.system.scope.model, name, x, 6)}" for name, x in values.items())
+        told = words, sides_of(self.system, self._state(place))
         if len(self.rows) < len(self.gaps):
-            return Branch(values, 0)
-        return Branch(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1)
+            return Branch(values, 0, *told)
+        return Branch(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1, *told)
 
 
 def _plain(x: float) -> float:
@@ -191,7 +200,7 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     agreeing = tuple(x for name, tie in system.scope.model.constraints.items()
                      for x in tie.agreeing(SystemScene(system.motion, f"constraints.{name}")))  # fmt: skip
     reach = 2 * max(lengths, default=1.0)
-    return _Search(gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
+    return _Search(system, gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
 
 
 def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node]:

@@ -117,7 +117,10 @@ class ClosedInstant:
         found = {}
         for node, x in state.items():
             if not depends_on(x, (*self._moving, self.system.symbols.t)):
-                x = simplest(x, LIMIT, self.located.positive)
+                try:
+                    x = simplest(x, LIMIT, self.located.positive)
+                except DerivationError:  # a division by 0 at this place
+                    continue
                 if self.located.agrees(x, node):
                     found[node] = x
         return found
@@ -157,9 +160,7 @@ def position_equations(
     return gaps + _integrated_rates(system, start) + _integrated_relations(system, start, relations)
 
 
-def _integrated_relations(
-    system: System, start: Mapping[Node, Scalar], relations: Relations | None
-) -> list[Scalar]:
+def _integrated_relations(system: System, start: Mapping[Node, Scalar], relations: Relations | None) -> list[Scalar]:
     """q_k - q_k0 - integral of A over q_s, of u_k = A(q_s) u_s: the mass centre that keeps its place."""
     if relations is None:
         return []

@@ -22,6 +22,7 @@ from eomgen.symbolic.graph import Node, Scalar
 
 STEPS = 60  # of the search
 CLOSED = 1e-28  # of a gap, against a size of 1
+ROUNDED = 1e-13  # of a gap that comes no nearer: redundant rows may differ by the rounding of given decimals
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 State = dict[Node, Any]
@@ -127,12 +128,16 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
     """
     gaps, scale = (*gaps_of(ties), *_norms(ties)), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
+    before, left = state, np.inf
     try:
         for _ in range(STEPS):
             phi = evaluate(gaps, state, fifty_digits())
             size = max((abs(x) for x in phi), default=0)
             if size < CLOSED:
                 return state
+            if left < ROUNDED and size > left / 2:
+                return before
+            before, left = state, size
             slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
             slope = slope * scale
             damped = np.vstack([slope, min(float(size), 1.0) * np.eye(len(free))])

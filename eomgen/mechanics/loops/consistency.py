@@ -57,23 +57,42 @@ def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Nod
 
 
 def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
-    """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none."""
+    """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none.
+
+    Of each tier no more is changed than what those before it cannot close.
+    """
     u = ties.motion.scope.symbols.u
     if not ties.closing or not u:
         return state
     entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
     values = np.array([float(x) for x in evaluate(entries, state, fifty_digits())])
-    k = len(ties.closing)
-    J, open_rate = values[:-k].reshape(k, len(u)), values[-k:]
-    free: list[int] = []
-    for tier in tiers:
-        free += [u.index(x) for x in tier]
-        scale = 1 / _slopes(J[:, free])
-        step = scale * np.linalg.lstsq(J[:, free] * scale, -open_rate, rcond=DEPENDENT)[0]
-        size = np.max(abs(J[:, free]) @ abs(step) + abs(open_rate))
-        if np.all(abs(J[:, free] @ step + open_rate) <= DEPENDENT * size):
-            return state | {u[i]: state[u[i]] + float(d) for i, d in zip(free, step, strict=True)}
-    return None
+    closing = len(ties.closing)
+    J, open_rate = values[:-closing].reshape(closing, len(u)), values[-closing:]
+    found, step = open_rate, np.zeros(len(u))
+    columns = [[u.index(x) for x in tier] for tier in tiers]
+    for k in reversed(range(len(columns))):
+        earlier = [i for tier in columns[:k] for i in tier]
+        step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier])
+        found = found + J[:, columns[k]] @ step[columns[k]]
+    size = np.max(abs(J) @ abs(step) + abs(open_rate))
+    if np.any(abs(J @ step + open_rate) > DEPENDENT * size):
+        return None
+    return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
+
+
+def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The least d for which others can close what J d leaves: P (J d + left) = 0, P = 1 - J_o J_o^+."""
+    if not J.shape[1]:
+        return np.zeros(0)
+    P = np.eye(len(J))
+    if others.shape[1]:
+        unit = others / _slopes(others)
+        P = P - unit @ np.linalg.pinv(unit, rcond=DEPENDENT)
+    scale = 1 / _slopes(J)
+    rows = np.where(abs(P @ J * scale) > DEPENDENT, P @ J * scale, 0.0)
+    open_ = np.where(abs(P @ left) > ROUNDING * np.max(abs(left), initial=0.0), P @ left, 0.0)
+    found: np.ndarray = scale * np.linalg.lstsq(rows, -open_, rcond=DEPENDENT)[0]
+    return found
 
 
 def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:
@@ -111,7 +130,9 @@ def is_guess(model: Model, name: str) -> bool:
         part = model.coordinates[name]
         return part.start is None or part.near is not None
     if name in model.speeds:
-        return model.speeds[name].start is None
+        speed = model.speeds[name]
+        rates = [] if speed.rate is None else [x for x in speed.rate.names if x[:-1] in model.coordinates]
+        return speed.start is None and all(model.coordinates[rate[:-1]].speed is None for rate in rates)
     return name[:-1] in model.coordinates and model.coordinates[name[:-1]].speed is None
 
 

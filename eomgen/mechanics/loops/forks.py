@@ -17,6 +17,7 @@ import numpy as np
 
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.ties import Ties
+from eomgen.symbolic.dense import of_one_length
 from eomgen.symbolic.derivative import jacobian
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
@@ -63,7 +64,7 @@ def fork_at(ties: Ties, state: State) -> Fork | None:
         return None
     J = _matrix(ties, state)
     lengths = np.linalg.norm(J, axis=1, keepdims=True)
-    U, sizes, _ = np.linalg.svd(J / np.where(lengths > 0, lengths, 1.0))
+    U, sizes, _ = np.linalg.svd(of_one_length(J))
     here = int(np.sum(sizes > DEPENDENT))
     if here == len(ties.closing):
         return None

@@ -25,6 +25,9 @@ from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.dense import independent_rows
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.spatial import Vector
+
+Columns = tuple[tuple[Vector, Vector], ...]
 
 DEPENDENT = 1e-7  # what is left of a unit row that the rows before it make up
 
@@ -109,8 +112,8 @@ def counted(ties: Ties) -> tuple[int, str]:
     particles = [link for link in motion.links if is_particle(motion, link)]
     bodies = [link for link in motion.links if link not in particles]
     free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
-    joints = sum(_components(link, of_body) for link in bodies)
-    joints += sum(_components(link, of_particle) for link in particles)
+    joints = sum(_components(ties, link, of_body, link.S) for link in bodies)
+    joints += sum(_components(ties, link, of_particle, _sliding(link.S)) for link in particles)
     driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
     taken = [(joints, "joints"), (len(ties.rows), "ties"), (driven, "given motions")]
     total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
@@ -121,7 +124,7 @@ def counted(ties: Ties) -> tuple[int, str]:
 def is_particle(motion: Motion, link: Link) -> bool:
     """A point mass that its joint does not turn."""
     shape = motion.scope.model.bodies[link.name].shape
-    turns = any(not is_zero(x) for w, _ in link.S for x in w)
+    turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
     return shape is not None and shape.kind == "particle" and (_is_placed(link) or not turns)
 
 
@@ -129,9 +132,28 @@ def _is_placed(link: Link) -> bool:
     return link.joint is None or not link.joint.carries_reaction
 
 
-def _components(link: Link, free: int) -> int:
-    """How many components of motion the joint takes; what is placed, or has no joint, keeps all."""
-    return 0 if _is_placed(link) else free - len(link.S)
+def _components(ties: Ties, link: Link, free: int, columns: Columns) -> int:
+    """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
+
+    A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
+    """
+    if _is_placed(link):
+        return 0
+    constant = sum(column not in _ways(ties.motion, link) for column in columns)
+    satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in ties.rows)
+    return free - len(columns) + max(0, constant - satisfied)
+
+
+def _ways(motion: Motion, link: Link) -> Columns:
+    """The columns of S along which the joint moves."""
+    if len(link.S) != len(link.s):  # of a quaternion
+        return link.S
+    return tuple(column for column, s in zip(link.S, link.s, strict=True) if motion.moves((s,)))
+
+
+def _sliding(columns: Columns) -> Columns:
+    """Those that turn nothing."""
+    return tuple((w, v) for w, v in columns if all(is_zero(x) for x in w))
 
 
 # -- by rank ---------------------------------------------------------------------------------------

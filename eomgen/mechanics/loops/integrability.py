@@ -35,6 +35,7 @@ from eomgen.symbolic.text import text_size
 
 VANISHES = 1e-9  # of numbers from 50 digits, against their own size
 WORK = 5_000  # products of terms for making an integral readable
+NOISE = 1e-30  # of a bracket that vanishes, in 50 digits
 LONGEST = 400  # characters of a form that is integrated in closed form
 
 Form = tuple[Scalar, ...]
@@ -161,7 +162,7 @@ def _reached(forms: _Forms) -> int:
         newest = []
         for field in brackets:
             value = forms.numbers(field)
-            if _rank([*(v for _, v in found), value]) > len(found):
+            if np.linalg.norm(value) > NOISE and _rank([*(v for _, v in found), value]) > len(found):
                 found.append((field, value))
                 newest.append(field)
     return len(found)

@@ -9,8 +9,10 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.loops.closure import number
 from eomgen.mechanics.loops.elimination import dependent_coordinates
+from eomgen.mechanics.loops.nearest_miss import nearest_miss
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
+from eomgen.model.own_units import in_own_unit
 from eomgen.symbolic.derivative import depends_on, gradient
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
 from eomgen.symbolic.graph import Node, Scalar
@@ -29,8 +31,24 @@ def refuse_open_gaps(system: System, state: State) -> None:
     if found is None:
         return
     row, gap, size = found
+    if size == float("inf"):
+        raise DerivationError(f"'{row.tie}' (row {row.number}) has no value at the start", f"constraints.{row.tie}",
+                              "give start values at which its roots and quotients have one")  # fmt: skip
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise DerivationError(what, f"constraints.{row.tie}", _mend(system, gap))
+    raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
+
+
+def _nearest(system: System, state: State) -> str:
+    """; how near the ties come to closing, and where."""
+    miss = nearest_miss(system, state)
+    if miss is None:
+        return ""
+    model = system.scope.model
+    there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
+    if not miss.open:
+        return f"; all ties close at {there}, farther than a start is moved"
+    stay = f"{listed(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
+    return f"; wherever the coordinates go, {stay}: by {miss.open:.3g} at {there}, the least that was found"
 
 
 def _mend(system: System, gap: Scalar) -> str:

@@ -20,7 +20,10 @@ from eomgen.mechanics.loops.forks import Fork, at_rest, fork_at, leads_on, speed
 from eomgen.mechanics.loops.open_ties import NEGLIGIBLE, excess, listed, refuse_open_gaps, refuse_open_rates
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
+from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.contacts import contacts_of
+from eomgen.model.own_units import in_own_unit
+from eomgen.model.parts import Model
 from eomgen.model.values import first_guesses, numeric_parameters, start_values
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
@@ -37,15 +40,17 @@ class Change:
 
     Args:
         given: whether somebody gave it; else it is a guess, or 0.
+        words: as its user writes it, in his unit.
     """
 
     name: str
     before: float
     after: float
     given: bool
+    words: str
 
     def __str__(self) -> str:
-        return f"{self.name} = {self.after:.9g}" + f" (not {self.before:.6g})" * self.given
+        return self.words
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,11 @@ def start_state(
 ) -> dict[str, float]:
     """The values of `start_of_motion`, with its arguments and errors."""
     return start_of_motion(system, parameters, start).values
+
+
+def begun_state(system: System) -> State:
+    """A value of every symbol that stands in the ties, at the start, with 50 digits."""
+    return _numbers(system, start_state(system), None)
 
 
 def start_of_motion(
@@ -186,9 +196,17 @@ def _changes(
     """What differs, dependent coordinates left out."""
     own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
     return tuple(
-        Change(x.name, before[x.name], after[x.name], x.name in start or not is_guess(system.scope.model, x.name))
+        _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in start)
         for x in own if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
     )  # fmt: skip
+
+
+def _change(model: Model, name: str, values: tuple[float, float], called: bool) -> Change:
+    """A change from the first of two values to the second."""
+    before, after = values
+    given = called or not is_guess(model, name)
+    was = f" (not {in_own_unit(model, name, before, 6)})" if given else ""
+    return Change(name, before, after, given, f"{name} = {in_own_unit(model, name, after)}{was}")
 
 
 def _rounded(x: Any, given: float) -> float:
@@ -199,16 +217,16 @@ def _rounded(x: Any, given: float) -> float:
 def start_speeds(system: System) -> dict[Node, Scalar]:
     """Every speed at the start, as functions of the parameters and of where it starts.
 
-    Where no declared speed has a start, they are what the start speeds of the coordinates make them.
+    Where no declared speed of the same rates has a start, they are what the start speeds of the coordinates make them.
     """
-    scope = system.scope
+    scope, begun = system.scope, begun_speeds(system.scope.model.speeds)
     model = scope.model
     found: dict[Node, Scalar] = {}
     rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
     for u in scope.symbols.u:
         if u.name in rates:
             found[u] = rates[u.name]
-        elif any(part.start is not None for part in model.speeds.values()):
+        elif u.name in begun:
             found[u] = scope.value(model.speeds[u.name].start)
         else:
             found[u] = _by_rates(system, u.name, rates)
@@ -260,10 +278,10 @@ def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
 def _by_coordinates(
     system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None
 ) -> dict[str, float]:
-    """The declared speeds by the start speeds of the coordinates, where none has a start of its own."""
+    """The declared speeds by the start speeds of the coordinates, where none of the same rates has a start."""
     model, symbols = system.scope.model, system.symbols
-    declared = [u for u in symbols.u if u.name in model.speeds]
-    silent = declared if all(model.speeds[u.name].start is None for u in declared) else []
+    begun = begun_speeds(model.speeds)
+    silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
     formulas = start_speeds(system) if silent else {}
     asked = tuple(formulas[u] for u in silent)
     used = set(symbols_of(asked))

@@ -8,7 +8,8 @@ unknowns are the components of all reactions, of joints and of ties; what drives
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -18,6 +19,7 @@ from eomgen.mechanics.reacting.components import Component, components_of
 from eomgen.mechanics.reacting.effects import Axes, effects_of_load, joint_effects, turned
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically, slide_power
+from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
 from eomgen.symbolic.derivative import depends_on, gradient
@@ -53,11 +55,21 @@ class BodyEquation:
 
 @dataclass(frozen=True)
 class Balance:
-    """All equations of all bodies."""
+    """All equations of all bodies.
+
+    Args:
+        sizes: |N| of the contacts that hold on all sides and rub, by their names.
+    """
 
     system: System
     components: tuple[Component, ...]
     equations: tuple[BodyEquation, ...]
+    sizes: Mapping[str, Scalar] = field(default_factory=dict)
+
+    @cached_property
+    def given(self) -> dict[int, Scalar]:
+        """The components that do not follow from the equations: friction by |N| = sqrt(N_1^2 + N_2^2)."""
+        return {j: c.rubs * self.sizes[c.owner] for j, c in enumerate(self.components) if c.rubs is not None}
 
     @cached_property
     def unknowns(self) -> tuple[Node, ...]:
@@ -71,9 +83,11 @@ class Balance:
         return (*(c.name for c in self.components), *(unknown.name for unknown in self.unknowns))
 
 
-def balance_of(system: System) -> Balance:
+def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Balance:
     """The equations of every body; those that say 0 = 0 are left out.
 
+    Args:
+        sizes: |N| of the contacts that hold on all sides and rub.
     Raises:
         DerivationError: a force, an energy or a tie that acts at no place, named.
     """
@@ -87,7 +101,7 @@ def balance_of(system: System) -> Balance:
             row = {j: value for j, c in enumerate(components) if not is_zero(value := _coefficient(c, i, d))}
             if row or not (is_zero(applied[i][d]) and is_zero(inertia[i][d])):
                 equations.append(BodyEquation(link.name, d, row, applied[i][d], inertia[i][d]))
-    return Balance(system, components, tuple(equations))
+    return Balance(system, components, tuple(equations), sizes or {})
 
 
 def refuse_placeless(system: System) -> None:
@@ -103,8 +117,12 @@ def refuse_placeless(system: System) -> None:
         pushes = [load for load in force.loads if isinstance(load, PointForce)]
         if any(_pushes_along(system, slide_power(system.motion, push)) for push in pushes):
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
-    for row in system.ties.rows:
-        if not row.pushes and row.status != "identical":
+    drives = {tie for ties in driving_ties(system.scope.model).values() for tie in ties}  # whose place is a joint
+    for row in (row for row in system.ties.rows if row.tie not in drives):
+        points = (push for push in row.pushes if isinstance(push, PointForce))
+        slide = sum((slide_power(system.motion, push) for push in points), start=0)
+        own = 0 if is_zero(row.direct) else row.direct - slide  # a row of material points sees no slide
+        if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
             raise DerivationError(f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
                                   f"constraints.{row.tie}", "give it as a tie between bodies")  # fmt: skip
         if row.pushes and _pushes_along(system, row.direct):
@@ -121,8 +139,8 @@ def _pushes_along(system: System, power: Scalar) -> bool:
 
 def _seat_moves_others(system: System, link: Link) -> bool:
     """Whether a free coordinate moves the seat of a joint and something else: what joins the two acts at no place."""
-    table = system.scope.model.coordinates
-    free = [q for q in system.symbols.q if not table[q.name].driven]
+    given = driven_coordinates(system.scope.model)
+    free = [q for q in system.symbols.q if q.name not in given]
     seat = (*link.before.p, *link.point)
     for q in free:
         if any(depends_on(x, (q,)) for x in seat):

@@ -13,32 +13,44 @@ from eomgen.mechanics.reacting.balance import Balance, BodyEquation
 from eomgen.mechanics.reacting.ground_balance import along_ground
 from eomgen.mechanics.statics.unknown_loads import with_unknowns
 from eomgen.mechanics.system import System
+from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution
-from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.normal_form import LIMIT, readable_all
 from eomgen.symbolic.scaling import solved
 
 TRIES = 20
+Combination = dict[int, Scalar]
 
 
-def solution_of_balance(balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1) -> Solution:
+class Indeterminate(DerivationError):
+    """A reaction that the equations of the rigid bodies do not determine."""
+
+
+def solution_of_balance(
+    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1, work: int = LIMIT
+) -> Solution:
     """The reactions, and unknowns of the loads, that balance all bodies.
 
     Args:
         at: what stands in place of coordinates, speeds, accelerations and t; {}: as functions of them.
         sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.solved`).
+        work: products of terms by which an entry is made readable.
     """
     coefficients, needed = with_unknowns(balance)
     if not at:
         coefficients, needed = along_ground(balance, coefficients, needed)
+    coefficients += [{j: 1} for j in balance.given]
+    needed += balance.given.values()
     entries = [x for row in coefficients for x in row.values()]
-    pushes = [_pushes(balance, e) for e in balance.equations]
+    pushes = [*(_pushes(balance, e) for e in balance.equations), *({} for _ in balance.given)]
     if at:
-        entries = list(readable_all(substituted(tuple(entries), at)))
-        needed = list(readable_all(substituted(tuple(needed), at)))
-        pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at)), strict=True)) for row in pushes]
+        entries = list(readable_all(substituted(tuple(entries), at), work))
+        needed = list(readable_all(substituted(tuple(needed), at), work))
+        pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True))
+                  for row in pushes]  # fmt: skip
     flat = iter(entries)
     rows = [{j: next(flat) for j in row} for row in coefficients]
     parameters = frozenset(balance.system.symbols.parameters.values())
@@ -53,6 +65,34 @@ def solution_of_balance(balance: Balance, at: Mapping[Node, Scalar], sure: int |
                   tests=pushes, sure_symbols=parameters)  # fmt: skip
 
 
+def combined(balance: Balance, solution: Solution, combination: Combination, name: str) -> Scalar:
+    """sum of k_j x_j.
+
+    Raises:
+        Indeterminate: it has no single value; `name` says what it is.
+    """
+    constants, shares = solution.constants, solution.shares
+    total: Scalar = 0
+    open_: dict[int, Scalar] = {}
+    for j, k in combination.items():
+        if j not in constants:
+            open_[j] = open_.get(j, 0) + k
+            continue
+        total = total + k * constants[j]
+        for f, share in shares[j].items():
+            open_[f] = open_.get(f, 0) - k * share
+    left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
+    if left:
+        partners = [other for j, other in enumerate(balance.names)
+                    if other != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
+        raise Indeterminate(
+            f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
+            + (", together with " + ", ".join(partners) if partners else ""),
+            mend="take a redundant tie away, or let something give",
+        )
+    return total
+
+
 def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
     """The coefficients of the components that rub as they would be without friction."""
     link = balance.system.motion.index[equation.body]
@@ -62,7 +102,15 @@ def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
 
 
 def _is_product(a: Node, parameters: frozenset[Node]) -> bool:
-    return all(x in parameters or x.op in ("mul", "div", "neg") for x in order((a,)))
+    left: list[Scalar] = [a]
+    while left:
+        x = left.pop()
+        if type(x) is not Node or x in parameters:
+            continue
+        if x.op not in ("mul", "div", "neg"):
+            return False
+        left += x.args
+    return True
 
 
 def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:

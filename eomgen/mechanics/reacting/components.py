@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import DerivationError, NotYet
+from eomgen.errors import DerivationError
 from eomgen.mechanics.contacts import CLOSED, friction_factor
 from eomgen.mechanics.kinematics import Link, Motion
 from eomgen.mechanics.reacting.effects import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
+from eomgen.model.driven import driven_coordinates
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -48,6 +49,8 @@ class Component:
         friction: along each direction in which its contact rubs.
         side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
             truss, or "".
+        rubs: of the friction of a contact that holds on all sides, which is a component of its own: what a unit of
+            |N| = sqrt(N_1^2 + N_2^2) rubs with; None of all else.
     """
 
     owner: str
@@ -57,6 +60,7 @@ class Component:
     effects: tuple[Effect, ...]
     friction: tuple[Rubbing, ...] = ()
     side: str = ""
+    rubs: Scalar | None = None
 
     @cached_property
     def rubbing(self) -> tuple[Effect, ...]:
@@ -91,12 +95,14 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
         if joint is None or not joint.carries_reaction:
             continue
         pushes = _basis(axes, link, system)
+        factor = joint_friction(system, link)
+        along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, 1)))
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
-            factor = joint_friction(system, link) if label == "n" else None
-            along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, 1)))
-            friction = () if factor is None else (Rubbing("t", factor, along),)
+            friction = (Rubbing("t", factor, along),) if label == "n" and factor is not None else ()
             found.append(Component(link.name, "joint", label, number, effects, friction))
+        if factor is not None and not axes.plane:
+            found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, rubs=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
                 effects = tuple(effects_at_joint(axes, link, *scaled(axes, link.name, k, 1)))
@@ -113,11 +119,11 @@ def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
     Raises:
         DerivationError: that coordinate moves other joints too, so that the drive has no one place.
     """
-    symbols, table = motion.scope.symbols, motion.scope.model.coordinates
-    free = [q for q in symbols.q if not table[q.name].driven]
+    symbols, given = motion.scope.symbols, driven_coordinates(motion.scope.model)
+    free = [q for q in symbols.q if q.name not in given]
     joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
     found: dict[tuple[str, int], str] = {}
-    for driver in (*(q for q in symbols.q if table[q.name].driven), symbols.t):
+    for driver in (*(q for q in symbols.q if q.name in given), symbols.t):
         moved = [(link.name, k, s) for link in joints for k, s in enumerate(link.s) if depends_on(s, (driver,))]
         alone = [(name, k) for name, k, s in moved if not depends_on(s, free)]
         found |= dict.fromkeys(alone, "" if driver is symbols.t else driver.name)
@@ -191,15 +197,12 @@ def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Ve
 
 
 def joint_friction(system: System, link: Link) -> Scalar | None:
-    """What a unit of the normal reaction of a path rubs with along the path; None without friction."""
+    """What a unit of the normal reaction of a path rubs with along the path; None without friction, and elsewhere."""
     pieces = getattr(link.joint, "pieces", ())
     value, mode = system.scope.value, system.modes.get(link.name, CLOSED)
     factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
-    if system.scope.model.space != "plane":
-        raise NotYet("friction on a path is not derived here", f"bodies.{link.name}.joint",
-                     "it is derived in the plane")  # fmt: skip
     return link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
 
 
@@ -209,7 +212,8 @@ def rubbing_of(system: System, component: Component) -> tuple[Scalar, Scalar]:
         link = system.motion.link(component.owner)
         factor, sliding = joint_friction(system, link), link.s_rate[0]
     else:
-        row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, component.number))
+        number = component.number - 1 if component.rubs is not None else component.number
+        row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, number))
         factor, sliding = row.friction, row.sliding
     assert factor is not None, "what has an effect of friction has its factor"
     return factor, sliding
@@ -224,8 +228,17 @@ def _tie_components(system: System, axes: Axes) -> list[Component]:
         effects = tuple(e for push in row.pushes for e in effects_of_load(axes, push))
         if not effects:
             continue
-        found.append(_of_tie(system, row, effects, _friction(axes, row)))
+        found.append(_of_tie(system, row, effects, () if row.round else _friction(axes, row)))
+        if row.round and row.friction is not None:
+            along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
+            found.append(Component(row.tie, "tie", "t", row.number + 1, along, rubs=row.friction))
     return found
+
+
+def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
+    """Of the friction of a contact that holds on all sides: which components its normal force has."""
+    mine = (friction.kind, friction.owner)
+    return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
 
 
 def _friction(axes: Axes, row: Row) -> tuple[Rubbing, ...]:

@@ -156,6 +156,8 @@ def _is_inner(system: System, component: Component) -> bool:
         return False
     if component.kind != "tie":
         return True
+    if system.scope.model.constraints[component.owner].leans_on_ground():
+        return False
     rows = [row for row in system.ties.rows if (row.tie, row.number) == (component.owner, component.number)]
     return all(_body(push) is not None for row in rows for push in row.pushes)
 

@@ -22,7 +22,7 @@ Row = dict[int, Scalar]
 def along_ground(balance: Balance, rows: list[Row], needed: list[Scalar]) -> tuple[list[Row], list[Scalar]]:
     """(coefficients, what they have to make up), force equations turned where that makes them shorter."""
     rows, needed = list(rows), list(needed)
-    if balance.system.scope.model.space == "plane" or any(c.rubbing for c in balance.components):
+    if balance.system.scope.model.space == "plane" or any(c.rubbing or c.rubs is not None for c in balance.components):
         return rows, needed
     for i, link in enumerate(balance.system.motion.links):
         if not _held_by_ties_alone(balance, i):

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.drive import drive, multiplier
+from eomgen.mechanics.reacting.balance import refuse_placeless
 from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import System
@@ -68,14 +69,33 @@ class AskedReactions:
             return self.reactions.friction(owner, call.name[-1])
         if call.name in _FORCES:
             return self.reactions.component("force", _FORCES[call.name], owner, side, frame)
+        if call.name == "reaction_couple" and self.system.scope.model.space == "space":
+            return self._couple_of_gear(call, owner)
         return self.reactions.component("couple", _COUPLES[call.name], owner, side, frame)
 
+    def _couple_of_gear(self, call: Call, owner: str) -> Scalar:
+        """In space: along the axle of the gear's first body; other couples have no one direction."""
+        labels = [c.label for c in self.reactions.components if c.owner == owner]
+        if labels != ["couple"] or str(call) != f"reaction_couple({owner})":
+            names = ", ".join(str(call).replace("couple(", f"couple_{axis}(") for axis in _AXES)
+            raise DerivationError(f"'{call}': a couple in space has three components", mend=f"ask {names}")
+        return self.reactions.multiplier(owner)
+
     def _multiplier(self, tie: str) -> Scalar:
-        """lam of a tie of one row; of one without a place it stands in the equations of motion."""
+        """lam of a tie of one row; where it or another action has no place, as it stands in the equations of motion."""
         rows = [row for row in self.system.ties.rows if row.tie == tie]
-        if any(row.pushes for row in rows):
+        if any(row.pushes for row in rows) and not self._acts_at_no_place:
             return self.reactions.multiplier(tie)
         return multiplier(self.system, tie)
+
+    @cached_property
+    def _acts_at_no_place(self) -> bool:
+        """Whether the bodies cannot be balanced one by one."""
+        try:
+            refuse_placeless(self.system)
+        except DerivationError:
+            return True
+        return False
 
     def _tension(self, call: Call) -> Scalar:
         """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""

@@ -7,13 +7,14 @@ they hold fewer independent ones, some reactions are indeterminate, and the null
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.friction import round_symbols, sizes_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.reacting.balance import Balance, balance_of
-from eomgen.mechanics.reacting.balance_solution import solution_of_balance
+from eomgen.mechanics.reacting.balance_solution import Combination, combined, solution_of_balance
 from eomgen.mechanics.reacting.components import Component
 from eomgen.mechanics.reacting.effects import Effect, efforts_of
 from eomgen.mechanics.reacting.named_reactions import named_reactions
@@ -21,17 +22,13 @@ from eomgen.mechanics.reacting.unheld import refuse_unheld
 from eomgen.mechanics.statics.rest import at_rest
 from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
 from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import holds_identically
+from eomgen.model.driven import driving_ties
 from eomgen.symbolic.derivative import substituted
+from eomgen.symbolic.functions import sqrt
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.linear import Solution
+from eomgen.symbolic.normal_form import LIMIT
 from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
-
-Combination = dict[int, Scalar]
-
-
-class Indeterminate(DerivationError):
-    """A reaction that the equations of the rigid bodies do not determine."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +117,9 @@ class Reactions:
         combinations, given = self._sums(what, owner, side, frame)
         given = vector_of(substituted(given, self.unknowns)) if self.unknowns else given
         place = f"{owner}.{side}" if side else owner
-        name = f"reaction_{'xyz'[k]}({place})" if what == "force" else f"reaction_couple({place})"
+        plane = self.balance.system.scope.model.space == "plane"
+        along = "xyz"[k] if what == "force" else "couple" if plane else f"couple_{'xyz'[k]}"
+        name = f"reaction_{along}({place})"
         return given[k] + self.combined(combinations[k], name)
 
     def is_open(self, owner: str) -> bool:
@@ -129,9 +128,17 @@ class Reactions:
         return mode is not None and not mode.closed
 
     def normal(self, owner: str) -> Scalar:
-        """The normal reaction, positive along the tie's normal; friction is not in it."""
+        """The normal reaction, positive along the tie's normal; friction is not in it.
+
+        Of what holds on all sides of a line in space sqrt(N_1^2 + N_2^2).
+        """
         if self.is_open(owner):
             return 0
+        if owner in self.balance.sizes:
+            return self._replaced((self.balance.sizes[owner], 0, 0))[0]
+        several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]
+        if several:
+            return sqrt(sum((x * x for x in map(self.value, several)), start=0))
         return self._labelled(owner, "n", "normal reaction")
 
     def friction(self, owner: str, along: str = "t") -> Scalar:
@@ -197,7 +204,9 @@ class Reactions:
         mine = {j: c for j, c in enumerate(self.components) if c.owner == owner}
         efforts = efforts_of(self.balance.system, owner)
         if not mine and not efforts:
-            raise DerivationError(f"'{owner}' carries no reaction", mend="what is placed carries none: name the tie")
+            driven = next((q for q, ties in driving_ties(motion.scope.model).items() if owner in ties), "")
+            mend = f"ask drive({driven})" if driven else "what is placed carries none: name the tie"
+            raise DerivationError(f"'{owner}' carries no reaction", mend=mend)
         on = self._side(owner, side, [e for c in mine.values() for e in c.effects] or efforts)
         vectors = {j: self._on(c, on, what) for j, c in mine.items()}
         given = ZERO
@@ -245,50 +254,44 @@ class Reactions:
         Raises:
             Indeterminate: it has no single value; `name` says what it is.
         """
-        constants, shares = self.solution.constants, self.solution.shares
-        total: Scalar = 0
-        open_: dict[int, Scalar] = {}
-        for j, k in combination.items():
-            if j not in constants:
-                open_[j] = open_.get(j, 0) + k
-                continue
-            total = total + k * constants[j]
-            for f, share in shares[j].items():
-                open_[f] = open_.get(f, 0) - k * share
-        left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
-        if left:
-            partners = [other for j, other in enumerate(self.balance.names)
-                        if other != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
-            raise Indeterminate(
-                f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
-                + (", together with " + ", ".join(partners) if partners else ""),
-                mend="take a redundant tie away, or let something give",
-            )
-        return total
+        return combined(self.balance, self.solution, combination, name)
 
 
 def reactions_of(
-    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False
+    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = LIMIT
 ) -> Reactions:
     """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
 
     Args:
         at: exact scalars in place of coordinates, speeds, accelerations and t.
         short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
+        work: products of terms by which one coefficient is made readable at a configuration.
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    balance = balance_of(system)
+    sizes = sizes_of(system)
+    balance = balance_of(system, sizes)
     if balance.unknowns:
-        return _at_rest(balance, at or {})
+        return _at_rest(balance, at or {}, work)
+    if at and sizes:
+        return Reactions(balance, _with_sizes(system, at, sizes, work), at)
     if at:
-        return Reactions(balance, solution_of_balance(balance, at), at)
+        return Reactions(balance, solution_of_balance(balance, at, work=work), at)
     solution = solution_of_balance(balance, {}, sure=None if short else 1)
     refuse_unheld(balance, solution)
     return Reactions(balance, solution, {})
 
 
-def _at_rest(balance: Balance, at: Mapping[Node, Scalar]) -> Reactions:
+def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:
+    """The reactions at a configuration, |N| of what rubs on all sides put in at last: multiplied out it is long."""
+    symbols = round_symbols(system)
+    solution = solution_of_balance(balance_of(system, symbols), at, work=work)
+    names, values = list(solution.constants), tuple(solution.constants.values())
+    known = dict(zip((symbols[name] for name in sizes), substituted(tuple(sizes.values()), at), strict=True))
+    return replace(solution, constants=dict(zip(names, substituted(values, known), strict=True)))
+
+
+def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reactions:
     """Reactions and unknown loads where nothing moves: as functions of the coordinates, or at the start alone.
 
     Raises:
@@ -296,10 +299,10 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar]) -> Reactions:
     """
     refuse_rubbing(balance)
     state = {**at, **still(balance.system)}
-    solution = solution_of_balance(balance, state)
+    solution = solution_of_balance(balance, state, work=work)
     if not is_balanced(balance, solution):
         state = {**at_rest(balance.system), **at}
-        solution = solution_of_balance(balance, state)
+        solution = solution_of_balance(balance, state, work=work)
         if not is_balanced(balance, solution):
             raise unbalanced(balance, solution)
     return Reactions(balance, solution, state)

@@ -7,12 +7,15 @@ J = (J_i, J_d) with J_d regular; Z = (1, A), X = (0, b) with J_d A = -J_i, J_d b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
+from eomgen.errors import EomgenError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loops.closure import generic_state
+from eomgen.mechanics.loops.closure import State, generic_state
+from eomgen.mechanics.loops.start import begun_state
 from eomgen.mechanics.system import System
 from eomgen.symbolic import cramer
 from eomgen.symbolic.dense import independent_rows
@@ -61,11 +64,22 @@ def _moved(assembly: Assembly, Z: Sequence[Sequence[Scalar]], X: Sequence[Scalar
 
 
 def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
-    """The speeds that follow from the others, in a configuration that is not special; the last ones rather."""
-    values = evaluate([x for row in J for x in row], generic_state(system.ties), fifty_digits())
-    columns = np.array([float(x) for x in values]).reshape(len(J), -1).T
-    many = len(columns)
-    return sorted(many - 1 - k for k in independent_rows(columns[::-1], INDEPENDENT))
+    """The speeds that follow from the others at the start, if it is not special; the last ones rather."""
+    entries = [x for row in J for x in row]
+    many = len(system.symbols.u)
+    for state in _states(system):
+        columns = np.array([float(x) for x in evaluate(entries, state, fifty_digits())]).reshape(len(J), many).T
+        found = sorted(many - 1 - k for k in independent_rows(columns[::-1], INDEPENDENT))
+        if len(found) == len(J):
+            break
+    return found
+
+
+def _states(system: System) -> Iterator[State]:
+    """The start where it has values, then a configuration that is not special."""
+    with suppress(EomgenError):
+        yield begun_state(system)
+    yield generic_state(system.ties)
 
 
 def _entries(row: Sequence[Scalar]) -> dict[int, Scalar]:

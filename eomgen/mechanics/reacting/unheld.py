@@ -20,6 +20,7 @@ from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
+from eomgen.model.driven import driven_coordinates
 from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import evaluate, fifty_digits
@@ -59,11 +60,11 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
 
 def _joined_by_a_coordinate(system: System) -> str:
     """Where one free coordinate moves several joints, or one in two ways, the sentence that says so."""
-    table = system.scope.model.coordinates
+    given = driven_coordinates(system.scope.model)
     joints = [link for link in system.motion.links if link.joint is not None and link.joint.carries_reaction]
     for q in system.symbols.q:
         moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
-        if len(moved) > 1 and not table[q.name].driven:
+        if len(moved) > 1 and q.name not in given:
             names = [f"'{name}'" for name in dict.fromkeys(moved)]
             which = "the joints of " if len(names) > 1 else "in two ways the joint of "
             return f"'{q.name}' moves {which}{' and '.join(names)}"

@@ -55,7 +55,7 @@ def stability_conditions(polynomial: Polynomial, s: Node, positive: Collection[N
     factors = []
     for factor in _polynomials(Polynomial(polynomial.coefficients[zeros:]), s, positive):
         leading = evaluate((factor.coefficients[-1],), trial, fifty_digits())[0]
-        one = factor if leading > 0 else Polynomial(tuple(simplest(-c, LIMIT, positive) for c in factor.coefficients))
+        one = factor if leading > 0 else factor.negative(positive)
         if one not in factors:
             factors.append(one)
     found = [_conditions(one, conservative) for one in factors]

@@ -20,7 +20,7 @@ from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on, jacobian
+from eomgen.symbolic.derivative import depends_on, jacobian, symbols_of
 from eomgen.symbolic.evaluation import fifty_digits
 from eomgen.symbolic.functions import inner
 from eomgen.symbolic.graph import Node, Scalar
@@ -65,7 +65,7 @@ class FirstOrder:
     @cached_property
     def assembly(self) -> Assembly:
         assembly = with_friction(self.system, recursive.assemble(self.system))
-        refuse_massless(assembly)
+        refuse_massless(self.system, assembly)
         return assembly
 
     @cached_property
@@ -77,6 +77,13 @@ class FirstOrder:
             inner(row, symbols.a) - force - inner(push, symbols.lam)
             for row, force, push in zip(graph.M, graph.forcing, pushes, strict=True)
         )
+
+    @cached_property
+    def seen(self) -> frozenset[str]:
+        """The names of what stands in the equations of motion."""
+        e = self.assembly
+        rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma)
+        return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
 
     @cached_property
     def rows(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
@@ -131,17 +138,19 @@ def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) ->
     turning = {e.name: abs(float(reference.numbers[e])) for four in first.system.scope.quaternions for e in four}
 
     def late(name: str, stays: bool) -> tuple[int, float]:
-        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay.
+        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay, then
+        those of coordinates on which nothing depends, as the place of a wheel, of which the speeds turn with it.
 
         Of a quaternion the largest of its four.
         """
-        return 0 if name in wanted else 2 if name in dependent else 1, turning.get(name, float(stays))
+        usual = float(stays) + 0.5 * (name in coordinates and name not in first.seen)
+        return 0 if name in wanted else 2 if name in dependent else 1, turning.get(name, usual)
 
     G, J = (_floats(at(field, rows), len(columns)) for rows, columns in _rows(first))
     elsewhere = Numbers(_elsewhere(reference))
     G_there, J_there = (_floats(at(elsewhere, rows), len(columns)) for rows, columns in _rows(first))
-    relations, dq = _determined(G, [late(q.name, stays) for q, stays in zip(symbols.q, _same(G, G_there), strict=True)])
-    ties, du = _determined(J, [late(u.name.removesuffix("'"), stays)
+    relations, dq = determined(G, [late(q.name, stays) for q, stays in zip(symbols.q, _same(G, G_there), strict=True)])
+    ties, du = determined(J, [late(u.name.removesuffix("'"), stays)
                                for u, stays in zip(symbols.u, _same(J, J_there), strict=True)])  # fmt: skip
     q = tuple(k for k in range(len(symbols.q)) if k not in dq)
     u = tuple(k for k in range(len(symbols.u)) if k not in du)
@@ -171,7 +180,7 @@ def _floats(A: Matrix, columns: int) -> np.ndarray:
     return np.array(A, dtype=float).reshape(len(A), columns)
 
 
-def _determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """(independent rows, columns that they determine): of those first that are late, the last of them first.
 
     A column that the others nearly make up, against the best of those as late, waits for these.

@@ -10,7 +10,7 @@ nothing of them acts on those asked, or their momenta stay (Routh):
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -34,8 +34,13 @@ def floats(A: Matrix) -> np.ndarray:
 # -- which coordinates carry the motion ----------------------------------------------------------------------
 
 
-def carrying(equations: LinearEquations, wanted: Sequence[str]) -> tuple[int, ...]:
-    """The coordinates that stay beside the speeds, as many as these where that can be; decided by numbers."""
+def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Collection[str] = ()) -> tuple[int, ...]:
+    """The coordinates that stay beside the speeds, as many as these where that can be; decided by numbers.
+
+    Args:
+        wanted: coordinates that go last.
+        dependent: those that go first, by name.
+    """
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
     K, F = _without_noise(K), _without_noise(F)
@@ -45,16 +50,28 @@ def carrying(equations: LinearEquations, wanted: Sequence[str]) -> tuple[int, ..
         idle = [*unseen, *still]
         if not idle:
             break
-        kept.remove(max(idle, key=lambda j: (equations.coordinates[j].name not in wanted, not _is_own(E[j]), j)))
+        names = {j: equations.coordinates[j].name for j in idle}
+        kept.remove(max(idle, key=lambda j: (names[j] not in wanted, names[j] in dependent, _strangeness(E[j]), j)))
     return tuple(kept)
+
+
+def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
+    """Of these coordinates those on which the motion depends, and those with a speed of their own."""
+    K, F, E = (_without_noise(floats(x)) for x in (equations.K, equations.F, equations.E))
+    own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
+    seen = {j for j in kept if np.any(K[:, j])} | {*own}
+    while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
+        seen |= more
+    return tuple(sorted(seen))
 
 
 def _without_noise(A: np.ndarray) -> np.ndarray:
     return np.where(abs(A) > NOTHING * abs(A).max(initial=0), A, 0)
 
 
-def _is_own(row: np.ndarray) -> bool:
-    return bool(np.count_nonzero(row) == 1 and row.max() == 1)
+def _strangeness(row: np.ndarray) -> int:
+    """0 of a rate that is a speed, 1 of one that is a multiple of it, else 2."""
+    return 2 if np.count_nonzero(row) != 1 else int(row.max() != 1)
 
 
 def without_rounding(e: LinearEquations) -> LinearEquations:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,8 +12,8 @@ from eomgen.errors import DerivationError, EomgenError, NotYet
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.small_motions.field import Exact, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
+from eomgen.mechanics.small_motions.followers import with_followers
 from eomgen.mechanics.small_motions.forms import (
-    carrying,
     floats,
     is_second_order,
     over_coordinates,
@@ -26,18 +26,19 @@ from eomgen.mechanics.small_motions.reference import (
     STEADY,
     Reference,
     at_the_start,
+    in_closed_form,
     place_of_rest,
     relative_rest,
 )
-from eomgen.mechanics.small_motions.steadiness import reduced, refuse_corners, refuse_unsteady
+from eomgen.mechanics.small_motions.steadiness import reduced, refuse_corners, refuse_singular, steady_coordinates
 from eomgen.mechanics.small_motions.steady import steady_start
+from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
-from eomgen.symbolic import dense
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.evaluation import NoValue, operations
 from eomgen.symbolic.graph import Node
 
-PRIME = "'"
 REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
@@ -101,17 +102,37 @@ def small_motions_of(
             move by themselves.
     """
     refuse_motion(system.scope.model)
-    reference, first = _balanced(system, about, guess, wanted)
-    if not first.system.symbols.u:
+    if not system.symbols.u:
         raise DerivationError("nothing is free to move: there are no small motions")
+    reference, first = _balanced(system, about, guess, wanted)
+    return _about(first, reference, wanted)
+
+
+def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[SmallMotions | None]:
+    """The small motions about the others with the same values held, in numbers; None where angles have a pole."""
+    reference = small.reference
+    if reference.family is None:
+        return
+    system = reference.system
+    first = first_order_of(system)
+    here = {x.name: float(reference.numbers[x]) for x in (*system.symbols.q, *system.symbols.u)}
+    for place in reference.family.others[1:]:
+        given = here | {x.name: value for x, value in place.items()}
+        try:
+            there = at_the_start(system, at_rest=False, given=given)
+            yield _about(first, replace(there, exact={}, about=reference.about), wanted)
+        except (EomgenError, NoValue, ZeroDivisionError):  # angles at a pole
+            yield None
+
+
+def _about(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> SmallMotions:
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError("the ties leave no freedom: there are no small motions")
     raw = _equations(first, choice, reference)
-    kept = carrying(raw, wanted)
+    kept = steady_coordinates(first, choice, reference, raw, wanted)
     refuse_corners(first, choice, reference, raw, kept)
-    refuse_unsteady(first, choice, reference, raw, kept)
-    _refuse_singular(raw)
+    refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
     numbers = without_rounding(restricted(Numbers(reference.numbers), decided, wanted, decided))
     field = _exact_field(reference, first, choice)
@@ -119,8 +140,23 @@ def small_motions_of(
     if field is not None:
         whole = over_coordinates(field, reduced(first, choice, reference, field), kept)
         exact = restricted(field, whole, wanted, decided)
+    if exact is None:
+        _refuse_unvalued(reference)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
     return SmallMotions(reference, numbers, exact, raw, left)
+
+
+def _refuse_unvalued(reference: Reference) -> None:
+    """Equations that are only known in numbers need values of all parameters.
+
+    Raises:
+        DerivationError: those without one are named.
+    """
+    model = reference.system.scope.model
+    missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in exact_parameters(model)]
+    if missing:
+        what = f"the reference, or the equations about it, have no closed form: {', '.join(missing)} need values"
+        raise DerivationError(what, "parameters")
 
 
 def _equations(first: FirstOrder, choice: Choice, reference: Reference) -> LinearEquations:
@@ -152,20 +188,6 @@ def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exa
     return Exact(reference.exact, positive_parameters(reference.system.scope), reference.trial)
 
 
-def _refuse_singular(equations: LinearEquations) -> None:
-    """Coordinates that do not describe motions there, as angles at a pole.
-
-    Raises:
-        DerivationError: the speed that moves nothing is named, where it is one.
-    """
-    M = floats(equations.M)
-    idle = [u.name for u, x in zip(equations.speeds, np.diagonal(M), strict=True) if abs(x) <= REGULAR * abs(M).max()]
-    if idle or dense.scaled_condition(M) > 1 / REGULAR:
-        moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
-        raise DerivationError(f"the mass matrix is singular at the place: {moved}", "linearize",
-                              "describe the motion by coordinates that are regular there")  # fmt: skip
-
-
 # -- whether it is a reference ---------------------------------------------------------------------------------
 
 
@@ -179,9 +201,7 @@ def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wan
         reference = at_the_start(system, at_rest=False)
         first = first_order_of(system)
         try:
-            if about == STEADY:
-                found = at_the_start(system, at_rest=False, given=steady_start(first, reference, wanted))
-                reference = replace(found, about=STEADY)
+            reference = _steady(first, reference, wanted) if about == STEADY else with_followers(first, reference)
             wrong = _accelerated(first, reference)
         except (NoValue, ZeroDivisionError) as error:
             raise _without_value(reference) from error
@@ -196,6 +216,20 @@ def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wan
         return _other_rest(system, guess, error)
 
 
+def _steady(first: FirstOrder, start: Reference, wanted: Sequence[str]) -> Reference:
+    """The steady motion nearest to the start, in closed form where its family has one."""
+    found = steady_start(first, start, wanted)
+    there = replace(at_the_start(first.system, at_rest=False, given=found.values), about=STEADY)
+    family = family_of(first, there, wanted, found.following)
+    return there if family is None else in_closed_form(replace(there, family=family), family.state)
+
+
+def _with_family(first: FirstOrder, reference: Reference) -> Reference:
+    """Rest beside drives with all its places."""
+    choice = choice_of(first, reference, ())
+    return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
+
+
 def _other_rest(
     system: System, guess: Mapping[str, float] | None, why: EomgenError
 ) -> tuple[Reference, FirstOrder]:
@@ -207,7 +241,7 @@ def _other_rest(
         try:
             reference = way()
             if not _accelerated(first, reference):
-                return reference, first
+                return _with_family(first, reference) if reference.moving else reference, first
         except (EomgenError, NoValue, ZeroDivisionError):
             continue
     raise why

@@ -12,23 +12,23 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
 from eomgen.mechanics.small_motions.field import WORK, Entry
-from eomgen.mechanics.small_motions.linearization import SmallMotions
+from eomgen.mechanics.small_motions.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.small_motions.polynomial import (
     Polynomial,
-    TransferFunction,
     characteristic_polynomial,
     closed_frequencies,
     laplace_variable,
-    transfer_functions,
-    transfers_in_numbers,
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
+from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.text import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
+LONGEST = 6_000  # characters of a polynomial whose roots are written
 MOST_STATES = 8  # of transfer functions in floats
 SAME = 1e-9  # of an exact frequency against the number
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
@@ -67,6 +67,15 @@ class Modes:
         return None if exact is None else characteristic_polynomial(exact, self.positive)
 
     @cached_property
+    def beside(self) -> tuple[str, ...]:
+        """The stability of each steady motion with the same values held, this one first; "" where it is not known."""
+        family = self.small.reference.family
+        if family is None or not family.others:
+            return ()
+        others = [Modes(x).spectrum.stability if x is not None else "" for x in motions_beside(self.small)]
+        return (self.spectrum.stability, *others)
+
+    @cached_property
     def conditions(self) -> Conditions:
         """Routh and Hurwitz: what must be positive."""
         if self.polynomial is None or self.small.exact is None:
@@ -86,7 +95,7 @@ class Modes:
     def transfers(self) -> tuple[TransferFunction, ...]:
         """From inputs to coordinates: exact where that can be, else in floats, of systems of few states."""
         exact, small = self.small.exact, self.small
-        found = () if exact is None else transfer_functions(exact, self.positive)
+        found = () if exact is None else transfer_functions(exact, self.positive, small.reference.trial)
         if found or not small.numbers.inputs or not small.reference.valued or len(small.state_matrix) > MOST_STATES:
             return found
         return transfers_in_numbers(small.numbers, small.state_matrix, small.input_matrix)
@@ -104,6 +113,8 @@ class Modes:
     def _closed(self) -> list[tuple[float, Scalar]]:
         """(number at the parameters, exact frequency)"""
         if self.polynomial is None or self.small.exact is None:
+            return []
+        if sum(map(text_size, self.polynomial.coefficients)) > LONGEST:
             return []
         exact = closed_frequencies(self.polynomial, laplace_variable(self.small.exact), self.positive)
         found = []

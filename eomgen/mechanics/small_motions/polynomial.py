@@ -1,4 +1,4 @@
-"""LinearEquations, exact -> characteristic polynomial, frequencies in closed form, Hurwitz, transfer functions.
+"""LinearEquations, exact -> characteristic polynomial, frequencies in closed form.
 
     p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2 M + s C + K)
 """
@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Matrix
@@ -28,7 +26,6 @@ from eomgen.symbolic.terms import Terms, TooLarge, plus
 
 MOST = 6  # rows of a determinant that is written out
 LIMIT = 50_000  # products of terms
-ROUNDING = 1e-10  # of a coefficient in floats
 
 
 @dataclass(frozen=True)
@@ -53,6 +50,10 @@ class Polynomial:
             total = total * s + c
         return total
 
+    def negative(self, positive: Collection[Node]) -> Polynomial:
+        """-p(s), of exact coefficients."""
+        return Polynomial(tuple(simplest(-c, LIMIT, positive) for c in self.coefficients))
+
 
 def graph_of(equations: LinearEquations) -> Graph:
     return equations.speeds[0].graph
@@ -68,10 +69,10 @@ def laplace_variable(equations: LinearEquations) -> Node:
 def characteristic_polynomial(equations: LinearEquations, positive: Collection[Node]) -> Polynomial | None:
     """p(s), common factors of its coefficients kept; None where it is too much work."""
     s = laplace_variable(equations)
-    return polynomial_in(_determinant(_pencil(equations, s)), s, positive)
+    return polynomial_in(_determinant(pencil_of(equations, s)), s, positive)
 
 
-def _pencil(e: LinearEquations, s: Node) -> Matrix | None:
+def pencil_of(e: LinearEquations, s: Node) -> Matrix | None:
     """The matrix whose determinant is p(s); None where it is too large."""
     n = len(e.speeds)
     if is_second_order(e):
@@ -211,62 +212,3 @@ def _of_single_roots(
     if len(roots) == 2:
         a, b = roots
         yield from (over(a + b, 2), over(a - b, 2), over(b - a, 2))
-
-
-# -- transfer functions ---------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class TransferFunction:
-    """q/w = above(s)/below(s), of one coordinate and one input."""
-
-    coordinate: Node
-    input: Node
-    above: Polynomial
-    below: Polynomial
-
-
-def transfer_functions(e: LinearEquations, positive: Collection[Node]) -> tuple[TransferFunction, ...]:
-    """From every input to every coordinate, by Cramer's rule; () where it is too much work."""
-    s = laplace_variable(e)
-    pencil = _pencil(e, s) if e.inputs else None
-    if pencil is None:
-        return ()
-    below = polynomial_in(cramer.determinant(pencil), s, positive)
-    right = [[0] * len(e.inputs)] * (len(pencil) - len(e.B)) + e.B
-    found = []
-    for k, w in enumerate(e.inputs):
-        for j, q in enumerate(e.coordinates):
-            column = [[right[i][k] if m == j else x for m, x in enumerate(row)] for i, row in enumerate(pencil)]
-            above = polynomial_in(cramer.determinant(column), s, positive)
-            if above is None or below is None:
-                return ()
-            found.append(TransferFunction(q, w, *_shortened(above, below, s, positive)))
-    return tuple(found)
-
-
-def _shortened(above: Polynomial, below: Polynomial, s: Node, positive: Collection[Node]
-               ) -> tuple[Polynomial, Polynomial]:  # fmt: skip
-    """Without the powers of s that they have in common."""
-    a, b = list(above.coefficients), list(below.coefficients)
-    while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):
-        a, b = a[1:], b[1:]
-    return Polynomial(tuple(a)), Polynomial(tuple(b))
-
-
-def transfers_in_numbers(e: LinearEquations, A: np.ndarray, B: np.ndarray) -> tuple[TransferFunction, ...]:
-    """The same of x' = A x + B w in floats, x = (q, ...): det(s 1 - A + b c) = det(s 1 - A) (1 + c (s 1 - A)^-1 b)."""
-    below = np.poly(A)
-    found = []
-    for k, w in enumerate(e.inputs):
-        for j, q in enumerate(e.coordinates):
-            coupled = A.copy()
-            coupled[:, j] -= B[:, k]
-            closed = np.poly(coupled)
-            above = np.where(abs(closed - below) > ROUNDING * (abs(closed) + abs(below)), closed - below, 0.0)
-            found.append(TransferFunction(q, w, *map(_of_floats, (np.trim_zeros(above, "f"), below))))
-    return tuple(found)
-
-
-def _of_floats(highest_first: np.ndarray) -> Polynomial:
-    return Polynomial(tuple(float(c) for c in reversed(highest_first)) or (0.0,))

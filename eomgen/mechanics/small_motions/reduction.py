@@ -191,6 +191,18 @@ class Reducing:
         )  # fmt: skip
 
 
+def dependent_speeds(first: FirstOrder, choice: Choice, field: Field) -> dict[Node, Entry]:
+    """The dependent speeds by J u + sigma = 0, from the independent ones of the state."""
+    if not choice.ties:
+        return {}
+    there, u = Reducing(first, choice, field), first.system.symbols.u
+    independent = [[x] for x in field.of([u[k] for k in choice.u])]
+    sigma = field.of([first.assembly.sigma[i] for i in choice.ties])
+    pushed = product(field, [[row[k] for k in choice.u] for row in there.J], independent)
+    found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
+    return {u[k]: found[k][0] for k in choice.du}
+
+
 def unsettled(reducing: Reducing, share: float) -> list[int]:
     """Which of the independent speeds a force is left to accelerate: more than rounding leaves.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -17,6 +17,7 @@ from eomgen.mechanics.loops.closed_instant import position_equations
 from eomgen.mechanics.loops.start import fixed_by_position, start_state
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
@@ -40,6 +41,7 @@ class Reference:
         exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
         numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
         place: the place of rest, where it was sought.
+        family: the steady motions that one belongs to, where it was sought and they could be written.
     """
 
     system: System
@@ -47,6 +49,7 @@ class Reference:
     exact: Mapping[Node, Scalar]
     numbers: Mapping[Node, Any]
     place: Equilibrium | None = None
+    family: Family | None = None
 
     @cached_property
     def is_exact(self) -> bool:
@@ -77,7 +80,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     Args:
         guess: values of coordinates in place of `near` and `start`.
     Raises:
-        DerivationError: none was found, or rest is possible in many places; a one-sided contact would have to pull.
+        DerivationError: none was found; a one-sided contact would have to pull.
         NotYet: speeds that are not rates.
     """
     place = nearest_equilibrium(static_equations(system), guess)
@@ -156,6 +159,12 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     return _with_inputs(Reference(system, EQUILIBRIUM if at_rest else START, exact, numbers))
 
 
+def in_closed_form(reference: Reference, state: Mapping[Node, Scalar]) -> Reference:
+    """The reference with coordinates and speeds that are known as scalars of the parameters."""
+    numbers = {**reference.numbers, **_numbers(state, reference.trial)}
+    return replace(reference, exact={**reference.exact, **state}, numbers=numbers)
+
+
 def _gap(row: Row) -> Scalar | None:
     return None if row.identical else row.gap
 
@@ -169,7 +178,7 @@ def _with_inputs(reference: Reference) -> Reference:
     numbers = dict(reference.numbers)
     for node, value in given.items():
         numbers[node] = evaluate((value,), numbers, fifty_digits())[0]
-    return Reference(system, reference.about, {**reference.exact, **exact}, numbers, reference.place)
+    return replace(reference, exact={**reference.exact, **exact}, numbers=numbers)
 
 
 def _numbers(state: Mapping[Node, Scalar], trial: Mapping[Node, Any]) -> dict[Node, Any]:

@@ -11,10 +11,11 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Field, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
-from eomgen.mechanics.small_motions.forms import NOTHING, floats
+from eomgen.mechanics.small_motions.forms import NOTHING, carrying, floats, seen_beside_own
 from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
+from eomgen.symbolic import dense
 from eomgen.symbolic.derivative import depends_on
 from eomgen.symbolic.evaluation import NoValue, fifty_digits, order
 from eomgen.symbolic.graph import Node
@@ -23,6 +24,9 @@ TIMES = (0.3717281828, 1.1931415926)  # later states of a steady motion, at whic
 CORNERS = frozenset(("abs", "sign", "min", "max", "select"))
 ASIDE = 1e-24  # how far from the reference forces must be the same
 SIDES = 4  # directions that are tried, with their opposites
+PRIME = "'"
+REGULAR = 1e-12  # of the mass that ties leave a speed, against what there would be without them; of the scaled matrix
+POLE = 1e-24  # of a mass against the largest: the square of what rounding leaves of a sine that is 0
 LATER = (13.4142135623, 1717.7724538509)  # the same, where t itself stands in the equations
 
 
@@ -50,32 +54,60 @@ def refuse_corners(first: FirstOrder, choice: Choice, reference: Reference, raw:
                                   "take a place beside it, or forces that are smooth there")  # fmt: skip
 
 
-def refuse_unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
-                     kept: Sequence[int]) -> None:  # fmt: skip
-    """A reference that changes with time where it matters.
+def steady_coordinates(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
+                       wanted: Sequence[str]) -> tuple[int, ...]:  # fmt: skip
+    """The coordinates over which the equations stay as they are with time: those that carry the motion.
+
+    Where the reference moves, a coordinate on which nothing depends may have a rate that changes, as the place of a car
+    that turns in a circle: it is then left out.
 
     Raises:
-        DerivationError: the coordinate that moves is named.
+        DerivationError: the coordinate that moves, and on which the others depend, is named.
     """
-    moving = reference.moving
-    t = first.system.symbols.t
-    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
-    graph = first.assembly
-    timed = any(depends_on(x, (t,)) for x in (*graph.forcing, *graph.gamma, *graph.sigma))
-    times = (*TIMES, *LATER) if timed else TIMES
-    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
-    turns = spinning(reference, choice)
-    for shift in shifts:
-        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
+    coordinates = reference.system.scope.model.coordinates
+    kept = carrying(raw, wanted, [name for name, part in coordinates.items() if part.dependent])
+    if not (shifts := _unsteady(first, choice, reference, raw, kept)):
+        return kept
+    fewer = seen_beside_own(raw, kept)
+    if len(fewer) < len(kept) and not _unsteady(first, choice, reference, raw, fewer):
+        return fewer
     changes = _changed(first, choice, reference, raw, kept)
-    if not any(map(changes, shifts)):
-        return
+    t = first.system.symbols.t
     culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
     if culprit is t:
         raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
                               "let nothing but inputs depend on t")  # fmt: skip
     what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
     raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
+
+
+def _unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+              ) -> list[dict[Node, Any]]:  # fmt: skip
+    """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
+    moving, t, graph = reference.moving, first.system.symbols.t, first.assembly
+    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
+    timed = any(depends_on(x, (t,)) for x in (*graph.forcing, *graph.gamma, *graph.sigma))
+    times = (*TIMES, *LATER) if timed else TIMES
+    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
+    turns = spinning(reference, choice)
+    for shift in shifts:
+        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
+    return shifts if any(map(_changed(first, choice, reference, raw, kept), shifts)) else []
+
+
+def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
+    """Coordinates that do not describe motions there, as angles at a pole.
+
+    Raises:
+        DerivationError: the speed that moves nothing is named, where it is one.
+    """
+    M, Z = floats(equations.M), abs(floats(reducing.Z))
+    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.M)) @ Z), POLE * abs(M).max())
+    idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
+    if idle or dense.scaled_condition(M) > 1 / REGULAR:
+        moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
+        raise DerivationError(f"the mass matrix is singular at the place: {moved}", "linearize",
+                              "describe the motion by coordinates that are regular there")  # fmt: skip
 
 
 def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]

@@ -19,10 +19,10 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.loops.closure import closed
-from eomgen.mechanics.small_motions.field import Numbers, product
-from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
+from eomgen.mechanics.small_motions.field import Numbers
+from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, determined
 from eomgen.mechanics.small_motions.forms import floats
-from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
+from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, dependent_speeds, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node
@@ -30,15 +30,30 @@ from eomgen.symbolic.graph import Node
 STEPS = 40
 LONGEST = 0.3  # of one step, against what has moved or 1
 REACHED = 1e-13  # of a step, against what has moved or 1
+DOUBLE = 0.02  # of a step, to within which the next is half of it: so Newton's method goes to a double root
 NOTHING = 1e-18  # of a coordinate or speed, after a last step of Newton's method
 BALANCED = 1e-10  # of a force that is left, against the largest
 UNSEEN = 1e-9  # of a coefficient, against the largest that the speeds make
+STATED, GUESSED, OPEN = 0, 1, 2  # by the model: held, marked by `near`, not said
 
 State = Mapping[Node, Any]
 
 
-def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] = ()) -> dict[str, float]:
-    """Coordinates and speeds of the steady motion nearest to the start, by name.
+@dataclass(frozen=True)
+class Steady:
+    """A steady motion in numbers.
+
+    Args:
+        values: coordinates and speeds by name.
+        following: independent coordinates and speeds that were changed to reach it; the others say which motion it is.
+    """
+
+    values: dict[str, float]
+    following: tuple[Node, ...]
+
+
+def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] = ()) -> Steady:
+    """The steady motion nearest to the start.
 
     Args:
         reference: the start.
@@ -47,42 +62,64 @@ def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] 
         DerivationError: none was found near the start.
     """
     choice = choice_of(first, reference, wanted)
-    for mask in (_unstated(first, choice), np.ones(len(choice.q) + len(choice.u), dtype=bool)):
+    free = _free(first, choice)
+    for mask in (free > STATED, np.ones(len(free), dtype=bool)):
         found = _sought(first, choice, reference.numbers, mask) if np.any(mask) else None
         if found is not None:
-            symbols = first.system.symbols
-            values = {x.name: float(found[x]) for x in (*symbols.q, *symbols.u)}
-            return {name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()}
+            fewer = _needed(Here.at(first, choice, found), np.where(mask, free, -1))
+            alone = _sought(first, choice, reference.numbers, fewer)
+            return _steady(first, choice, found if alone is None else alone, fewer)
     raise DerivationError("no steady motion was found near the start", "linearize.about",
                           "start nearer to one; `near` marks what may change, with its speed")  # fmt: skip
 
 
-def _unstated(first: FirstOrder, choice: Choice) -> np.ndarray:
-    """Which of the independent coordinates and speeds the model leaves open."""
+def _steady(first: FirstOrder, choice: Choice, state: State, changed: np.ndarray) -> Steady:
+    symbols = first.system.symbols
+    values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
+    independent = (*(symbols.q[k] for k in choice.q), *(symbols.u[k] for k in choice.u))
+    return Steady({name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()},
+                  tuple(x for x, one in zip(independent, changed, strict=True) if one))  # fmt: skip
+
+
+def _free(first: FirstOrder, choice: Choice) -> np.ndarray:
+    """Of the independent coordinates and speeds, how freely they may change: what nobody states before guesses."""
     symbols, model = first.system.symbols, first.system.scope.model
     places = [model.coordinates[symbols.q[k].name] for k in choice.q]
-    open_places = [not part.driven and (part.start is None or part.near is not None) for part in places]
-    speeds = [symbols.u[k].name for k in choice.u]
-    owners = [model.coordinates.get(name.removesuffix("'")) for name in speeds]
-    open_speeds = [
-        model.speeds[name].start is None if part is None else part.speed is None or part.near is not None
-        for name, part in zip(speeds, owners, strict=True)
-    ]
-    return np.array([*open_places, *open_speeds], dtype=bool)
+    found = [STATED if part.driven else _freedom(part.start, part.near) for part in places]
+    for name in (symbols.u[k].name for k in choice.u):
+        part = model.coordinates.get(name.removesuffix("'"))
+        found.append(_freedom(model.speeds[name].start, None) if part is None else _freedom(part.speed, part.near))
+    return np.array(found)
+
+
+def _freedom(stated: object, near: object) -> int:
+    return GUESSED if near is not None else STATED if stated is not None else OPEN
+
+
+def _needed(here: Here, free: np.ndarray) -> np.ndarray:
+    """Which of the independent ones suffice for the equations: the freest; none of those below STATED."""
+    scaled = here.slopes * here.sizes / here.row_sizes[:, None]
+    allowed = np.flatnonzero(free >= STATED)
+    _, columns = determined(scaled[:, allowed], [(int(free[k]), 0.0) for k in allowed])
+    needed = np.zeros(len(free), dtype=bool)
+    needed[allowed[list(columns)]] = True
+    return needed
 
 
 def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -> State | None:
     """The state with all residuals zero, by steps of least size in what the mask frees; None where none is near."""
-    state = start
+    state, before = start, np.zeros(len(mask))
     for _ in range(STEPS):
         try:
-            here = _Here(first, choice, Reducing(first, choice, Numbers(state)))
+            here = Here.at(first, choice, state)
             step = np.zeros(len(mask))
             step[mask] = here.step(mask)
             size = float(np.max(abs(step) / here.sizes))
             if size <= REACHED:
                 return (here.moved(step) or state) if here.is_balanced else None
-            moved = here.moved(step * min(1.0, LONGEST / size))
+            halved = bool(np.any(step)) and np.linalg.norm(2 * step - before) <= DOUBLE * np.linalg.norm(before)
+            before = step
+            moved = here.moved(2 * step if halved else step * min(1.0, LONGEST / size))
         except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
             return None
         if moved is None:
@@ -92,12 +129,16 @@ def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -
 
 
 @dataclass(frozen=True)
-class _Here:
+class Here:
     """One state of the search."""
 
     first: FirstOrder
     choice: Choice
     reducing: Reducing
+
+    @classmethod
+    def at(cls, first: FirstOrder, choice: Choice, state: State) -> Here:
+        return cls(first, choice, Reducing(first, choice, Numbers(state)))
 
     @property
     def state(self) -> State:
@@ -162,10 +203,11 @@ class _Here:
 
     @property
     def sizes(self) -> np.ndarray:
-        """What counts as a change of 1: the speeds by how fast it moves."""
+        """What counts as a change of 1: of a coordinate itself, if it is more; the speeds by how fast it moves."""
         symbols = self.first.system.symbols
+        places = [max(1.0, abs(float(self.state[symbols.q[k]]))) for k in self.choice.q]
         speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.u]
-        return np.array([1.0] * len(self.choice.q) + [max(1.0, *speeds, 0.0)] * len(self.choice.u))
+        return np.array(places + [max(1.0, *speeds, 0.0)] * len(self.choice.u))
 
     @property
     def is_balanced(self) -> bool:
@@ -185,12 +227,6 @@ class _Here:
 
     def _with_speeds(self, state: State) -> State:
         """The dependent speeds by J u + sigma = 0."""
-        if not self.choice.ties:
-            return state
-        symbols, number = self.first.system.symbols, fifty_digits().number(1)
-        there = Reducing(self.first, self.choice, Numbers(state))
-        independent = [[state[symbols.u[k]]] for k in self.choice.u]
-        sigma = there.field.of([self.first.assembly.sigma[i] for i in self.choice.ties])
-        pushed = product(there.field, [[row[k] for k in self.choice.u] for row in there.J], independent)
-        found = there.following([[x[0] + s] for x, s in zip(pushed, sigma, strict=True)])
-        return {**state, **{symbols.u[k]: number * found[k][0] for k in self.choice.du}}
+        number = fifty_digits().number(1)
+        speeds = dependent_speeds(self.first, self.choice, Numbers(state))
+        return {**state, **{u: number * x for u, x in speeds.items()}}

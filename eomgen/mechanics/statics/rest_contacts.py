@@ -6,13 +6,14 @@ only push, or only pull, needs N >= 0.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model
-from eomgen.symbolic.functions import function
+from eomgen.symbolic.functions import function, sqrt
 from eomgen.symbolic.graph import Scalar
 
 
@@ -47,7 +48,11 @@ def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
     found = []
     for contact in contacts_of(statics.system.scope.model):
         name = contact.name
-        normal, along, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "reaction_t", "tension"))
+        normal, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "tension"))
+        along = _resultant([_value(statics, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])
+        if contact.round:  # of all that it carries the part across its line
+            whole = _resultant([_value(statics, f"reaction_{axis}({name})") for axis in "xyz"])
+            normal = None if whole is None or along is None else sqrt(whole * whole - along * along)
         if contact.unilateral and normal is not None:
             found.append(Condition(name, "pushes", normal))
         if contact.unilateral and pull is not None:
@@ -56,6 +61,14 @@ def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
             most = statics.system.scope.value(contact.mu) * function("abs", normal)
             found.append(Condition(name, "sticks", most - function("abs", along)))
     return tuple(found)
+
+
+def _resultant(components: Sequence[Scalar | None]) -> Scalar | None:
+    """The magnitude; of one component with its sign; None where one is not determined."""
+    known = [x for x in components if x is not None]
+    if len(known) < len(components) or len(known) == 1:
+        return known[0] if len(known) == len(components) else None
+    return sqrt(sum((x * x for x in known), start=0))
 
 
 def _value(statics: StaticReactions, name: str) -> Scalar | None:

@@ -13,8 +13,9 @@ from functools import cached_property
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.mechanics.loops.freedom import counted
+from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, name_of
-from eomgen.mechanics.reacting.reactions import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.loose_motion import refuse_loose
 from eomgen.mechanics.statics.structure import Structure, structure_of
 from eomgen.mechanics.statics.virtual_work import (

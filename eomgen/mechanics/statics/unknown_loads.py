@@ -61,7 +61,7 @@ def refuse_rubbing(balance: Balance) -> None:
         DerivationError: the contact is named.
     """
     for component in balance.components:
-        if component.rubbing:
+        if component.rubbing or component.rubs is not None:
             what = f"'{component.owner}' rubs: at rest its friction has a range, and so have the unknowns"
             raise DerivationError(what, f"constraints.{component.owner}.friction", "leave the friction out")
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, TIME, Equation, Leaf
+from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Equation, Leaf
 from eomgen.model.findings import Finding, Path
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expressions import Expression
@@ -54,8 +54,8 @@ class Catalog:
         time = constant | {"t"}
         motion = time | q | rates | speeds | frozenset(self.table("inputs"))
         return {
-            PARAMETERS: constant, TIME: time, CONFIGURATION: time | q, RATES: time | q | rates, MOTION: motion,
-            "": motion | accelerations,
+            PARAMETERS: constant, TIME: time, CONFIGURATION: time | q, RATES: time | q | rates,
+            SPEEDS: time | q | rates | speeds, MOTION: motion, "": motion | accelerations,
         }  # fmt: skip
 
     @cached_property

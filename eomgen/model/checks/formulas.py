@@ -41,7 +41,8 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     elif name != base and f"{name}" not in catalog.allowed[""]:
         what, mend = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed '"
     else:
-        kind = {"": kind, "'": "rate", "''": "acceleration"}[name[len(base) :]] if kind == "coordinate" else kind
+        primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration")}
+        kind = primes[kind][len(name) - len(base)] if kind in primes else kind
         what, mend = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
     return Finding(leaf.path, what, mend, column, len(name))
 

@@ -50,7 +50,7 @@ def _sizes(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
 
 
 def _of_space(catalog: Catalog, path: Path, part: Any, curved: bool) -> Iterator[Finding]:
-    """In the plane no fields of space; in space a plane for a line; wheels and ellipsoids on planes alone."""
+    """In the plane no fields of space; in space a plane for a line; wheels on planes and balls, eggs on planes."""
     if catalog.model.space == "plane":
         if part.plane is not None:
             mend = "in the plane a body rolls on a 'line'"
@@ -61,7 +61,9 @@ def _of_space(catalog: Catalog, path: Path, part: Any, curved: bool) -> Iterator
         return
     if part.line is not None:
         yield Finding((*path, "line"), f"'line' of '{path[1]}' is for the plane", "in space: 'plane'", key=True)
-    for key in ("axis", "ellipsoid") if curved else ():
+    pipe = part.circle is not None and part.circle.axis is not None
+    for key in (*(["axis"] if pipe else []), "ellipsoid") if curved else ():
         if getattr(part, key) is not None:
-            what = f"'{path[1]}': only a ball rolls on something curved, '{part.body}' has '{key}'"
+            where = "only a ball rolls in or on a pipe" if key == "axis" else "no ellipsoid rolls on something curved"
+            what = f"'{path[1]}': {where}, '{part.body}' has '{key}'"
             yield Finding((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)

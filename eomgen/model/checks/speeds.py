@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.findings import Finding, Path
 
@@ -46,12 +47,8 @@ def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Findi
 
 def _starts(catalog: Catalog) -> Iterator[Finding]:
     """A start speed of a coordinate whose rate is combined in speeds that have a start of their own."""
-    table = catalog.table("speeds")
-    if not any(part is not None and part.start is not None for part in table.values()):
-        return
-    rates = [part.rate for part in table.values() if part is not None and part.rate is not None]
-    combined = {name for rate in rates for name in rate.names}
+    told = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
     for name, part in catalog.table("coordinates").items():
-        if part is not None and part.speed is not None and f"{name}'" in combined and not part.driven:
+        if part is not None and part.speed is not None and f"{name}'" in told and not part.driven:
             what = f"coordinate '{name}' has a 'speed' at the start, and the speeds of its rate have a 'start' too"
             yield Finding(("coordinates", name, "speed"), what, "keep `start` of the speeds", key=True)

@@ -36,9 +36,17 @@ class Constraint(Part, ABC):
         """The straight pieces of a string; () where it is no string."""
         return ()
 
+    def leans_on_ground(self) -> bool:
+        """Whether the ground guides what the tie holds, though it pushes on no place of the ground."""
+        return False
+
     def edges(self, scene: Scene) -> tuple[Edge, ...]:
         """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
         return ()
+
+    def drives(self) -> str:
+        """The coordinate that it gives as a function of time; "" where it does no such thing."""
+        return ""
 
     def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
         """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""

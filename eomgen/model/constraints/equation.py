@@ -8,12 +8,12 @@ from eomgen.model.constraints.measured import Measured
 from eomgen.model.constraints.plane import Push
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scalar, Scene
-from eomgen.model.kinds import Gap, RateLaw
+from eomgen.model.kinds import Gap, VelocityLaw
 
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Constraint):
-    """gap = 0 (holonomic), or rate = 0 (in the rates).
+    """gap = 0 (holonomic), or rate = 0 (in the rates and speeds).
 
     Places of points and angles of bodies may stand in both, velocities in a rate: what holds them pushes on the
     bodies, with lam times the derivative of the equation by each.
@@ -21,7 +21,7 @@ class Equation(Constraint):
 
     kind: ClassVar[str] = "equation"
     gap: Gap | None = None
-    rate: RateLaw | None = None
+    rate: VelocityLaw | None = None
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """phi = 0 with the forces lam dphi/dx(P); or sum k v + rest = 0 with the forces lam k."""
@@ -37,6 +37,12 @@ class Equation(Constraint):
         gap, slopes = scene.slopes(law, values)
         pushes = _pushes(measured, dict(zip(values, slopes, strict=True)))
         return (_row(gap, scene.held_rate(law, values) if pushes else None, pushes),)
+
+
+    def leans_on_ground(self) -> bool:
+        """Whether a place or velocity stands in it as the ground sees it."""
+        law = self.rate if self.gap is None else self.gap
+        return law is not None and any(len(call.args) < 2 or str(call.args[1]) == "ground" for call in law.calls)
 
 
 def _pushes(measured: dict, slopes: dict) -> tuple[Push, ...]:

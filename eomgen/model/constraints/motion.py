@@ -18,6 +18,10 @@ class Motion(Constraint):
     coordinate: CoordinateName
     value: MotionLaw
 
+    def drives(self) -> str:
+        """Its coordinate."""
+        return self.coordinate
+
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """q - f(t) = 0; lam is the generalized force along q."""
         return (TieRow((), scene.value(as_expression(self.coordinate)) - scene.value(self.value)),)

@@ -8,11 +8,22 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.round_bodies import Ball, Egg, Round, Wheel
 from eomgen.model.constraints.row import Edge, TieRow
-from eomgen.model.constraints.tracks import Circle, Contact, Curved, Track, curved, normal_of, on_curved, on_level
+from eomgen.model.constraints.tracks import (
+    Circle,
+    Contact,
+    Curved,
+    Track,
+    curved,
+    normal_of,
+    on_curved,
+    on_level,
+    wheel_on_ball,
+)
 from eomgen.model.forces.load import Scalar, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
+from eomgen.symbolic.spatial import minus
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]
@@ -73,25 +84,35 @@ class Rolling(Constraint):
         return (TieRow(normal, contact.gap, component="n"), *held)
 
     def edges(self, scene: Scene) -> tuple[Edge, ...]:
-        """A wheel on a plane must not lie flat."""
-        body, track = self._round(scene), self.plane
-        if track is None or not isinstance(body, Wheel):
+        """A wheel must not lie flat, on a ball neither."""
+        body, name = self._round(scene), scene.where.rpartition(".")[2]
+        if not isinstance(body, Wheel):
             return ()
-        n = normal_of(scene, self.on, track)
-        return (Edge(f"'{self.body}' lies flat in '{scene.where.rpartition('.')[2]}'", body.tilt(scene, n)),)
+        if self.plane is not None:
+            n = normal_of(scene, self.on, self.plane)
+            return (Edge(f"'{self.body}' lies flat in '{name}'", body.tilt(scene, n)),)
+        center = scene.position(scene.own_place(self.body, self.center))
+        out = minus(center, scene.position(self._curved(scene).anchor))
+        return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
     def _contact(self, scene: Scene, center: Any) -> Contact:
         body = self._round(scene)
         track = self.plane or self.line
         if track is not None:
             return on_level(scene, self.on, track, center, body)
-        if not isinstance(body, Ball):
-            raise ModelError(f"'{self.body}' is no ball: where it touches something curved is not derived", scene.where,
-                             "let it roll on a plane, or leave out 'axis' and 'ellipsoid'")  # fmt: skip
+        found = self._curved(scene)
+        if isinstance(body, Wheel) and found.axis is None:
+            return wheel_on_ball(scene, found, center, body)
+        if isinstance(body, Ball):
+            return on_curved(scene, found, center, body)
+        raise ModelError(f"'{self.body}' is no ball: where it touches something curved is not derived", scene.where,
+                         "let it roll on a plane, or leave out 'axis' and 'ellipsoid'")  # fmt: skip
+
+    def _curved(self, scene: Scene) -> Curved:
         if self.circle is not None:
-            return on_curved(scene, curved(scene, self.on, self.circle), center, body)
+            return curved(scene, self.on, self.circle)
         assert self.on is not None, "one of line, plane, circle and on is given"
-        return on_curved(scene, Curved(scene.own_place(self.on, None), scene.radius(self.on)), center, body)
+        return Curved(scene.own_place(self.on, None), scene.radius(self.on))
 
     def _round(self, scene: Scene) -> Round:
         """What touches: a ball (in the plane a disc), a wheel, an ellipsoid; sizes left out are those of the shape."""

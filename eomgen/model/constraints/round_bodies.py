@@ -74,6 +74,29 @@ class Wheel:
         down = times(over(-self.R, rho), cross(a, cross(n, a)))
         return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
 
+    def nearest_to_ball(self, scene: Scene, out: Vector, side: int) -> Vector:
+        """From the wheel's centre to the place of its centre line nearest to a ball's centre; from inside the farthest.
+
+        -+ R h / |h|,  h = d - (d . a) a,  d from the ball's centre to the wheel's.
+
+        Raises:
+            ModelError: its axis points to the ball's centre at the start, where the whole rim touches.
+        """
+        h, size = self._across(scene, out), self.distance(scene, out)
+        if abs(_worth(scene, size)) < FLAT * abs(_worth(scene, self.R)):
+            raise ModelError(f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
+                             scene.where, "start it leaning")  # fmt: skip
+        return times(over(-side * self.R, size), h)
+
+    def distance(self, scene: Scene, out: Vector) -> Scalar:
+        """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
+        h = self._across(scene, out)
+        return sqrt(_short(dot(h, h)))
+
+    def _across(self, scene: Scene, out: Vector) -> Vector:
+        a = self._axle(scene)
+        return minus(out, times(dot(out, a), a))
+
     def tilt(self, scene: Scene, n: Vector) -> Scalar:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)

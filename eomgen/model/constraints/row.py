@@ -23,6 +23,7 @@ class TieRow:
             (rolling contacts, strings that leave a pulley).
         tangent: of a contact that can rub, the forces for a unit of friction; their dual is the sliding velocity.
         cross_tangent: of a contact on a surface the same along the second direction, across the first.
+        round: of a contact that holds on all sides of a line: N has this row's component and those of the rows before.
         part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
     """
 
@@ -34,6 +35,7 @@ class TieRow:
     tangent: tuple[PointForce | Couple, ...] = ()
     cross_tangent: tuple[PointForce | Couple, ...] = ()
     part: str = ""
+    round: bool = False
 
 
 @dataclass(frozen=True)

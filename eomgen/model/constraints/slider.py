@@ -1,6 +1,6 @@
 """Slider: a point stays on the line of a body."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -33,8 +33,8 @@ class Slider(Constraint):
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
 
-        In the plane n is the left normal; in space there are two. A point of the ground pushes the body: then n and
-        friction are what acts on the body.
+        In the plane n is the left normal; in space there are two, and |N| = sqrt(N_1^2 + N_2^2). A point of the ground
+        pushes the body: then n and friction are what acts on the body.
         """
         (_, A), (_, B) = line = scene.line(self.on)
         if scene.moves((*A, *B)):
@@ -45,8 +45,7 @@ class Slider(Constraint):
         touch, sense = (Touch(place), Touch(line[0], arm)), 1
         if place[0] is None:
             touch, sense = (touch[1], touch[0]), -1
-        tangent = opposite(*touch, apply(R, d)) if scene.plane else ()
-        return tuple(
-            TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name, tangent=tangent)
-            for name, n in normals_of(scene, d)
-        )
+        rows = [TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
+                for name, n in normals_of(scene, d)]  # fmt: skip
+        rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
+        return tuple(rows)

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import right
-from eomgen.model.constraints.round_bodies import Ball, Round, laid_in, turned_over
+from eomgen.model.constraints.round_bodies import Ball, Round, Wheel, laid_in, turned_over
 from eomgen.model.constraints.row import direction_of
 from eomgen.model.forces.load import Place, Scalar, Scene, Vector
 from eomgen.model.joints.base import unit
@@ -98,18 +98,37 @@ def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> Contac
     d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the
     gap is the distance.
     """
-    inside = track.side < 0
-    D = track.r - ball.R if inside else track.r + ball.R
-    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
-        raise ModelError("the body is as large as the circle in which it should roll", scene.where,
-                         "give the circle a larger radius")  # fmt: skip
+    D = _apart(scene, track, ball.R)
     out = minus(center, scene.position(track.anchor))
     along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
     d = out if track.axis is None else minus(out, along)
     n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
-    gap = Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
     arm = plus(along, times(track.side * track.r, n))
-    return Contact(n, gap, times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+    return Contact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+
+
+def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> Contact:
+    """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
+    D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
+    rim = wheel.nearest_to_ball(scene, out, track.side)
+    d = plus(out, rim)
+    n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
+    reach = minus(rim, times(wheel.tube, n))
+    return Contact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
+
+
+def _gap(track: Curved, d: Vector, D: Scalar) -> Scalar:
+    return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
+
+
+def _apart(scene: Scene, track: Curved, R: Scalar) -> Scalar:
+    """How far the centre of a ball is from that of its track where they touch [m]."""
+    inside = track.side < 0
+    D = track.r - R if inside else track.r + R
+    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
+        raise ModelError("the body is as large as the circle in which it should roll", scene.where,
+                         "give the circle a larger radius")  # fmt: skip
+    return D
 
 
 def _around(scene: Scene, track: Curved, n: Vector) -> tuple[Vector, ...]:

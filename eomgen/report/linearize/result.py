@@ -12,6 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.reacting.reaction_outputs import name_of
+from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
@@ -183,8 +184,9 @@ class Linearization(Shown):
         return {
             "name": self.model.name,
             "about": reference.about,
-            "state": {x.name: _state(reference.exact.get(x), float(reference.numbers[x]), self.valued)
+            "state": {x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
                       for x in (*reference.system.symbols.q, *reference.system.symbols.u)},
+            "family": self._family(reference.family),
             "coordinates": list(self.coordinates), "speeds": list(self.speeds), "inputs": list(self.inputs),
             "left_out": [q.name for q in self.small.left_out],
             "second_order": self.small.is_second_order,
@@ -209,6 +211,20 @@ class Linearization(Shown):
             "steps": steps_as_dicts(self.derivation),
         }  # fmt: skip
 
+    def _family(self, family: Family | None) -> dict[str, Any] | None:
+        """The steady motions that this one belongs to; null where it was not sought, or cannot be written."""
+        if family is None:
+            return None
+        motions = zip(family.others, family.closed, self.modes.beside, strict=True) if self.valued else ()
+        return {
+            "held": [x.name for x in (*family.zeros, *family.held)],
+            "conditions": [to_text(x) for x in family.conditions],
+            "formulas": {x.name: to_text(value) for x, value in family.formulas.items()},
+            "complete": family.complete, "where": family.where,
+            "motions": [{"state": {x.name: _state(closed.get(x), value, valued=True) for x, value in at.items()},
+                         "stability": stability or None} for at, closed, stability in motions],
+        }  # fmt: skip
+
     def _matrix(self, A: Matrix) -> dict[str, Any]:
         if not self.is_exact:
             return {"exact": None, "value": A}
@@ -231,7 +247,7 @@ class Linearization(Shown):
         }  # fmt: skip
 
 
-def _state(exact: Scalar | None, number: float, valued: bool) -> dict[str, Any]:
+def _state(exact: Scalar | None, number: float, *, valued: bool) -> dict[str, Any]:
     return {"exact": None if exact is None else to_text(exact), "value": number if valued else None}
 
 

@@ -11,9 +11,10 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Entry, Matrix
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
-from eomgen.mechanics.small_motions.polynomial import Polynomial, TransferFunction, laplace_variable
-from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY
+from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
 from eomgen.mechanics.small_motions.spectrum import Mode
+from eomgen.mechanics.small_motions.transfer import TransferFunction
+from eomgen.report.linearize.reference_step import reference_step
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
 from eomgen.report.statements import Entry as Place
@@ -49,35 +50,9 @@ MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
 
 def linearization_steps(modes: Modes) -> tuple[Step, ...]:
     """Reference, equations, characteristic polynomial, modes, stability, transfer functions."""
-    steps = [_reference(modes), _equations(modes), *_characteristic(modes)]
+    steps = [reference_step(modes), _equations(modes), *_characteristic(modes)]
     steps.append(_modes(modes))
     return (*steps, *_stability(modes), *_transfers(modes))
-
-
-# -- the reference --------------------------------------------------------------------------------------------
-
-
-def _reference(modes: Modes) -> Step:
-    reference = modes.small.reference
-    at_rest = reference.about == EQUILIBRIUM
-    words = "The place of rest nearest to the start:" if at_rest else "The steady motion from the start:"
-    if reference.about == STEADY:
-        words = "The steady motion nearest to the start:"
-    if at_rest and reference.moving:
-        words = "The place of rest beside what moves steadily, nearest to the start:"
-    symbols = reference.system.symbols
-    shown = symbols.q if at_rest else (*symbols.q, *symbols.u)
-    rows: list[tuple[Cell, ...]] = []
-    for x in shown:
-        exact: Cell = reference.exact.get(x, "")
-        rows.append((x, exact, f"{float(reference.numbers[x]):.9g}" if reference.valued else ""))
-    statements: list[Statement] = [Prose((words,)), narrow_grid(("quantity", "exact", "value"), rows)]
-    if reference.place is not None and reference.place.statics.held:
-        statements.append(Prose((f"What the model drives is held there: {', '.join(reference.place.statics.held)}.",)))
-    if modes.small.left_out:
-        words = "Nothing depends on them, and they have no speed of their own: "
-        statements.append(Prose((words, *listed(modes.small.left_out), ".")))
-    return Step("reference", "Reference", tuple(statements))
 
 
 # -- the equations --------------------------------------------------------------------------------------------

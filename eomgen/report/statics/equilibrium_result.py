@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.equilibria.resting_reactions import reactions_or_why
+from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.loops.freedom import freedoms
@@ -50,10 +50,15 @@ class Resting(Shown):
         return self.found.found
 
     @cached_property
+    def reactions(self) -> ReactionsOrWhy | None:
+        """Those at the first place; None without any."""
+        return reactions_or_why(self.places[0]) if self.places else None
+
+    @cached_property
     def derivation(self) -> Derivation:
         """The way to them, step by step."""
         model = self.model
-        steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found))
+        steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found, self.reactions))
         return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
 
     def as_dict(self) -> dict[str, Any]:
@@ -61,10 +66,11 @@ class Resting(Shown):
         return {
             "name": self.model.name,
             "equilibria": [_place(place) for place in self.places],
-            **(_reactions(self.places[0]) if self.places else {}),
+            **(_reactions(self.places[0], self.reactions) if self.reactions else {}),
             "complete": self.found.complete,
             "where": self.found.where,
             "indifferent": [q.name for q in self.found.indifferent],
+            "chosen": [q.name for q in self.found.chosen],
             "held": list(self.found.statics.held),
             "steps": steps_as_dicts(self.derivation),
         }
@@ -106,9 +112,9 @@ def _place(place: Equilibrium) -> dict[str, Any]:
     }
 
 
-def _reactions(place: Equilibrium) -> dict[str, Any]:
+def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
     """Those at the first place."""
-    _, reactions, why = reactions_or_why(place)
+    _, reactions, why = those
     numbers = numbers_of([each.value for each in reactions], known_parameters(place.statics.system.scope))
     return {
         "reactions": {

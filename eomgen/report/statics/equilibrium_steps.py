@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.equilibria.resting_reactions import RestingReaction, reactions_or_why
+from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, RestingReaction
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
@@ -27,12 +27,12 @@ ALONG = Law("J*Z = 0", r"J Z = 0")
 MOST_SHOWN = 4  # coordinates of a K that is printed
 
 
-def equilibrium_steps(found: Equilibria, reader: Reader | None = None) -> tuple[Step, ...]:
+def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
-    reader = reader or Reader()
+    reader = Reader()
     steps: tuple[Step, ...] = (balance_step(found.statics, reader), _places(found))
-    if found.found:
-        steps = (*steps, _stability(found), *_reactions(found.found[0]))
+    if reactions:
+        steps = (*steps, _stability(found), *_reactions(found.found[0], reactions))
     scope = found.statics.system.scope
     return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
 
@@ -73,6 +73,10 @@ def _places(found: Equilibria) -> Step:
         symbols = found.indifferent
         stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
         statements.append(Prose(("No force holds ", *listed(symbols), f": {stay}.")))
+    if found.chosen:
+        stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
+        any_ = "The velocity ties let it rest at any "
+        statements.append(Prose((any_, *listed(found.chosen), f" near {stay} there.")))
     if not found.found:
         statements.append(Prose((_how_many(found),)))
         return Step("places", "Places of rest", tuple(statements))
@@ -138,8 +142,8 @@ def _leading(n: int) -> Law:
 # -- the reactions ---------------------------------------------------------------------------------
 
 
-def _reactions(place: Equilibrium) -> tuple[Step, ...]:
-    reactions, found, why = reactions_or_why(place)
+def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
+    reactions, found, why = those
     title = "Reactions at place 1"
     if reactions is None:
         return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import UsageError
+from eomgen.mechanics.equilibria.static_equations import with_drives_held
 from eomgen.mechanics.statics.blocks import Block, blocks_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
@@ -210,7 +211,8 @@ def statics(model: Model, *, reaction: str | None = None, influence: str | None 
     if has_freedoms(system):
         _refuse_for_resting(reaction=reaction, influence=influence)
         return resting_places(model, system)
-    found = static_reactions_of(system, only=reaction)
+    held, _ = with_drives_held(system)  # what the model drives is held where it starts
+    found = static_reactions_of(held, only=reaction)
     line = None if influence is None else influence_line(found.structure, influence)
     return Statics(model, found, line)
 

@@ -1,0 +1,67 @@
+"""System, values by name -> where places of rest are sought first: as asked, else `near`, else the start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import UsageError
+from eomgen.mechanics.loads import start_value
+from eomgen.mechanics.system import System
+from eomgen.model.values import first_guesses, start_values
+from eomgen.symbolic.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.graph import Node, Scalar
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Where to begin.
+
+    Args:
+        system: whose coordinates they are.
+        values: of the parameters, with 50 digits.
+        asked: coordinates by name, in place of `near` and `start`.
+    """
+
+    system: System
+    values: Mapping[Node, Any]
+    asked: Mapping[str, float]
+
+    def of(self, coordinates: Sequence[Node]) -> np.ndarray:
+        """Numbers of coordinates.
+
+        Raises:
+            UsageError: a name is asked that is no coordinate.
+        """
+        return np.array([float(self._numbers[q.name]) for q in coordinates])
+
+    def exact(self, q: Node) -> Scalar:
+        """One as a scalar of the parameters."""
+        scope = self.system.scope
+        near = scope.model.coordinates[q.name].near
+        if q.name in self.asked:
+            return Fraction(self.asked[q.name])
+        return start_value(scope, scope.model.coordinates[q.name]) if near is None else scope.value(near)
+
+    @cached_property
+    def _numbers(self) -> dict[str, float]:
+        model = self.system.scope.model
+        unknown = [name for name in self.asked if name not in model.coordinates]
+        if unknown:
+            raise UsageError(f"no coordinate '{unknown[0]}'", mend=f"one of {', '.join(model.coordinates)}")
+        trial = {name: float(self.values[x]) for name, x in self.system.symbols.parameters.items()}
+        return {**start_values(model, trial)[0], **first_guesses(model, trial), **self._near, **self.asked}
+
+    @property
+    def _near(self) -> dict[str, float]:
+        """The first guesses of coordinates that are not dependent."""
+        scope, found = self.system.scope, {}
+        for name, part in scope.model.coordinates.items():
+            if part.near is not None:
+                found[name] = float(evaluate((scope.value(part.near),), self.values, fifty_digits())[0])
+        return found

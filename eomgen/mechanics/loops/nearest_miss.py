@@ -1,0 +1,96 @@
+"""System, a place where ties are open -> how near they come to closing, wherever the coordinates go.
+
+    min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Marquardt from several places
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.loops.closure import gaps_of, movable
+from eomgen.mechanics.system import System
+from eomgen.symbolic.derivative import jacobian, symbols_of
+from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.graph import Node
+
+TRIES = 12
+REACH = 1.5  # how far from the place others are tried [rad, m]
+CLOSED = 1e-9  # of a gap
+FAILED = 1e6  # stands for a gap that has no value
+FLAT = 1e-6  # of a coordinate where a gap is least, which is known to the root of rounding
+OPEN = 1e-6  # of a gap that stays open, against the largest
+
+
+@dataclass(frozen=True)
+class Miss:
+    """The place where the ties are open by least.
+
+    Args:
+        values: of the coordinates that stand in gaps.
+        open: the largest |phi|; 0 where they close.
+        ties: that stay open.
+    """
+
+    values: Mapping[str, float]
+    open: float
+    ties: tuple[str, ...]
+
+
+def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
+    """The place where the gaps are least, of those that close the nearest; None where nothing moves them."""
+    gaps = gaps_of(system.ties)
+    standing = set(symbols_of(gaps))
+    free = [q for q in movable(system.ties) if q in standing]
+    if not free:
+        return None
+    search = _Search(system, {node: float(x) for node, x in state.items()}, tuple(free))
+    here = np.array([search.known[q] for q in free])
+    rng = Random(1)
+    starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
+    found = [search.least(start) for start in starts]
+    best = min(found, key=lambda place: (round(search.size(place) / CLOSED), float(np.linalg.norm(place - here))))
+    values = search.gaps(best)[: len(gaps)]
+    size = float(np.max(np.abs(values), initial=0.0))
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN * size]
+    places = {q.name: float(x) if abs(x) > FLAT else 0.0 for q, x in zip(free, best, strict=True)}
+    return Miss(places, size if size > CLOSED else 0.0, tuple(dict.fromkeys(named)) if size > CLOSED else ())
+
+
+@dataclass(frozen=True)
+class _Search:
+    system: System
+    known: dict[Node, float]
+    free: tuple[Node, ...]
+
+    def gaps(self, place: np.ndarray) -> np.ndarray:
+        """phi, and e . e - 1 of each quaternion."""
+        norms = (sum((e * e for e in four), start=-1) for four in self.system.scope.quaternions)
+        return self._at((*gaps_of(self.system.ties), *norms), place)
+
+    def slopes(self, place: np.ndarray) -> np.ndarray:
+        norms = (sum((e * e for e in four), start=-1) for four in self.system.scope.quaternions)
+        rows = jacobian((*gaps_of(self.system.ties), *norms), self.free)
+        return self._at([x for row in rows for x in row], place).reshape(len(rows), -1)
+
+    def size(self, place: np.ndarray) -> float:
+        return float(np.max(np.abs(self.gaps(place)), initial=0.0))
+
+    def least(self, start: np.ndarray) -> np.ndarray:
+        from scipy.optimize import least_squares
+
+        found: np.ndarray = least_squares(self.gaps, start, self.slopes, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+        return found
+
+    def _at(self, scalars: Any, place: np.ndarray) -> np.ndarray:
+        state = self.known | dict(zip(self.free, place.tolist(), strict=True))
+        try:
+            values = np.array(evaluate(tuple(scalars), state, FLOAT), dtype=float)
+        except (NoValue, ZeroDivisionError, OverflowError):
+            return np.full(len(tuple(scalars)), FAILED)
+        return np.nan_to_num(values, nan=FAILED, posinf=FAILED, neginf=-FAILED)

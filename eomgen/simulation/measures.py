@@ -1,0 +1,49 @@
+"""System, assembly -> what is measured along a motion at many states: how near it comes to singular positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.loops.elimination import singular_blocks
+from eomgen.mechanics.loops.freedom import rank_of_ties
+from eomgen.mechanics.system import System
+from eomgen.simulation.independence import Independence
+from eomgen.simulation.nearness import Nearness
+from eomgen.symbolic.graph import Scalar
+
+Measure = Callable[[Any, Any], np.ndarray]
+
+
+def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measure:
+    """(t n, x n x states) -> the outputs at each state, n x outputs."""
+    function = compiled(program_of(outputs, system.symbols, inputs=system.inputs), "numpy")
+    one = function.at(p)
+
+    def along(t: Any, x: Any) -> np.ndarray:
+        return one(t[0], x[0])[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
+
+    return along
+
+
+def nearness_of(system: System, assembly: Assembly, p: np.ndarray) -> Nearness | None:
+    """How near a motion is to positions in which the ties do not determine it; None without ties."""
+    blocks = singular_blocks(system.elimination, system.scope)
+    determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
+    rows = independence_of(system, assembly, p)
+    what = tuple(map(str, blocks))
+    return None if determinants is None and rows is None else Nearness(determinants, rows, what)
+
+
+def independence_of(system: System, assembly: Assembly, p: np.ndarray) -> Independence | None:
+    """How independent the rows are that close by multipliers; None without such."""
+    rank = rank_of_ties(system.ties)
+    if not rank:
+        return None
+    J = measure(system, tuple(x for row in assembly.J for x in row), p)
+    return Independence(J, tuple(row.tie for row in system.ties.closing), rank)
