@@ -26,7 +26,7 @@ from typing import Any
 from eomgen.version import __version__ as __version__
 
 _HOMES = {
-    "answers": ("Answer", "solve"),
+    "answers": ("solve",),
     "certificate": ("Certificate", "Check"),
     "errors": (
         "DerivationError", "EomgenError", "ExpressionError", "MissingValues", "ModelError", "NotYet", "Problem",
@@ -42,6 +42,7 @@ _HOMES = {
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
+    "report.answer": ("Answer",),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),
     "report.statics.result": ("Statics", "statics"),

@@ -8,9 +8,8 @@ instant it is exact where the motion can be followed in closed form, else a numb
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 from eomgen.errors import (
     DerivationError,
@@ -31,6 +30,7 @@ from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
 from eomgen.moments import Moment, resting
+from eomgen.report.answer import Answer
 from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.situation import Situation
@@ -43,37 +43,6 @@ from eomgen.symbolic.transplant import transplanted
 
 LONGEST = 20_000  # characters of an exact answer
 NO_VALUE = "it has no finite value {}"
-
-
-@dataclass(frozen=True)
-class Answer:
-    """One output's result.
-
-    Args:
-        exact: text of the grammar with every parameter as a symbol, or None.
-        value: a number, parameters and start (or instant) put in, or None.
-        unit: of both; "" for SI.
-        method: how it was found.
-        message: what is missing, or None.
-    """
-
-    exact: str | None = None
-    value: float | None = None
-    unit: str = ""
-    method: str = ""
-    message: str | None = None
-
-    @property
-    def answered(self) -> bool:
-        return self.exact is not None or self.value is not None
-
-    def as_dict(self) -> dict[str, Any]:
-        """For `--json`."""
-        return asdict(self)
-
-    def _repr_markdown_(self) -> str:
-        parts = [f"`{self.exact}`" if self.exact is not None else "", _number(self)]
-        return " = ".join(part for part in parts if part) or (self.message or "")
 
 
 def solve(model: Model) -> dict[str, Answer]:
@@ -92,33 +61,6 @@ def solve(model: Model) -> dict[str, Answer]:
     if wrong and not any(answer.answered for answer in found.values()):
         raise wrong[0]
     return found
-
-
-def table(answers: dict[str, Answer]) -> str:
-    """The answers as text: exact, then the number and the way to it."""
-    width = max((len(name) for name in answers), default=0)
-    shown = []
-    for name, answer in answers.items():
-        first, *more = lines(answer)
-        shown.append(f"{name:<{width}}  {first}")
-        shown += [f"{'':<{width}}  {line}" for line in more]
-    return "".join(f"{line}\n" for line in shown)
-
-
-def lines(answer: Answer) -> list[str]:
-    """One answer, a line for each thing that is known of it."""
-    if not answer.answered:
-        return [f"not answered: {answer.message}"]
-    found = [f"= {part}" for part in (answer.exact, _number(answer)) if part]
-    found[-1] += f"   [{answer.method}]"
-    return [*found, f"({answer.message})"] if answer.message else found
-
-
-def _number(answer: Answer) -> str:
-    if answer.value is None:
-        return ""
-    shown = f"{answer.value:.10g}"
-    return f"{shown} {answer.unit}" if answer.unit else shown
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import eomgen
-from eomgen.answers import Answer
+from eomgen.report.answer import Answer
 from eomgen.symbolic.expressions import parse
 
 PENDULUM = """

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import eomgen
+from eomgen.symbolic import dense, modular
 from eomgen.symbolic.dense import independent, scaled_condition, solution
-from eomgen.symbolic.evaluation import NoValue
+from eomgen.symbolic.evaluation import NoValue, fifty_digits
 
 SMALLEST = 1e-11
 
@@ -43,6 +44,39 @@ def test_the_condition_of_a_mass_matrix_knows_no_units():
     """diag(1e-12, 1e9) is as good as the identity."""
     assert scaled_condition(np.diag([1e-12, 1e9])) == pytest.approx(1)
     assert scaled_condition(np.array([[1.0, 1.0], [1.0, 1.0]])) > 1e13
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_row_follows_in_the_reals_as_in_the_prime_field(seed):
+    """x = sum k_i r_i of integer rows follows from them; with one entry changed it does not."""
+    rng = np.random.default_rng(seed)
+    rows, shares = rng.integers(-9, 10, size=(3, 5)), rng.integers(-9, 10, size=3)
+    row = shares @ rows
+    number = fifty_digits().number
+    for asked in (row, row + np.eye(5, dtype=int)[seed], 0 * row):
+        real = dense.follows([[number(int(x)) for x in r] for r in rows], [number(int(x)) for x in asked])
+        assert real == modular.follows(rows.tolist(), asked.tolist()) == (np.linalg.matrix_rank([*rows, asked]) == 3)
+
+
+def test_rows_that_are_rounding_are_no_rows():
+    """1e-17 (1, -1) beside (3, 4) says nothing; (3, 4)/5 has length 1."""
+    A = np.array([[3.0, 4.0], [1e-17, -1e-17]])
+    assert dense.of_one_length(A) == pytest.approx(np.array([[0.6, 0.8], [0.0, 0.0]]))
+    assert dense.independent_rows(A, SMALLEST) == [0]
+    assert np.array_equal(dense.without_rounding(A), [[3, 4], [0, 0]])
+
+
+def test_entries_that_are_noise_are_0_against_their_row_or_the_whole():
+    """1e-9 is noise beside 1, and not where it stands alone in its row."""
+    A = np.array([[1.0, 1e-9], [1e-9, 0.0]])
+    assert np.array_equal(dense.without_noise(A, 1e-6), [[1, 0], [0, 0]])
+    assert np.array_equal(dense.without_noise(A, 1e-6, axis=1), [[1, 0], [1e-9, 0]])
+
+
+def test_rows_that_hold_give_a_mass_where_there_is_none():
+    """M = diag(2, 0), J = (0, 5): M + tr(M)/2 J^T J/|J|^2 = diag(2, 1) is regular, and a^T M a the same on J a = 0."""
+    M, J = np.diag([2.0, 0.0]), np.array([[0.0, 5.0]])
+    assert dense.weighted(M, J) == pytest.approx(np.diag([2.0, 1.0]))
 
 
 SMALL = """

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import eomgen
+from eomgen.verbs.check import check
 
 HEAD = """
 eomgen = 1
@@ -159,3 +160,14 @@ def test_redundant_loops_are_named_and_leave_the_freedom_that_there_is():
     found = eomgen.freedom_of(eomgen.load(Path(__file__).parents[1] / "models" / "four_cranks.toml"))
     assert (found.by_rank, found.by_formula) == (1, -1)
     assert [(row.tie, row.number) for row in found.redundant] == [("Q", 2), ("R", 2)]
+
+
+def test_a_tie_that_closes_in_some_rows_and_reacts_in_others_says_which():
+    """A cone that rolls on its plane: n holds by itself, and both other rows keep phi - psi sin(alpha) = 1/5, once."""
+    model = eomgen.load(Path(__file__).parent.parent / "models" / "rolling_cone.toml")
+    lines = check(model).text.splitlines()
+    assert "ties that close: plane (rows 2 and 3)" in lines and "ties that only react: plane (row 1)" in lines
+    kept = [line for line in lines if line.startswith("integrable")]
+    assert kept == ["integrable (holonomic): rows 2 and 3 of tie 'plane': phi - psi*sin(alpha) - 1/5 = 0"]
+    freedom = eomgen.freedom_of(model)
+    assert (freedom.closing, freedom.identical) == (("plane",), ("plane",))

@@ -23,6 +23,7 @@ def formulas():
 
 
 def test_many_states_have_the_values_that_each_has_by_itself():
+    """f(x_i) of n states at once is f(x_i) of each, operation by operation."""
     unknowns, k, scalars = formulas()
     states = np.random.default_rng(3).uniform(-2, 2, (50, 2))
     found = Layers(scalars, unknowns, {k: 1.25}).at(states)
@@ -32,6 +33,7 @@ def test_many_states_have_the_values_that_each_has_by_itself():
 
 
 def test_outside_its_domain_an_expression_has_no_number():
+    """sqrt(-1) is nan in its own state, and does not reach the next: sqrt(4) = 2."""
     unknowns, k, scalars = formulas()
     found = Layers(scalars, unknowns, {k: 0.0}).at(np.array([[-1.0, 1.0], [4.0, 1.0]]))
     assert isnan(found[0, 2])
@@ -39,6 +41,7 @@ def test_outside_its_domain_an_expression_has_no_number():
 
 
 def test_no_state_and_no_unknown_are_no_exception():
+    """0 states give 0 rows; expressions of parameters alone are the same in all states."""
     unknowns, k, scalars = formulas()
     assert Layers(scalars, unknowns, {k: 1.0}).at(np.zeros((0, 2))).shape == (0, len(scalars))
     assert Layers((k * k, 3), (), {k: 2.0}).at(np.zeros((2, 0))).tolist() == [[4.0, 3.0], [4.0, 3.0]]

@@ -8,13 +8,13 @@ from random import Random
 import pytest
 
 import eomgen
+from eomgen.codegen.solved_equations import accelerations_and_multipliers
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
 from eomgen.mechanics.outputs import COMPONENTS, LINEARIZED, MAGNITUDES, OF_MOTION, TURNING, Quantities
 from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.system import system_of
 from eomgen.model.checks.outputs import FUNCTIONS
-from eomgen.situation import accelerations_and_multipliers
 from eomgen.symbolic.derivative import derivative
 from eomgen.symbolic.evaluation import FLOAT, evaluate
 from eomgen.symbolic.expressions import parse

@@ -48,11 +48,11 @@ class Numbers:
 
     def at(self, scalars: tuple[Scalar, ...], shift: int = 0) -> list[Any]:
         """Values at the state, or a step of 1e-15 later (shift = 1) or earlier (-1) on the path with constant u."""
-        state = self._later if shift > 0 else self._earlier if shift < 0 else self.state
-        return evaluate(scalars, state, fifty_digits())
+        return evaluate(scalars, self._beside[shift] if shift else self.state, fifty_digits())
 
-    _later = cached_property(lambda self: self._shifted(1))
-    _earlier = cached_property(lambda self: self._shifted(-1))
+    @cached_property
+    def _beside(self) -> dict[int, State]:
+        return {sign: self._shifted(sign) for sign in (1, -1)}
 
     def _shifted(self, sign: int) -> State:
         """The state a step of 1e-15 later or earlier."""
@@ -103,26 +103,12 @@ def free_speeds(system: System, free: System, state: State) -> State:
 def _accelerations(system: System, state: State) -> np.ndarray:
     """a of a system in which every tie that closes has its multiplier."""
     numbers = Numbers(system, state)
-    links = system.motion.links
-    n, nu = len(links), len(system.scope.symbols.u)
+    n, nu = len(system.motion.links), len(system.scope.symbols.u)
     k = len(system.ties.closing) + len(system.scope.quaternions)
     size = 12 * n + nu + k
     A, right = np.zeros((size, size)), np.zeros(size)
     speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
-    columns, biases = [], []
-    for i, link in enumerate(links):
-        column, bias = _joint(numbers, link)
-        columns.append(column)
-        biases.append(bias)
-        motion, wrench = slice(6 * i, 6 * i + 6), slice(6 * (n + i), 6 * (n + i) + 6)
-        inertia, push = _body(numbers, link)
-        A[motion, motion], A[motion, wrench], right[motion] = inertia, -np.eye(6), push
-        A[wrench, motion], A[wrench, speeds], right[wrench] = np.eye(6), -column, bias
-        if link.parent >= 0:
-            X = _transfer(numbers, link)
-            A[wrench, 6 * link.parent : 6 * link.parent + 6] = -X
-            A[6 * link.parent : 6 * link.parent + 6, wrench] = X.T
-        A[speeds, wrench] = column.T
+    _put_bodies(numbers, A, right, speeds)
     direct = [a + b for a, b in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
     rotors = armature_bias(system.motion, nu)
     right[speeds] = numbers.array(tuple(a - b for a, b in zip(direct, rotors, strict=True))) if nu else 0
@@ -134,6 +120,23 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     A[multipliers, speeds] = J
     regular = independent(J, smallest=REDUNDANT)
     return solution(A, right, regular=regular, smallest=REDUNDANT)[speeds]
+
+
+def _put_bodies(numbers: Numbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:
+    """Into A and the right side: Newton and Euler for every body, and what its joint says of its motion."""
+    links = numbers.system.motion.links
+    n = len(links)
+    for i, link in enumerate(links):
+        column, bias = _joint(numbers, link)
+        motion, wrench = slice(6 * i, 6 * i + 6), slice(6 * (n + i), 6 * (n + i) + 6)
+        inertia, push = _body(numbers, link)
+        A[motion, motion], A[motion, wrench], right[motion] = inertia, -np.eye(6), push
+        A[wrench, motion], A[wrench, speeds], right[wrench] = np.eye(6), -column, bias
+        if link.parent >= 0:
+            X = _transfer(numbers, link)
+            A[wrench, 6 * link.parent : 6 * link.parent + 6] = -X
+            A[6 * link.parent : 6 * link.parent + 6, wrench] = X.T
+        A[speeds, wrench] = column.T
 
 
 def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:

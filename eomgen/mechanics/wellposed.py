@@ -13,13 +13,15 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loops.closure import generic_state, number, scattered_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import from_potential
+from eomgen.symbolic.dense import of_one_length
 from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import FLOAT, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, is_zero
 
 REGULAR = 1e-9  # of the least eigenvalue of M, its diagonal 1: below it M is looked at closely
 FAINT = 1e-12  # of an entry of the diagonal of M, against the largest: it may be rounding
+NOTHING = 1e-60  # the same of 50 digits: a sum of squares that cancel
 IDLE = 1e-13  # of the least singular value of M and J, against the largest
 STILL = 1e-6  # of a speed, against the largest
 
@@ -95,10 +97,9 @@ def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | Non
     entries = evaluate([x for row in (*assembly.M, *assembly.J) for x in row], state, fifty_digits())
     rows = np.array(entries, dtype=float).reshape(-1, len(u))
     sizes = np.diag(rows[: len(u)])
-    scale = 1 / np.sqrt(np.where(sizes > ZERO_AT_50 * max(sizes), sizes, 1.0))
+    scale = 1 / np.sqrt(np.where(sizes > NOTHING * max(sizes), sizes, 1.0))
     M, J = scale[:, None] * rows[: len(u)] * scale, rows[len(u) :] * scale
-    lengths = np.linalg.norm(J, axis=1, keepdims=True)
-    _, values, directions = np.linalg.svd(np.vstack([M, J / np.where(lengths > 0, lengths, 1.0)]))
+    _, values, directions = np.linalg.svd(np.vstack([M, of_one_length(J)]))
     if values[-1] > IDLE * values[0]:
         return None
     least = scale * directions[-1]

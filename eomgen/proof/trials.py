@@ -21,7 +21,7 @@ from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.proof.check import Check
-from eomgen.symbolic.dense import independent, scaled_condition, solution, without_rounding
+from eomgen.symbolic.dense import independent, scaled_condition, solution, weighted, without_rounding
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
@@ -221,9 +221,7 @@ def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
     right = np.array(values[n * n + k * n :]) * np.array([1] * n + [-1] * k)
     if n == 0:
         return np.zeros(0)
-    lengths = np.linalg.norm(J, axis=1, keepdims=True)
-    rows = J / np.where(lengths > 0, lengths, 1.0)
-    if scaled_condition(M + np.trace(M) / n * rows.T @ rows) > SINGULAR:  # what no mass measures the ties may say
+    if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the ties may say
         raise NoValue("the mass matrix is singular")
     if k == 0:
         return np.linalg.solve(M, right)

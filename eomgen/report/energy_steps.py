@@ -72,19 +72,21 @@ def kinetic_energy_step(
 
 def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Step:
     """The work of each force, and the generalized forces of everything applied."""
-    statements: list[Statement] = []
-    if not system.loads.applied and not system.loads.efforts:
-        statements.append(Prose(("Nothing is applied.",)))
-    else:
-        statements.append(Prose(("Potentials and virtual work, ", WORK, ":")))
+    names = moved_coordinates(system)
     formulas = [f for force in system.loads.applied for f in _force(system, force)]
     formulas += [f for effort in system.loads.efforts for f in _effort(system, effort)]
     formulas = [(name, reader.as_square(x) if _is_potential(name) else x) for name, x in formulas]
+    statements: list[Statement] = []
+    if not system.loads.applied and not system.loads.efforts:
+        statements.append(Prose(("Nothing is applied.",)))
+    elif names or formulas:
+        statements.append(Prose(("Potentials and virtual work, ", WORK, ":")))
+    else:
+        statements.append(Prose(("Nothing is free to move: what is applied enters the reactions alone.",)))
     statements += page(reader, formulas)
     if sum(_is_potential(name) for name, _ in formulas) > 1:
         statements += [Prose(("The potential energy together:",))]
         statements += page(reader, [(V, system.loads.potential_energy)])
-    names = moved_coordinates(system)
     if names:
         statements.append(Prose(("The generalized forces of everything applied:",)))
         statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])

@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.friction import Rub
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
@@ -59,23 +60,37 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
         if rub.normals:
-            factor, force = substituted((rub.factor, letters.balance.given[rub.component]), senses)
-            size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in rub.normals), start=0))
-            shown_force = reader.shown(force)
+            shown_force, formula = _of_round(reader, letters, rub, senses)
             definitions += [] if isinstance(shown_force, Omitted) else [(normal, shown_force)]
-            statements.append(Formula((normal, readable_value(reader, factor) * size, shown_force)))
-            forces = [total + share * normal for total, share in zip(forces, rub.along, strict=True)]
-            continue
-        value = _normal(readings, rub.component, assembly, senses)
-        along = [x.factor for x in letters.reactions.components[rub.component].friction]
-        factors, row = substituted(along, senses), substituted(rub.force, senses)
-        definitions.append((normal, value))
-        statements.append(Formula((normal, value)))
-        for friction, factor in zip(frictions, factors, strict=True):
-            statements.append(Formula((friction, readable_value(reader, factor) * normal)))
+            statements.append(formula)
+        else:
+            value = _normal(readings, rub.component, assembly, senses)
+            definitions.append((normal, value))
+            statements += [Formula((normal, value)), *_along(reader, letters, rub, frictions, senses)]
+        row = rub.along if rub.normals else substituted(rub.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
     return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
+
+
+def _of_round(
+    reader: Reader, letters: Lettered, rub: Rub, senses: Mapping[Node, Node]
+) -> tuple[Scalar | Omitted, Formula]:
+    """(the friction of what holds on all sides, that as a formula: F = factor sqrt(N_1^2 + N_2^2))."""
+    factor, force = substituted((rub.factor, letters.balance.given[rub.component]), senses)
+    size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in rub.normals), start=0))
+    shown = reader.shown(force)
+    return shown, Formula((letters.symbols[rub.component], readable_value(reader, factor) * size, shown))
+
+
+def _along(
+    reader: Reader, letters: Lettered, rub: Rub, frictions: Sequence[Node], senses: Mapping[Node, Node]
+) -> list[Formula]:
+    """F = factor N along each direction in which a contact rubs."""
+    factors = substituted([x.factor for x in letters.reactions.components[rub.component].friction], senses)
+    normal = letters.symbols[rub.component]
+    return [Formula((friction, readable_value(reader, factor) * normal))
+            for friction, factor in zip(frictions, factors, strict=True)]  # fmt: skip
 
 
 def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node, Node]) -> Scalar:

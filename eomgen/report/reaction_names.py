@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from eomgen.mechanics.friction import Rub, rubbing_contacts
 from eomgen.mechanics.reacting.balance import Balance
-from eomgen.mechanics.reacting.components import Component
+from eomgen.mechanics.reacting.components import EACH_AXIS, Component
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, unit_of
 from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.ties import Row
@@ -94,7 +94,8 @@ def _letters(balance: Balance, component: Component) -> str:
     if kind == "tension" and component.side:
         trusses = trusses_of(balance.system.scope.model.constraints)
         return "_".join(("N", *([component.owner] if len(trusses) > 1 else []), *component.side.split("-")))
-    return "_".join(filter(None, (LETTERS[kind], component.owner, number or _strand(balance, component))))
+    number = number or _strand(balance, component) or _couple(balance, component)
+    return "_".join(filter(None, (LETTERS[kind], component.owner, number)))
 
 
 def _strand(balance: Balance, component: Component) -> str:
@@ -102,6 +103,18 @@ def _strand(balance: Balance, component: Component) -> str:
     tie = balance.system.scope.model.constraints.get(component.owner)
     rows = () if tie is None or component.label != "tension" else tie.strand_rows()
     return str(rows.index(component.number) + 1) if max(rows, default=1) > 1 else ""
+
+
+def _couple(balance: Balance, component: Component) -> str:
+    """Of a tie with several couples x, y, z where all are along axes of the body, else the number; else ""."""
+    if component.label != "couple" or component.kind != "tie":
+        return ""
+    couples = [c for c in balance.components if c.kind == "tie" and c.owner == component.owner and c.label == "couple"]
+    if len(couples) == 1:
+        return ""
+    axes = [axis for c in couples for axis, e in zip(AXES, EACH_AXIS, strict=True) if c.effects[0].couple == e]
+    where = couples.index(component)
+    return axes[where] if len(axes) == len(couples) else str(where + 1)
 
 
 def meaning(balance: Balance, component: Component) -> str:
@@ -172,7 +185,7 @@ def _axis(balance: Balance, component: Component, label: str) -> str:
 def _sense(balance: Balance, component: Component) -> str:
     if balance.system.scope.model.space == "plane":
         return "counter-clockwise"
-    return f"about {_named(component.effects[0].couple)} of its own axes"
+    return f"about {_named(component.effects[0].couple)}"
 
 
 def _direction(balance: Balance, component: Component) -> str:
@@ -181,17 +194,17 @@ def _direction(balance: Balance, component: Component) -> str:
         return ", along the normal"
     if balance.system.scope.model.space == "plane":
         return ", to the left of its way"
-    return f", along {_named(component.effects[0].force)} of its own axes"
+    return f", along {_named(component.effects[0].force)}"
 
 
 def _named(direction: Vector) -> str:
-    """An axis by its letter, another direction by its components where these are numbers."""
+    """An axis of the body by its letter, another direction by its components where these are numbers."""
     for axis, x in zip(AXES, direction, strict=True):
         others = sum(not is_zero(y) for y in direction) - (not is_zero(x))
         if type(x) is int and x in (1, -1) and not others:
-            return axis if x > 0 else f"-{axis}"
+            return f"{axis if x > 0 else f'-{axis}'} of its own axes"
     if all(type(x) is not Node for x in direction):
-        return f"({', '.join(str(x) for x in direction)})"
+        return f"({', '.join(str(x) for x in direction)}) of its own axes"
     return "a direction across its freedom"
 
 

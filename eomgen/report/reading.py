@@ -126,7 +126,7 @@ class Reader:
     def divided(self, left: Scalar, right: Scalar) -> tuple[Scalar, Scalar, Scalar]:
         """(left / divisor, right / divisor, divisor), all as shown: both sides without what every term of them holds.
 
-        A number is divided by only where it is small and the equation gets shorter by it.
+        A number is divided by only where it is small; nothing is where the equation gets longer by it.
         """
         if holds_roots(left, right) or (is_zero(left) and is_zero(right)):
             return left, right, 1
@@ -137,6 +137,7 @@ class Reader:
         for divisor in (number * product, product) if small else (product,):
             over = self.short_with_symbols((graph.div(left, divisor), graph.div(right, divisor)))
             found.append((over[0], over[1], divisor))
+        found.append((left, right, 1))
         return min(found, key=lambda each: length_in_print(*each[:2]))
 
     def as_square(self, x: Scalar) -> Scalar:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.symbolic.dense import NOTHING
+from eomgen.symbolic.dense import divisor
 
 SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
 
@@ -47,7 +47,7 @@ class Independence:
         """
         J = self.J(t, x)
         greatest: np.ndarray = np.maximum(lengths, _lengths(J))
-        return np.linalg.svd(J / _divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
+        return np.linalg.svd(J / divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
 
     def J(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """J at n states, n x k x nu; 0 where it has no value."""
@@ -57,15 +57,9 @@ class Independence:
 
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         J = self.J(t, x)
-        return J / _divisor(_lengths(J))
+        return J / divisor(_lengths(J))
 
 
 def _lengths(J: np.ndarray) -> np.ndarray:
     found: np.ndarray = np.sqrt(np.einsum("nkj,nkj->nk", J, J)).max(axis=0, initial=0.0)[:, None]
     return found
-
-
-def _divisor(lengths: np.ndarray) -> np.ndarray:
-    """The lengths; infinite of rows that are rounding."""
-    nothing = NOTHING * np.max(lengths, initial=0.0)
-    return lengths if np.all(lengths > nothing) else np.where(lengths > nothing, lengths, np.inf)

@@ -11,10 +11,10 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
 from eomgen.simulation.events import Events
 from eomgen.simulation.nearness import Nearness
-from eomgen.simulation.passages import Flow, Passage, march_across
+from eomgen.simulation.passages import Flow, march_across
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import METHODS, Slope
-from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Run, Stepping, march
+from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Run, Stepping
 from eomgen.simulation.track import measured
 from eomgen.simulation.trajectory import Phase, Trajectory
 
@@ -78,7 +78,7 @@ def integrate(
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
     flow = Flow(f, how, rhs.spheres, projection, slope)
-    run, passages = _followed(flow, (start, end), x0, instants, events, nearness)
+    run, passages = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
     gap, gap_rate = _open(*measured(run.t, run.x, run.tracks), projection, gaps)
     return Trajectory(
@@ -97,18 +97,6 @@ def integrate(
         evaluations=run.evaluations,
         passages=tuple((passage.start, passage.end) for passage in passages),
     )
-
-
-def _followed(
-    flow: Flow, span: tuple[float, float], x0: np.ndarray, instants: np.ndarray | None, events: Events | None,
-    nearness: Nearness | None,
-) -> tuple[Run, Sequence[Passage]]:  # fmt: skip
-    """The states of the run, and the singular positions that it passed where somebody looks for them."""
-    if nearness is not None:
-        return march_across(flow, span, x0, nearness, instants=instants, events=events)
-    run = march(flow.f, span, x0, how=flow.how, instants=instants, events=events, spheres=flow.spheres,
-                projection=flow.projection, slope=flow.slope)  # fmt: skip
-    return run, ()
 
 
 def _open(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,10 +13,8 @@ from eomgen.mechanics.loops.elimination import singular_blocks
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
 from eomgen.simulation.independence import Independence
-from eomgen.simulation.nearness import Nearness
+from eomgen.simulation.nearness import Measure, Nearness
 from eomgen.symbolic.graph import Scalar
-
-Measure = Callable[[Any, Any], np.ndarray]
 
 
 def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measure:

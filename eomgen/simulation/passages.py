@@ -66,23 +66,35 @@ class Flow:
     projection: Projection | None = None
     slope: Slope | None = None
 
+    def march(
+        self, span: tuple[float, float], x0: np.ndarray, instants: np.ndarray | None, events: Events | None,
+        lookout: Lookout | None = None,
+    ) -> Run:  # fmt: skip
+        """A run that ends where the lookout says so."""
+        return march(self.f, span, x0, how=self.how, instants=instants, events=events, spheres=self.spheres,
+                     projection=self.projection, slope=self.slope, lookout=lookout)  # fmt: skip
+
 
 def march_across(
-    flow: Flow, span: tuple[float, float], x0: np.ndarray, nearness: Nearness, *, instants: np.ndarray | None = None,
-    events: Events | None = None,
+    flow: Flow, span: tuple[float, float], x0: np.ndarray, nearness: Nearness | None, *,
+    instants: np.ndarray | None = None, events: Events | None = None,
 ) -> tuple[Run, tuple[Passage, ...]]:  # fmt: skip
     """`march`, carried across singular positions; where that fails it ends.
+
+    Args:
+        nearness: to these; None where nobody looks for them.
 
     Returns:
         the run, and the passages in it.
     """
+    if nearness is None:
+        return flow.march(span, x0, instants, events), ()
     runs: list[Run] = []
     passages: list[Passage] = []
     (t, end), x, since, level = span, x0, span[0], 0
     while True:
         lookout = Lookout(nearness, NEARNESS[level], t, x)
-        run = march(flow.f, (t, end), x, how=flow.how, instants=_from(instants, t), events=events,
-                    spheres=flow.spheres, projection=flow.projection, slope=flow.slope, lookout=lookout)  # fmt: skip
+        run = flow.march((t, end), x, _from(instants, t), events, lookout)
         runs.append(run)
         if run.crossing is None or run.crossing.index != LOOKED_OUT:
             return _joined(runs, passages, instants), tuple(passages)

@@ -28,17 +28,17 @@ class Step:
     known: np.ndarray
 
 
-def steps_of(A: np.ndarray, groups: Iterable[Sequence[int]]) -> tuple[Step, ...]:
-    """The order for matrices of one pattern, m x rows x columns.
+def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]]) -> tuple[Step, ...]:
+    """The order for matrices of one pattern.
 
     Args:
-        A: the first of them says which blocks are regular.
+        A: one of them, rows x columns, which says what blocks are regular.
+        stands: where entries can be, rows x columns.
         groups: the rows of each body.
     """
-    stands = (A != 0).any(axis=0)
-    left, open_ = [np.array(group) for group in groups], np.ones(A.shape[2], dtype=bool)
+    left, open_ = [np.array(group) for group in groups], np.ones(A.shape[1], dtype=bool)
     steps: list[Step] = []
-    while (k := next((k for k, group in enumerate(left) if _gives(A[0], stands, group, open_)), None)) is not None:
+    while (k := next((k for k, group in enumerate(left) if _gives(A, stands, group, open_)), None)) is not None:
         steps.append(_step(stands, left.pop(k), open_))
         open_[steps[-1].columns] = False
     core = np.concatenate([np.zeros(0, dtype=int), *left])

@@ -19,7 +19,7 @@ from eomgen.simulation.joined import joined
 from eomgen.simulation.passages import Flow, march_across
 from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stage import Stage
-from eomgen.simulation.stepping import Run, Stepping, march
+from eomgen.simulation.stepping import Run, Stepping
 from eomgen.simulation.stretch import Stretch
 from eomgen.simulation.trajectory import Trajectory
 
@@ -98,12 +98,9 @@ def _run(stage: Stage, here: Standing, plan: Plan) -> Run:
     x = stage.state(here.values)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(stage, here.t, x, plan)
-    slope, nearness = stage.slope if plan.how.method in IMPLICIT else None, stage.nearness
-    if nearness is None:
-        return march(stage.rate, (here.t, plan.end), x, how=plan.how, instants=wanted, events=events,
-                     spheres=stage.rhs.spheres, projection=stage.projection, slope=slope)  # fmt: skip
+    slope = stage.slope if plan.how.method in IMPLICIT else None
     flow = Flow(stage.rate, plan.how, stage.rhs.spheres, stage.projection, slope)
-    run, passages = march_across(flow, (here.t, plan.end), x, nearness, instants=wanted, events=events)
+    run, passages = march_across(flow, (here.t, plan.end), x, stage.nearness, instants=wanted, events=events)
     return replace(run, carried=tuple((passage.start, passage.end) for passage in passages))
 
 

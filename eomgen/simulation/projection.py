@@ -26,7 +26,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.loops.closure import gaps_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
-from eomgen.symbolic.dense import of_one_length, without_rounding
+from eomgen.symbolic.dense import weighted, without_rounding
 from eomgen.symbolic.graph import Scalar
 
 ITERATIONS = 8
@@ -132,9 +132,9 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
     M + J^T W J measures alike where J ds is given, and is positive definite also where M is so on J ds = 0 only. Then
     ds = M^-1 J^T lam with J M^-1 J^T lam = right, rows brought to one length, damped where they depend on one another.
     """
-    rows, J = of_one_length(J), without_rounding(J)
+    J = without_rounding(J)
     try:
-        moved = np.linalg.solve(M + np.trace(M) / max(len(M), 1) * rows.T @ rows, J.T)
+        moved = np.linalg.solve(weighted(M, J), J.T)
     except np.linalg.LinAlgError:  # bodies without mass
         moved = J.T
     S = J @ moved

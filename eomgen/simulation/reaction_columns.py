@@ -21,7 +21,8 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.reacting.balance import BodyEquation
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.simulation.peeling import SINGULAR, solved, steps_of
+from eomgen.simulation.first_slide import begun
+from eomgen.simulation.peeling import SINGULAR, Step, solved, steps_of
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.dense import balanced
 from eomgen.symbolic.graph import Scalar
@@ -71,7 +72,7 @@ class ReactionColumns:
         numbers = self._numbers.many(t, np.hstack([x, a]), p)
         few = max(1, AT_ONCE // (1 + len(self.asked) * len(self._columns)))
         pieces = (self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few))
-        solutions = [_solutions(A, b, C, self._groups) + d for A, b, C, d in pieces]
+        solutions = [_solutions(A, b, C, self._steps) + d for A, b, C, d in pieces]
         found = np.concatenate([np.zeros((0, len(self.names))), *solutions])
         found[:, [name in self.indeterminate for name in self.names]] = np.nan
         return found
@@ -107,6 +108,18 @@ class ReactionColumns:
             rows.setdefault(equation.body, []).append(i)
         return [*rows.values(), *([i] for i in range(len(self._equations), len(self._places[1])))]
 
+    def _steps(self, A: np.ndarray) -> tuple[Step, ...]:
+        """The order in which the bodies are solved, for all states that of the first one."""
+        if not self._found:
+            stands = np.zeros(A.shape[1:], dtype=bool)
+            stands[tuple(np.array([(i, j) for i, j, _ in self._places[0]], dtype=int).reshape(-1, 2).T)] = True
+            self._found.append(steps_of(A[0], stands, self._groups))
+        return self._found[0]
+
+    @cached_property
+    def _found(self) -> list[tuple[Step, ...]]:
+        return []
+
     @cached_property
     def _numbers(self) -> RightHandSide:
         """All entries as a function of t, (q, u, a) and p."""
@@ -128,11 +141,13 @@ class ReactionColumns:
         return A, of_b, C, d
 
 
-def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray, groups: Sequence[Sequence[int]]) -> np.ndarray:
+def _solutions(
+    A: np.ndarray, b: np.ndarray, C: np.ndarray, order: Callable[[np.ndarray], tuple[Step, ...]]
+) -> np.ndarray:
     """C rho at every state, A rho = b; rows and columns of A are brought to one size first, for their units.
 
     Args:
-        groups: the rows of each body.
+        order: of some states, in which the bodies are solved.
     """
     found = np.full(C.shape[:2], np.nan)
     sound = np.isfinite(A).all(axis=(1, 2)) & np.isfinite(b).all(axis=1)
@@ -142,7 +157,7 @@ def _solutions(A: np.ndarray, b: np.ndarray, C: np.ndarray, groups: Sequence[Seq
     A = np.where(np.abs(A) > ROUNDING * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
-    rho, regular = solved(A[sound], b[sound], steps_of(A[sound], groups))
+    rho, regular = solved(A[sound], b[sound], order(A[sound]))
     at = np.flatnonzero(sound)
     found[at[regular]] = (C[at[regular]] @ rho[regular, :, None])[:, :, 0]
     for i in at[~regular]:
@@ -180,16 +195,19 @@ def with_reactions(
         return run
     try:
         pieces = [(slice(*phase.rows), phase.stage) for phase in run.phases if phase.stage is not None]
-        parts = [(rows, stage.reactions, stage.rhs) for rows, stage in pieces] or [(slice(None), reactions(), rhs)]
+        own = [(rows, stage, stage.reactions, stage.rhs) for rows, stage in pieces]
+        parts = own or [(slice(None), None, reactions(), rhs)]
     except DerivationError as error:
         return replace(run, remark=f"No reactions: {error.what}.")
     found: dict[str, np.ndarray] = {}
     always: dict[str, None] = {}
     made: dict[int, ReactionColumns] = {}
-    for rows, own, equations in parts:
-        columns = made.setdefault(id(own), ReactionColumns(own, equations))
+    for rows, stage, balanced_by, equations in parts:
+        columns = made.setdefault(id(balanced_by), ReactionColumns(balanced_by, equations))
         always |= dict.fromkeys(columns.indeterminate)
-        values = columns.along(run.t[rows], _states(run, rows, equations), p)
+        x = _states(run, rows, equations)
+        x = x if stage is None else begun(run.t[rows], x, stage.rhs.at(p), stage.slowest)
+        values = columns.along(run.t[rows], x, p)
         for name, column in zip(columns.names, values.T, strict=True):
             found.setdefault(name, np.zeros(len(run.t)))[rows] = column
     return replace(run, reactions=found, units=_units(made.values()), remark=_remark(run.t, found, tuple(always)))

@@ -215,6 +215,12 @@ class Stage:
         """Functions of q, u, t, accelerations and multipliers along the states, n x scalars."""
         return self.function(scalars).many(t, self.inner(x), self.p)
 
+    def slowest(self, t: float, x: np.ndarray) -> float:
+        """The least speed with which anything slides on a surface; inf where nothing does [m/s]."""
+        rows = self.system.ties.rows
+        speeds = tuple(row.sliding for row in rows if row.shares and row.friction is not None)
+        return float(np.min(self.evaluated(np.array([t]), x[None, :], speeds))) if speeds else np.inf
+
     def rests(self, t: float, values: Values) -> bool:
         """Whether nothing moves, and nothing is given that could move it later."""
         symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates

@@ -151,10 +151,10 @@ class Trajectory:
         if len(self.phases) > 1:
             parts.append(f"{len(self.phases)} phases.")
         if self.drift is not None:
-            parts.append(f"Energy drift {self.drift:.1e} of the energy that moves.")
+            parts.append(f"Energy drift {_size(self.drift)} of the energy that moves.")
         if self.gap is not None:
-            speed = "" if self.gap_rate is None else f", their velocities by {self.gap_rate:.1e}"
-            parts.append(f"Ties open by at most {self.gap:.1e}{speed}.")
+            speed = "" if self.gap_rate is None else f", their velocities by {_size(self.gap_rate)}"
+            parts.append(f"Ties open by at most {_size(self.gap)}{speed}.")
         return " ".join(parts if self.reactions or not self.remark else [*parts, self.remark])
 
     def __repr__(self) -> str:
@@ -168,6 +168,11 @@ class Trajectory:
         rows = ("".join(f"<td>{column[i]:.6g}</td>" for column in columns.values()) for i in shown)
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         return f"<p>{html.escape(self.summary())}</p><table><tr>{head}</tr>{body}</table>"
+
+
+def _size(x: float) -> str:
+    """2.5e-15; a bare 0 where nothing is left of it."""
+    return f"{x:.1e}" if x else "0"
 
 
 def _singular_positions(passages: Sequence[tuple[float, float]]) -> str:

@@ -15,7 +15,7 @@ from eomgen.simulation.nearness import Nearness
 from eomgen.simulation.passages import Flow, march_across
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import Rate
-from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping, march
+from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping
 
 TOLERANCES = (1e-12, 1e-10)  # of one step; the coarser where the finer does not come across
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
@@ -43,11 +43,9 @@ class Way:
 
     def until(self, end: float, how: Stepping = FINE, events: Events | None = None) -> tuple[Run, bool]:
         """(the motion until then, or to an event; whether it was carried across a singular position)."""
-        span, nearness = (self.t0, end), self.nearness()
-        if nearness is None:
-            return march(self.f, span, self.x0, how=how, events=events, spheres=self.spheres), False
-        flow = Flow(self.f, how, self.spheres, self.projection())
-        run, passages = march_across(flow, span, self.x0, nearness, events=events)
+        nearness = self.nearness()
+        flow = Flow(self.f, how, self.spheres, None if nearness is None else self.projection())
+        run, passages = march_across(flow, (self.t0, end), self.x0, nearness, events=events)
         return run, bool(passages)
 
     def first(self, condition: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> tuple[Arrival, bool]:

@@ -43,14 +43,31 @@ def rank(A: np.ndarray, *, smallest: float) -> int:
 
 def of_one_length(A: np.ndarray) -> np.ndarray:
     """The rows brought to length 1; those that are rounding are 0."""
-    lengths = np.linalg.norm(A, axis=1, keepdims=True)
-    brought: np.ndarray = A / np.where(lengths > NOTHING * np.max(lengths, initial=0.0), lengths, np.inf)
+    brought: np.ndarray = A / divisor(np.linalg.norm(A, axis=1, keepdims=True))
     return brought
+
+
+def divisor(lengths: np.ndarray) -> np.ndarray:
+    """The lengths of rows, to divide these by; infinite of rows that are rounding."""
+    return np.where(lengths > NOTHING * np.max(lengths, initial=0.0), lengths, np.inf)
+
+
+def without_noise(A: np.ndarray, share: float, axis: int | None = None) -> np.ndarray:
+    """The matrix; entries below that share of the largest, or with axis 1 of the largest in their row, are 0."""
+    sizes = abs(A)
+    return np.where(sizes > share * np.max(sizes, axis=axis, keepdims=True, initial=0.0), A, 0.0)
 
 
 def without_rounding(A: np.ndarray) -> np.ndarray:
     """The matrix; rows that are rounding are 0."""
     return np.where(np.any(of_one_length(A), axis=1, keepdims=True), A, 0.0)
+
+
+def weighted(M: np.ndarray, J: np.ndarray) -> np.ndarray:
+    """M + mean(M_ii) J^T J, rows of J of one length: with J a given it measures a alike, and M may be 0 along J."""
+    rows = of_one_length(J)
+    found: np.ndarray = M + np.trace(M) / max(len(M), 1) * rows.T @ rows
+    return found
 
 
 def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
@@ -87,7 +104,7 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
 
 
 def follows(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
-    """Whether a row of numbers of 50 digits is a combination of others that are independent."""
+    """Whether a row of numbers of 50 digits is a combination of others (`modular.follows` in the reals)."""
     left, waiting = list(row), [list(each) for each in rows]
     size = max(map(abs, left), default=0)
     while waiting:
@@ -99,7 +116,7 @@ def follows(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
         for other in (*waiting, left):
             factor = other[k] / pivot[k]
             other[:] = [x - factor * y for x, y in zip(other, pivot, strict=True)]
-            size = max(size, *map(abs, left)) if other is left else size
+        size = max(size, *map(abs, left))
     return max(map(abs, left), default=0) <= ZERO_AT_50 * size
 
 

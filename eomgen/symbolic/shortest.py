@@ -22,6 +22,7 @@ Waves = dict[Wave, Number]
 Factors = tuple[tuple[str, Vector, int], ...]  # (function, angle, exponent)
 Sum = tuple[tuple[Number, Factors], ...]
 
+MOST_WAVES = 500  # of a sum that is shortened: more are too long to be read either way
 MOST_AXES = 6
 MOST_PAIRED = 60  # waves among which pairs are sought
 MOST_CHOICES = 64  # of forms along the directions, tried all
@@ -34,7 +35,7 @@ def shortest(waves: Waves) -> Sum:
     Args:
         waves: {wave: coefficient}; () is the wave 1.
     """
-    if len(waves) == 1 and not _has_multiple(waves):
+    if len(waves) > MOST_WAVES or (len(waves) == 1 and not _has_multiple(waves)):
         return _as_waves(waves)
     return _shortest(tuple(waves.items()))
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from eomgen import answers, pipeline
-from eomgen.answers import Answer
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
@@ -24,6 +23,7 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
+from eomgen.report.answer import Answer
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
@@ -179,7 +179,7 @@ def _text(system: System, asked: Iterable[NamedReaction], found: dict[str, Answe
     lines = []
     for named in asked:
         answer = found[named.name]
-        known = [f"{OPEN}, see below"] if below and OPEN in (answer.message or "") else answers.lines(answer)
+        known = [f"{OPEN}, see below"] if below and OPEN in (answer.message or "") else answer.lines
         lines += [f"{named.name}: {said(balance, named)}\n", *(f"    {line}\n" for line in known)]
     return "".join(lines)
 

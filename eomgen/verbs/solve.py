@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eomgen import answers
 from eomgen.model.parts import Model
+from eomgen.report.answer import table
 from eomgen.verbs.outcome import Outcome, listed
 
 
@@ -14,4 +15,4 @@ def solve(model: Model) -> Outcome:
     payload = {"name": model.name, "outputs": {name: answer.as_dict() for name, answer in found.items()}}
     failed = f"not answered: {listed(unanswered)}" if unanswered else ""
     notes = () if found else ("the model asks nothing: it has no [outputs]",)
-    return Outcome(answers.table(found) if found else "", payload, failed, notes)
+    return Outcome(table(found) if found else "", payload, failed, notes)

@@ -447,3 +447,27 @@ def test_a_given_speed_moves_only_for_the_ties_that_need_it(how):
     system = eomgen.derive(eomgen.loads(TWO_TIES.format(how=how))).system
     found = start_of_motion(system).values
     assert found["a'"] == math.radians(100) and found["x'"] + found["ph'"] / 5 == pytest.approx(0, abs=1e-15)
+
+
+def test_given_speeds_that_break_a_tie_change_as_in_an_impact_without_rebound():
+    """A sleigh that points to 0.3 rad keeps the velocity along its edge, (1, 2) . d: it gains no energy."""
+    text = """
+eomgen = 1
+space = "plane"
+[coordinates]
+x = { start = 0, speed = 1 }
+y = { start = 0, speed = 2 }
+phi = { start = 0.3, speed = 0 }
+[bodies.sleigh]
+mass = 2
+inertia = 0.5
+joint = { kind = "planar", x = "x", y = "y", angle = "phi" }
+[constraints.edge]
+kind = "skate"
+point = "sleigh.origin"
+along = [1, 0]
+"""
+    run = eomgen.simulate(eomgen.loads(text), time=0.1)
+    d = np.array([np.cos(0.3), np.sin(0.3)])
+    assert [run["x'"][0], run["y'"][0]] == pytest.approx((np.array([1, 2]) @ d) * d)
+    assert run["phi'"][0] == pytest.approx(0, abs=1e-12)

@@ -87,11 +87,13 @@ def test_a_thin_rod_between_two_ball_joints_is_refused_by_name():
 
 
 def test_a_coupler_with_an_inertia_about_its_axis_moves():
+    """With J > 0 about its axis M is regular: the same coupler is derived, and proved by its free bodies."""
     moving = eomgen.derive(_coupler("cylinder", "radius = 0.01,", "[0.3, 0, 0]"))
     assert moving.certify().ok
 
 
 def test_a_pendulum_of_one_rod_on_a_ball_joint_is_refused():
+    """w along the rod has no energy: M u = 0 for a u in which all three angles take part."""
     coordinates, joint = ANGLES
     rod = '[bodies.rod]\nshape = { kind = "rod", mass = 1, length = 1 }\n'
     text = HEAD + coordinates.replace("= 0", "= 0.3") + rod + f'joint = {{ kind = "spherical", {joint} }}\n'
@@ -123,16 +125,19 @@ joint = { kind = "spherical", on = "cart", orientation = "xyz", angles = ["a", "
 
 
 def test_a_coordinate_keeps_its_start_speed_beside_speeds_of_other_rates():
+    """v = 2 x' = 4 by the speed of x; w2 and w3, which share b' and c' with w1, begin as they say: at 0."""
     run = eomgen.simulate(eomgen.loads(HEAD + PARTLY), time=1e-3)
     assert [run[name][0] for name in ("v", "w1", "w2", "w3")] == [4, 0.5, 0, 0]
 
 
 def test_a_start_speed_of_a_rate_that_a_begun_speed_reaches_through_another_is_refused():
+    """w1 holds a' + b', w2 b' - c', w3 c': the start of w1 speaks for c' too."""
     with pytest.raises(ModelError, match="coordinate 'c' has a 'speed' at the start"):
         eomgen.loads(HEAD + PARTLY.replace("c = 0.3", "c = { start = 0.3, speed = 1 }"))
 
 
 def test_two_coordinates_of_one_angle_are_refused():
+    """a' = -b' turns nothing: M = I (1, 1; 1, 1) is singular."""
     bar = '[bodies.bar]\nshape = { kind = "rod", mass = 1, length = 1 }\n'
     turned = 'joint = { kind = "revolute", angle = "a + b" }\n'
     head = 'eomgen = 1\nspace = "plane"\n[coordinates]\na = 0.1\nb = 0.2\n'

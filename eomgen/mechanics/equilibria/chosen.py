@@ -96,7 +96,7 @@ class _Near:
         floats |= dict(zip(self.statics.unknowns, map(float, place), strict=True))
         slopes = jacobian(self.statics.equations, self.statics.unknowns)
         A = self.statics.slopes(slopes, place[: len(self.statics.q)], floats)
-        A = dense.balanced(np.where(abs(A) > ROUNDING * np.max(abs(A), axis=1, keepdims=True), A, 0.0))[0]
+        A = dense.balanced(dense.without_noise(A, ROUNDING, axis=1))[0]
         n = len(self.statics.q)
         order = [*range(n, A.shape[1]), *sorted(range(n), key=self._place_in_order)]
         kept = {order[i] for i in dense.independent_rows(A.T[order], FOLLOWS)}

@@ -167,8 +167,8 @@ class _Search:
     @cached_property
     def statics(self) -> StaticEquations:
         """Without the coordinates that no equation holds, and those that may be chosen."""
-        found, chosen = self._held_by_forces, self._chosen.coordinates
-        return found.holding({q: self._fixed[q] for q in chosen}) if chosen else found
+        found, open_ = self._held_by_forces, self._chosen.coordinates
+        return found.holding({q: self._fixed[q] for q in open_}) if open_ else found
 
     @cached_property
     def _held_by_forces(self) -> StaticEquations:

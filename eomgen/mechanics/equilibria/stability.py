@@ -25,7 +25,7 @@ from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic import cramer, linear
-from eomgen.symbolic.dense import balanced
+from eomgen.symbolic.dense import balanced, without_noise
 from eomgen.symbolic.derivative import jacobian, substituted
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar, is_zero
@@ -137,22 +137,28 @@ class _Place:
         n = len(self.statics.q)
         if not len(J):
             return list(range(n))
-        scaled = balanced(np.where(abs(J) > ROUNDING * np.max(abs(J), axis=1, keepdims=True), J, 0))[0]
+        scaled = balanced(without_noise(J, ROUNDING, axis=1))[0]
         r = int(np.linalg.matrix_rank(scaled, tol=SINGULAR))
         if r < self._generic_rank:
             return None
-        own = {name for name, part in self.statics.system.scope.model.coordinates.items() if not part.dependent}
-        turning = {e: -abs(float(self.state[e])) for four in self.statics.system.scope.quaternions for e in four
-                   if e in self.statics.q}  # of a quaternion the largest follows from the others
-        order = sorted(range(n), key=lambda k: (self.statics.q[k].name in own, turning.get(self.statics.q[k], 1.0)))
-        if self.chosen is not None:  # what no force holds follows, and then what is declared last
-            idle = {*self.chosen.indifferent, *self.chosen.coordinates}
-            order = sorted(range(n), key=lambda k: (self.statics.q[k].name in own, self.statics.q[k] not in idle, -k))
-        chosen: list[int] = []
-        for k in order:  # columns of the dependent coordinates, one by one
-            if len(chosen) < r and np.linalg.matrix_rank(scaled[:, [*chosen, k]], tol=SINGULAR) > len(chosen):
-                chosen.append(k)
-        return [k for k in range(n) if k not in chosen]
+        following: list[int] = []
+        for k in sorted(range(n), key=self._late):  # columns of the dependent coordinates, one by one
+            more = [*following, k]
+            if len(following) < r and np.linalg.matrix_rank(scaled[:, more], tol=SINGULAR) > len(following):
+                following = more
+        return [k for k in range(n) if k not in following]
+
+    def _late(self, k: int) -> tuple[bool, float, int]:
+        """Of what follows first: what is marked dependent, then of a quaternion the largest of its four.
+
+        Where velocity ties leave places open, what no force holds comes before the rest, and what is declared last.
+        """
+        q, scope = self.statics.q[k], self.statics.system.scope
+        own = not scope.model.coordinates[q.name].dependent
+        if self.chosen is not None:
+            return own, float(q not in (*self.chosen.indifferent, *self.chosen.coordinates)), -k
+        turning = any(q in four for four in scope.quaternions)
+        return own, -abs(float(self.state[q])) if turning else 1.0, k
 
     @cached_property
     def _generic_rank(self) -> int:
@@ -247,7 +253,10 @@ class _Place:
         if np.min(eigenvalues) > ZERO:
             return STABLE, "V has a minimum there"
         if np.min(eigenvalues) < -ZERO:
-            return UNSTABLE, "V has a maximum there" if np.max(eigenvalues) < -ZERO else "V has a saddle there"
+            highest = np.max(eigenvalues)
+            if abs(highest) <= ZERO:
+                return UNSTABLE, "V falls from there"
+            return UNSTABLE, f"V has a {'maximum' if highest < 0 else 'saddle'} there"
         if self.chosen is not None and self.chosen.smooth:
             return _drifting(int(np.sum(eigenvalues <= ZERO)), len(K))
         if single and self.chosen is None:

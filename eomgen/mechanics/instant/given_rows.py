@@ -27,7 +27,7 @@ from eomgen.symbolic.normal_form import collected_in, readable_all
 WORK = 50_000  # products of terms for one entry
 RANK = 1e-9  # of a row's distance from those before it, against its length
 EXACT = 1e-20  # of an entry, against the largest of its row
-UNSAID = ""
+UNSAID = ""  # what nobody wrote, as the norm of a quaternion
 OPEN = 1e-9  # of a gap, against the size of the mechanism
 
 Values = Mapping[Node, Any]

@@ -111,7 +111,7 @@ def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
     return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
 
 
-def _norms(ties: Ties) -> tuple[Scalar, ...]:
+def norms_of(ties: Ties) -> tuple[Scalar, ...]:
     """e . e - 1 of every quaternion."""
     return tuple(sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
 
@@ -126,7 +126,7 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
     also where rows are redundant, and does not leap along directions that only an open loop resists.
     Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
     """
-    gaps, scale = (*gaps_of(ties), *_norms(ties)), np.ones(len(free)) if sizes is None else sizes
+    gaps, scale = (*gaps_of(ties), *norms_of(ties)), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     before, left = state, np.inf
     try:

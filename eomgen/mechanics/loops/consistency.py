@@ -1,10 +1,11 @@
 """Ties, a rough state -> the nearest state at which they hold, and what had to change for it.
 
 Positions:   phi(q) = 0        with the least sum of (s_k dq_k)^2
-Speeds:      J u + sigma = 0   with the least sum of (s_k du_k)^2
+Speeds:      J u + sigma = 0   with the least du^T M du, as when the ties take hold at once (an impact without rebound)
 
-s_k is how far a change of the k-th coordinate (speed) moves the gaps: angles and lengths count alike, whatever their
-units. Values that nobody gave move first, then those of the model, at last those that the caller gave.
+s_k is how far a change of the k-th coordinate moves the gaps: angles and lengths count alike, whatever their units.
+The same holds of speeds that nobody gave, so that those stay which the ties do not need, and where M is not known or
+measures nothing. Values that nobody gave move first, then those of the model, at last those that the caller gave.
 """
 
 from __future__ import annotations
@@ -56,10 +57,13 @@ def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Nod
     return None
 
 
-def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
+def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None) -> State | None:
     """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none.
 
     Of each tier no more is changed than what those before it cannot close.
+
+    Args:
+        M: the mass matrix at the state, where it is known.
     """
     u = ties.motion.scope.symbols.u
     if not ties.closing or not u:
@@ -72,7 +76,8 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
     columns = [[u.index(x) for x in tier] for tier in tiers]
     for k in reversed(range(len(columns))):
         earlier = [i for tier in columns[:k] for i in tier]
-        step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier])
+        block = None if M is None or k == 0 else M[np.ix_(columns[k], columns[k])]
+        step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
         found = found + J[:, columns[k]] @ step[columns[k]]
     size = np.max(abs(J) @ abs(step) + abs(open_rate))
     if np.any(abs(J @ step + open_rate) > DEPENDENT * size):
@@ -80,7 +85,7 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers) -> State | None:
     return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
 
 
-def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray) -> np.ndarray:
+def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray, M: np.ndarray | None) -> np.ndarray:
     """The least d for which others can close what J d leaves: P (J d + left) = 0, P = 1 - J_o J_o^+."""
     if not J.shape[1]:
         return np.zeros(0)
@@ -88,11 +93,25 @@ def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray) -> np.ndarray:
     if others.shape[1]:
         unit = others / _slopes(others)
         P = P - unit @ np.linalg.pinv(unit, rcond=DEPENDENT)
-    scale = 1 / _slopes(J)
-    rows = np.where(abs(P @ J * scale) > DEPENDENT, P @ J * scale, 0.0)
+    unit = _unit(J, M)
+    rows = P @ J @ unit
+    rows = np.where(abs(rows) > DEPENDENT * np.max(abs(J @ unit)), rows, 0.0)
     open_ = np.where(abs(P @ left) > ROUNDING * np.max(abs(left), initial=0.0), P @ left, 0.0)
-    found: np.ndarray = scale * np.linalg.lstsq(rows, -open_, rcond=DEPENDENT)[0]
+    found: np.ndarray = unit @ np.linalg.lstsq(rows, -open_, rcond=DEPENDENT)[0]
     return found
+
+
+def _unit(J: np.ndarray, M: np.ndarray | None) -> np.ndarray:
+    """U of d = U y, by which |y|^2 = d^T M d; where M is not positive definite |y_k| is how far d_k moves the gaps."""
+    if M is not None:
+        sizes = np.sqrt(np.maximum(np.diag(M), 0.0))
+        try:
+            if np.min(sizes) > 0:
+                L = np.linalg.cholesky(M / np.outer(sizes, sizes))
+                return np.linalg.solve(L.T * sizes, np.eye(len(M)))
+        except np.linalg.LinAlgError:
+            pass
+    return np.diag(1 / _slopes(J))
 
 
 def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:

@@ -82,6 +82,7 @@ def leads_on(ties: Ties, fork: Fork, state: State) -> bool:
 
 
 def at_rest(ties: Ties, state: State) -> bool:
+    """Whether all speeds are 0 there."""
     return all(abs(state[u]) <= STILL for u in ties.motion.scope.symbols.u)
 
 

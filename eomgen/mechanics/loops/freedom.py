@@ -28,6 +28,7 @@ from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import Vector
 
 Columns = tuple[tuple[Vector, Vector], ...]
+RowName = tuple[str, int]  # of a tie, from 1
 
 DEPENDENT = 1e-7  # what is left of a unit row that the rows before it make up
 
@@ -55,8 +56,8 @@ class Freedom:
         by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
         formula: the same as text.
         redundant: closing rows that follow from those declared before them.
-        identical: ties that the coordinates satisfy by themselves: they only carry a reaction.
-        closing: ties with rows that close.
+        identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
+        closing_rows: the others.
         not_counted: why not, or "".
         integrability: what the rows of velocities alone are, None where there are none; freedoms in position may be
             more than those in velocity.
@@ -66,10 +67,20 @@ class Freedom:
     by_formula: int | None = None
     formula: str = ""
     redundant: tuple[Redundant, ...] = ()
-    identical: tuple[str, ...] = ()
-    closing: tuple[str, ...] = ()
+    identical_rows: tuple[RowName, ...] = ()
+    closing_rows: tuple[RowName, ...] = ()
     not_counted: str = ""
     integrability: Integrability | None = None
+
+    @property
+    def identical(self) -> tuple[str, ...]:
+        """The ties with rows that only carry a reaction."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.identical_rows))
+
+    @property
+    def closing(self) -> tuple[str, ...]:
+        """The ties with rows that close."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
 
 
 def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
@@ -90,8 +101,8 @@ def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
     if dependent_coordinates(ties.motion.scope):
         elimination_of(ties)
     count, formula = counted(ties)
-    identical = tuple(dict.fromkeys(row.tie for row in ties.rows if row.identical))
-    closing = tuple(dict.fromkeys(row.tie for row in ties.closing))
+    identical = tuple((row.tie, row.number) for row in ties.rows if row.identical)
+    closing = tuple((row.tie, row.number) for row in ties.closing)
     try:
         redundant, integrability = redundant_rows(ties), integrability_of(ties)
     except EomgenError as error:

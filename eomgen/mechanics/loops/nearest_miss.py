@@ -7,16 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from random import Random
 from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.loops.closure import gaps_of, movable
+from eomgen.mechanics.loops.closure import gaps_of, movable, norms_of
 from eomgen.mechanics.system import System
 from eomgen.symbolic.derivative import jacobian, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.graph import Node, Scalar
 
 TRIES = 12
 REACH = 1.5  # how far from the place others are tried [rad, m]
@@ -54,7 +55,7 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
     found = [search.least(start) for start in starts]
     best = min(found, key=lambda place: (round(search.size(place) / CLOSED), float(np.linalg.norm(place - here))))
-    values = search.gaps(best)[: len(gaps)]
+    values = search.at(best)[: len(gaps)]
     size = float(np.max(np.abs(values), initial=0.0))
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
     named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN * size]
@@ -68,29 +69,36 @@ class _Search:
     known: dict[Node, float]
     free: tuple[Node, ...]
 
-    def gaps(self, place: np.ndarray) -> np.ndarray:
+    @cached_property
+    def gaps(self) -> tuple[Scalar, ...]:
         """phi, and e . e - 1 of each quaternion."""
-        norms = (sum((e * e for e in four), start=-1) for four in self.system.scope.quaternions)
-        return self._at((*gaps_of(self.system.ties), *norms), place)
+        return (*gaps_of(self.system.ties), *norms_of(self.system.ties))
 
-    def slopes(self, place: np.ndarray) -> np.ndarray:
-        norms = (sum((e * e for e in four), start=-1) for four in self.system.scope.quaternions)
-        rows = jacobian((*gaps_of(self.system.ties), *norms), self.free)
-        return self._at([x for row in rows for x in row], place).reshape(len(rows), -1)
+    @cached_property
+    def slopes(self) -> tuple[Scalar, ...]:
+        """The derivatives of the gaps, row by row."""
+        return tuple(x for row in jacobian(self.gaps, self.free) for x in row)
+
+    def at(self, place: np.ndarray) -> np.ndarray:
+        """The gaps as numbers."""
+        return self._numbers(self.gaps, place)
 
     def size(self, place: np.ndarray) -> float:
-        return float(np.max(np.abs(self.gaps(place)), initial=0.0))
+        return float(np.max(np.abs(self.at(place)), initial=0.0))
 
     def least(self, start: np.ndarray) -> np.ndarray:
         from scipy.optimize import least_squares
 
-        found: np.ndarray = least_squares(self.gaps, start, self.slopes, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+        found: np.ndarray = least_squares(self.at, start, self._slopes_at, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
         return found
 
-    def _at(self, scalars: Any, place: np.ndarray) -> np.ndarray:
+    def _slopes_at(self, place: np.ndarray) -> np.ndarray:
+        return self._numbers(self.slopes, place).reshape(len(self.gaps), -1)
+
+    def _numbers(self, scalars: tuple[Scalar, ...], place: np.ndarray) -> np.ndarray:
         state = self.known | dict(zip(self.free, place.tolist(), strict=True))
         try:
-            values = np.array(evaluate(tuple(scalars), state, FLOAT), dtype=float)
+            values = np.array(evaluate(scalars, state, FLOAT), dtype=float)
         except (NoValue, ZeroDivisionError, OverflowError):
-            return np.full(len(tuple(scalars)), FAILED)
+            return np.full(len(scalars), FAILED)
         return np.nan_to_num(values, nan=FAILED, posinf=FAILED, neginf=-FAILED)

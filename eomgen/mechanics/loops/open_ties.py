@@ -65,6 +65,7 @@ def _mend(system: System, gap: Scalar) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: 'pin', 'rod'."""
     return ", ".join(f"'{name}'" for name in names)
 
 

@@ -12,7 +12,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.loops.closure import closed, gaps_of, number
 from eomgen.mechanics.loops.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.loops.elimination import dependent_coordinates
@@ -20,11 +23,12 @@ from eomgen.mechanics.loops.forks import Fork, at_rest, fork_at, leads_on, speed
 from eomgen.mechanics.loops.open_ties import NEGLIGIBLE, excess, listed, refuse_open_gaps, refuse_open_rates
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
+from eomgen.mechanics.tree import branches_of
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
-from eomgen.model.values import first_guesses, numeric_parameters, start_values
+from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
 from eomgen.symbolic.derivative import substituted, symbols_of
 from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
@@ -112,7 +116,7 @@ def start_of_motion(
     state = (closed(system.ties, before, sought) or before) if sought else before
     state, open_gaps = _with_gaps_closed(system, state, start or {})
     refuse_open_gaps(system, state)
-    state, open_rates = _with_rates_closed(system, state, start or {})
+    state, open_rates = _with_rates_closed(system, state, start or {}, parameters)
     refuse_open_rates(system, state)
     state, fork, turned = _along_a_branch(system, state, start or {})
     names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
@@ -140,14 +144,30 @@ def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) 
     return nearest_places(ties, state, tiers, (*sought, *silent)) or state, opened
 
 
-def _with_rates_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
+def _with_rates_closed(
+    system: System, state: State, start: Mapping[str, float], parameters: Mapping[str, Any] | None
+) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
     apart = _apart(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
     ties = _that_stay(system, apart)
     opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
     if not opened:
         return state, ()
-    return nearest_speeds(ties, state, _speeds(system, start)) or state, opened
+    M = _inertia(system, state, parameters)
+    return nearest_speeds(ties, state, _speeds(system, start), M) or state, opened
+
+
+def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
+    """M at a state; None where a mass has no value."""
+    known = exact_parameters(system.scope.model, parameters)
+    values = {node: float(known[name]) for name, node in system.symbols.parameters.items() if name in known}
+    values |= {node: float(x) for node, x in state.items()}
+    rows = recursive.mass(system.motion, branches_of(system.motion))
+    entries = [x for row in rows for x in row]
+    if not set(symbols_of(entries)) <= values.keys():
+        return None
+    M = np.array(evaluate(entries, values, FLOAT)).reshape(len(rows), -1)
+    return M if np.all(np.isfinite(M)) else None
 
 
 def _along_a_branch(

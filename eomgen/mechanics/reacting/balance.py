@@ -110,6 +110,14 @@ def refuse_placeless(system: System) -> None:
     Raises:
         DerivationError: it is named.
     """
+    _refuse_placeless_forces(system)
+    _refuse_placeless_ties(system)
+    for link in system.motion.links:
+        if _seat_moves_others(system, link):
+            raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
+
+
+def _refuse_placeless_forces(system: System) -> None:
     for force in system.loads.applied:
         if force.placeless or any(not hasattr(load, "place") and hasattr(load, "coordinate") for load in force.loads):
             what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
@@ -117,6 +125,9 @@ def refuse_placeless(system: System) -> None:
         pushes = [load for load in force.loads if isinstance(load, PointForce)]
         if any(_pushes_along(system, slide_power(system.motion, push)) for push in pushes):
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
+
+
+def _refuse_placeless_ties(system: System) -> None:
     drives = {tie for ties in driving_ties(system.scope.model).values() for tie in ties}  # whose place is a joint
     for row in (row for row in system.ties.rows if row.tie not in drives):
         points = (push for push in row.pushes if isinstance(push, PointForce))
@@ -127,9 +138,6 @@ def refuse_placeless(system: System) -> None:
                                   f"constraints.{row.tie}", "give it as a tie between bodies")  # fmt: skip
         if row.pushes and _pushes_along(system, row.direct):
             raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
-    for link in system.motion.links:
-        if _seat_moves_others(system, link):
-            raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
 
 
 def _pushes_along(system: System, power: Scalar) -> bool:

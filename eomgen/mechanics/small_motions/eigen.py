@@ -102,7 +102,7 @@ def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
 
 def _without_rounding(A: Matrix, rows: int) -> np.ndarray:
     found = floats(A) if rows else np.zeros((0, 0))
-    return np.where(abs(found) > ROUNDING * abs(found).max(initial=0), found, 0)
+    return dense.without_noise(found, ROUNDING)
 
 
 def _by_rank(A: np.ndarray, B: np.ndarray) -> int:

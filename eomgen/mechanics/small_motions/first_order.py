@@ -187,7 +187,7 @@ def determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple[
     """
     if not len(A):
         return (), ()
-    scaled = dense.balanced(np.where(abs(A) > NOISE * abs(A).max(axis=1, keepdims=True), A, 0))[0]
+    scaled = dense.balanced(dense.without_noise(A, NOISE, axis=1))[0]
     rows = dense.independent_rows(scaled, RANK)
     left = scaled[rows].copy()
     chosen: list[int] = []

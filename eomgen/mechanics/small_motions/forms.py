@@ -18,6 +18,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Field, Matrix, negative, product, solved, total, turned
 from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.symbolic.dense import without_noise
 
 NOTHING = 1e-9  # of a coefficient, against the largest of its matrix and 1e-3 of it
 ROUNDING = 1e-12  # of an entry against the largest of its row and of its column, below which it is 0
@@ -28,6 +29,7 @@ Indices = Sequence[int]
 
 
 def floats(A: Matrix) -> np.ndarray:
+    """The entries as floats, rows x columns."""
     return np.array(A, dtype=float).reshape(len(A), -1)
 
 
@@ -43,7 +45,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
     """
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
-    K, F = _without_noise(K), _without_noise(F)
+    K, F = without_noise(K, NOTHING), without_noise(F, NOTHING)
     while len(kept) > len(equations.speeds):
         unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
         still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
@@ -57,16 +59,12 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
     """Of these coordinates those on which the motion depends, and those with a speed of their own."""
-    K, F, E = (_without_noise(floats(x)) for x in (equations.K, equations.F, equations.E))
+    K, F, E = (without_noise(floats(x), NOTHING) for x in (equations.K, equations.F, equations.E))
     own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}
     while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
         seen |= more
     return tuple(sorted(seen))
-
-
-def _without_noise(A: np.ndarray) -> np.ndarray:
-    return np.where(abs(A) > NOTHING * abs(A).max(initial=0), A, 0)
 
 
 def _strangeness(row: np.ndarray) -> int:
@@ -158,7 +156,7 @@ def restricted(field: Field, equations: LinearEquations, wanted: Sequence[str], 
     o = [j for j in range(len(names)) if j not in c]
     if not o:
         return _taken(equations, c)
-    M, C, K = (_without_noise(floats(x)) for x in (decided.M, decided.C, decided.K))
+    M, C, K = (without_noise(floats(x), NOTHING) for x in (decided.M, decided.C, decided.K))
     if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
         return _taken(equations, c)
     if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):

@@ -149,7 +149,9 @@ def _general(small: SmallMotions, still: int) -> list[Mode]:
     """The eigenvalues of the state matrix."""
     values, vectors = eigenpairs(small.state_matrix)
     order = np.argsort(abs(values))
-    zeros = [_shape(small, vectors[: len(small.numbers.coordinates), k], 0) for k in order[:still]]
+    moving = vectors[: len(small.numbers.coordinates)]
+    real = [moving[:, k].imag if values[k].imag < 0 else moving[:, k].real for k in order[:still]]  # drawn to a pair
+    zeros = [_shape(small, x.astype(complex), 0) for x in real]
     values, vectors = met(values[order[still:]]), vectors[:, order[still:]]
     modes = []
     for value, x in zip(_without_noise(small, values), vectors.T, strict=True):

@@ -41,6 +41,7 @@ LONGEST = 1_200  # characters of conditions that are solved
 NOTHING = 1e-15  # of a coordinate or speed: 0
 MOST_SOUGHT = 2  # unknowns of which all values are sought
 
+
 def family_of(
     first: FirstOrder, reference: Reference, wanted: Sequence[str], following: Sequence[Node]
 ) -> Family | None:
@@ -88,7 +89,7 @@ class _Writing:
     def family(self) -> Family | None:
         if self._fixed is None:
             return None
-        held = tuple(x for x in self._independent if x not in self._unknowns and depends_on_any(self._conditions, x))
+        held = tuple(x for x in self._independent if x not in self._unknowns and _any_depends(self._conditions, x))
         formulas = self._solved(self._conditions)
         family = Family(held, self._unknowns, self._conditions, formulas, self._state(held, formulas), self._zeros)
         return self._with_others(family)
@@ -139,7 +140,7 @@ class _Writing:
         if len(self._all) <= len(self._unknowns):
             return ()
         exact = self.reference.exact
-        held = (x for x in self._independent if x not in self._unknowns and depends_on_any(self._all, x))
+        held = (x for x in self._independent if x not in self._unknowns and _any_depends(self._all, x))
         return tuple(x for x in held if x in exact and is_zero(exact[x]))
 
     @cached_property
@@ -198,9 +199,10 @@ class _Writing:
         if not unknowns or len(unknowns) != len(conditions) or len(unknowns) > MOST_SOUGHT:
             return family
         numbers = self.reference.numbers
-        statics = StaticEquations(self.first.system, (), unknowns, {}, conditions, (), (), (), ())
+        sought = StaticEquations(system=self.first.system, held=(), q=unknowns, given={}, Q=conditions, unbalanced=(),
+                                 J=(), lam=(), phi=())  # fmt: skip
         at = np.array([float(numbers[x]) for x in unknowns])
-        places = places_of_rest(statics, {x: v for x, v in numbers.items() if x not in unknowns}, at)
+        places = places_of_rest(sought, {x: v for x, v in numbers.items() if x not in unknowns}, at)
         others = tuple({x: float(v) if abs(v) > NOTHING else 0.0 for x, v in zip(unknowns, z, strict=True)}
                        for z in places.found)  # fmt: skip
         closed = tuple(self._solved(conditions, self._beside(at)) for at in others)
@@ -210,5 +212,5 @@ class _Writing:
         return Located({**self._located.numbers, **at}, self._located.positive)
 
 
-def depends_on_any(scalars: Sequence[Scalar], x: Node) -> bool:
+def _any_depends(scalars: Sequence[Scalar], x: Node) -> bool:
     return any(depends_on(each, (x,)) for each in scalars)

@@ -38,7 +38,6 @@ class Equation(Constraint):
         pushes = _pushes(measured, dict(zip(values, slopes, strict=True)))
         return (_row(gap, scene.held_rate(law, values) if pushes else None, pushes),)
 
-
     def leans_on_ground(self) -> bool:
         """Whether a place or velocity stands in it as the ground sees it."""
         law = self.rate if self.gap is None else self.gap

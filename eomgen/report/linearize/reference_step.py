@@ -12,6 +12,7 @@ from eomgen.symbolic.text import text_size
 
 LONG = 400  # characters of a condition or formula of a family
 SHORT = 90  # characters of a formula in a table
+NOTHING_DEPENDS = "nothing depends on them, and they have no speed of their own"
 
 
 def reference_step(modes: Modes) -> Step:
@@ -29,8 +30,9 @@ def reference_step(modes: Modes) -> Step:
     if reference.place is not None and reference.place.statics.held:
         statements.append(Prose((f"What the model drives is held there: {', '.join(reference.place.statics.held)}.",)))
     if small.left_out:
-        words = "Nothing depends on them, and they have no speed of their own: "
-        statements.append(Prose((words, *listed(small.left_out), ".")))
+        one = len(small.left_out) == 1
+        why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS
+        statements.append(Prose(("Left out: ", *listed(small.left_out), f"; {why}.")))
     return Step("reference", "Reference", tuple(statements))
 
 

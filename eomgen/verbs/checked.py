@@ -1,0 +1,116 @@
+"""Model -> Checked: what is declared, how free it is, how its loops close at the start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.errors import EomgenError, MissingValues, ModelError
+from eomgen.mechanics.contacts import Modes
+from eomgen.mechanics.instant.snapshot import mobility_of
+from eomgen.mechanics.loops.branches import Branches, branches_of_loops
+from eomgen.mechanics.loops.freedom import Freedom, freedom_of
+from eomgen.mechanics.loops.start import Start, start_of_motion
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
+from eomgen.mechanics.statics.structure import Structure, structure_of
+from eomgen.mechanics.system import system_of
+from eomgen.model.parts import Model
+from eomgen.model.unbuilt import unbuilt
+from eomgen.model.values import exact_parameters
+from eomgen.simulation.course import modes_at_start
+
+
+@dataclass(frozen=True)
+class LoopStart:
+    """How loops close at the start.
+
+    Args:
+        begun: the start; None where nothing closes, or a value is missing.
+        branches: the ways in which they close; None at a change point too.
+        refused: why they do not close, or "".
+    """
+
+    begun: Start | None = None
+    branches: Branches | None = None
+    refused: str = ""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What is found in a model without a mistake.
+
+    Args:
+        open: the contacts that do not touch at the start.
+        mobility, structure: of what has no coordinates; None of all else.
+    """
+
+    model: Model
+    freedom: Freedom
+    open: tuple[str, ...]
+    mobility: int | None
+    structure: Structure | None
+    start: LoopStart
+
+    @property
+    def missing(self) -> list[str]:
+        """The parameters without a value."""
+        known = exact_parameters(self.model)
+        return [name for name in self.model.parameters if name not in known]
+
+    @property
+    def driven(self) -> list[str]:
+        return [name for name, coordinate in self.model.coordinates.items() if coordinate.driven]
+
+    @property
+    def dependent(self) -> list[str]:
+        return [name for name, coordinate in self.model.coordinates.items() if coordinate.dependent]
+
+    @cached_property
+    def unbuilt(self) -> tuple[tuple[str, str], ...]:
+        """(where it is declared, kind) of what is not derived yet."""
+        return unbuilt(self.model)
+
+    @property
+    def positions(self) -> int | None:
+        """The degrees of freedom in position."""
+        integrability = self.freedom.integrability
+        return self.freedom.by_rank if integrability is None else integrability.positions
+
+
+def checked(model: Model) -> Checked:
+    """What a model is found to be.
+
+    Raises:
+        ModelError: declared speeds that do not stand for the rates.
+    """
+    modes = modes_at_start(model)
+    freedom = freedom_of(model, modes)
+    still = not model.coordinates and bool(model.constraints or model.trusses)
+    return Checked(
+        model, freedom, tuple(name for name, mode in modes.items() if not mode.closed),
+        mobility=mobility_of(model) if still else None,
+        structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
+        start=_start_of_loops(model, modes, freedom),
+    )  # fmt: skip
+
+
+def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> LoopStart:
+    """How loops close at the start.
+
+    Raises:
+        ModelError: declared speeds that do not stand for the rates.
+    """
+    if not model.coordinates or not (freedom.closing or model.speeds):
+        return LoopStart()
+    try:
+        system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
+        if not freedom.closing:
+            return LoopStart()
+        begun = start_of_motion(system)
+        return LoopStart(begun, None if begun.fork else branches_of_loops(system, begun.values))
+    except MissingValues:
+        return LoopStart()
+    except ModelError:
+        raise
+    except EomgenError as error:  # an error of the verbs that need a start
+        return LoopStart(refused=error.what)

@@ -1,0 +1,72 @@
+"""Freedom -> lines of text: the degrees of freedom, which ties close, react, follow from others or are integrable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.mechanics.loops.freedom import Freedom, RowName
+from eomgen.mechanics.loops.integrability import VelocityRow
+from eomgen.model.parts import Model
+from eomgen.symbolic.text import to_text
+from eomgen.verbs.outcome import listed
+
+
+def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
+    """The count by rank beside that by formula, and what stands behind it."""
+    if freedom.by_rank is None:
+        lines = [f"degrees of freedom: not counted yet ({freedom.not_counted})"]
+        return lines if freedom.by_formula is None else [*lines, _formula_line(model, freedom)]
+    lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(model, freedom)]
+    lines += [f"ties that close: {_ties(freedom.closing_rows, freedom.identical)}"] if freedom.closing else []
+    lines += [f"ties that only react: {_ties(freedom.identical_rows, freedom.closing)}"] if freedom.identical else []
+    lines += _velocity_lines(freedom)
+    for row in freedom.redundant:
+        others = f", it follows from {listed(row.others) if row.others else 'its other rows'}"
+        lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
+    return lines
+
+
+def _ties(rows: Sequence[RowName], beside: Sequence[str]) -> str:
+    """The ties of rows; these too of a tie that stands beside them with others: floor (rows 2 and 3)."""
+    return listed(f"{tie} ({_numbered(numbers)})" if tie in beside else tie for tie, numbers in _by_tie(rows).items())
+
+
+def _by_tie(rows: Sequence[RowName]) -> dict[str, list[int]]:
+    found: dict[str, list[int]] = {}
+    for tie, number in rows:
+        found.setdefault(tie, []).append(number)
+    return found
+
+
+def _numbered(numbers: Sequence[int]) -> str:
+    """row 1; rows 1, 2 and 3"""
+    *before, last = map(str, numbers)
+    return f"rows {', '.join(before)} and {last}" if before else f"row {last}"
+
+
+def _velocity_lines(freedom: Freedom) -> list[str]:
+    """Of ties that are velocities: which of them are holonomic, what they keep, and how many freedoms in position."""
+    found = freedom.integrability
+    if found is None:
+        return []
+    free = [row for row in found.rows if not row.integrable]
+    lines = [f"not integrable (nonholonomic): {listed(_rows(free))}"] if free else []
+    kept: dict[str, list[VelocityRow]] = {}
+    for row in found.rows:
+        if row.integrable:
+            kept.setdefault("" if row.integral is None else f": {to_text(row.integral)} = 0", []).append(row)
+    lines += [f"integrable (holonomic): {each}{integral}" for integral, rows in kept.items() for each in _rows(rows)]
+    more = found.positions != freedom.by_rank
+    return [*lines, f"degrees of freedom in position: {found.positions}"] if more else lines
+
+
+def _rows(rows: Sequence[VelocityRow]) -> list[str]:
+    """row 1 of tie 'edge', rows 2 and 3 of tie 'wheel'"""
+    named = _by_tie([(row.tie, row.number) for row in rows])
+    return [f"{_numbered(numbers)} of tie '{tie}'" for tie, numbers in named.items()]
+
+
+def _formula_line(model: Model, freedom: Freedom) -> str:
+    placed = [name for name, body in model.bodies.items() if body.joint is None or not body.joint.carries_reaction]
+    remark = f"; {listed(placed)}: placed, counted as free" if placed else ""
+    return f"count by formula: {freedom.by_formula} = {freedom.formula or '0'}{remark}"
