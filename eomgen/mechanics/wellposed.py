@@ -9,6 +9,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loops.closure import generic_state, number, scattered_state
 from eomgen.mechanics.system import System
@@ -69,7 +70,7 @@ def _massless(speed: str) -> Problem:
 
 def _idle(system: System, assembly: Assembly) -> tuple[Problem, ...]:
     """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
-    if not assembly.M:
+    if not assembly.M or _is_full(system):
         return ()
     try:
         if _has_energy(assembly, scattered_state(system.ties)):
@@ -79,6 +80,20 @@ def _idle(system: System, assembly: Assembly) -> tuple[Problem, ...]:
         return () if u is None else (_idle_problem(system, u, state),)
     except (MissingValues, DerivationError, NoValue):
         return ()  # whoever needs accelerations says what is missing
+
+
+def _is_full(system: System) -> bool:
+    """Whether every body has inertia in all directions, and every speed is that of one joint: M is regular."""
+    rates = [rate for link in system.motion.links for rate in link.s_rate]
+    own = len(rates) == len(set(rates)) and set(rates) == set(system.symbols.u)
+    return own and not any(_is_lean(system, link) for link in system.motion.links)
+
+
+def _is_lean(system: System, link: Link) -> bool:
+    """Whether a body has motions without kinetic energy, as far as zeros on the diagonal of its inertia tell."""
+    mass = mass_properties(system.scope, link.name)
+    axes = (2,) if system.scope.model.space == "plane" else range(3)
+    return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
 
 
 def _has_energy(assembly: Assembly, state: State) -> bool:
