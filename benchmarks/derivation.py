@@ -150,9 +150,15 @@ def every_reaction(text: str, runs: int = 3) -> EveryReaction:
 
 
 REACTION_COLUMNS = (
-    "system", "components", "Model to M, F, graph [s]", "Model to every reaction, graph [s]", "ratio",
-    "operations, reactions", "full RHS", "ratio",
-)  # fmt: skip
+    "system",
+    "components",
+    "Model to M, F, graph [s]",
+    "Model to every reaction, graph [s]",
+    "ratio",
+    "operations, reactions",
+    "full RHS",
+    "ratio",
+)
 REACTION_MODELS = ("double_pendulum", "andrews_squeezer", "arm3", "arm7", "chain20")
 
 
@@ -161,29 +167,61 @@ def reaction_table() -> list[tuple[str, ...]]:
     rows = []
     for name in REACTION_MODELS:
         own = every_reaction((MODELS / f"{name}.toml").read_text())
-        rows.append(report((
-            name, cell(own.components), cell(own.graph), cell(own.seconds), f"{own.seconds / own.graph:.1f}",
-            cell(own.operations), cell(own.whole), f"{own.operations / own.whole:.2f}",
-        )))  # fmt: skip
+        rows.append(
+            report(
+                (
+                    name,
+                    cell(own.components),
+                    cell(own.graph),
+                    cell(own.seconds),
+                    f"{own.seconds / own.graph:.1f}",
+                    cell(own.operations),
+                    cell(own.whole),
+                    f"{own.operations / own.whole:.2f}",
+                )
+            )
+        )
     return rows
 
 
 COLUMNS = (
-    "system", "text to Model [s]", "Model to M, F, graph [s]", "as sympy [s]", "Lagrange [s]", "Kane [s]",
-    "Lagrange/graph", "Kane/graph", "Lagrange/sympy form", "Kane/sympy form",
-    "operations M, F", "hoisted", "full RHS", "Lagrange, cse", "Kane, cse",
-)  # fmt: skip
+    "system",
+    "text to Model [s]",
+    "Model to M, F, graph [s]",
+    "as sympy [s]",
+    "Lagrange [s]",
+    "Kane [s]",
+    "Lagrange/graph",
+    "Kane/graph",
+    "Lagrange/sympy form",
+    "Kane/sympy form",
+    "operations M, F",
+    "hoisted",
+    "full RHS",
+    "Lagrange, cse",
+    "Kane, cse",
+)
 
 
 def row(name: str, own: Ours, lagrange: Peer | None, kane: Peer | None) -> tuple[str, ...]:
     """One line of the table."""
     return (
-        name, cell(own.reading), cell(own.graph), cell(own.as_sympy),
-        cell(lagrange and lagrange.seconds), cell(kane and kane.seconds),
-        ratio(lagrange, own.graph), ratio(kane, own.graph), ratio(lagrange, own.as_sympy), ratio(kane, own.as_sympy),
-        cell(own.equations), cell(own.hoisted), cell(own.whole),
-        cell(lagrange and lagrange.operations), cell(kane and kane.operations),
-    )  # fmt: skip
+        name,
+        cell(own.reading),
+        cell(own.graph),
+        cell(own.as_sympy),
+        cell(lagrange and lagrange.seconds),
+        cell(kane and kane.seconds),
+        ratio(lagrange, own.graph),
+        ratio(kane, own.graph),
+        ratio(lagrange, own.as_sympy),
+        ratio(kane, own.as_sympy),
+        cell(own.equations),
+        cell(own.hoisted),
+        cell(own.whole),
+        cell(lagrange and lagrange.operations),
+        cell(kane and kane.operations),
+    )
 
 
 def table(quick: bool) -> list[tuple[str, ...]]:

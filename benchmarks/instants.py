@@ -50,13 +50,18 @@ def truss_model(panels: int) -> eomgen.Model:
     nodes, members = truss(panels)
     loads = {f"F{i}": {"kind": "force", "point": f"T.L{i}", "force": [0, "-P"]} for i in range(1, panels)}
     return eomgen.Model(
-        space="plane", parameters={"a": {"positive": True}, "h": {"positive": True}, "P": {}},
-        trusses={"T": {"nodes": {n: [f"{x}*a", f"{y}*h"] for n, x, y in nodes},
-                       "members": [f"{i}-{j}" for i, j in members]}},
-        constraints={"A": {"kind": "pin", "points": ["T.L0"]},
-                     "B": {"kind": "support", "point": f"T.L{panels}", "normal": [0, 1]}},
-        forces=loads, outputs={f"N{k}": f"tension(T, {i}-{j})" for k, (i, j) in enumerate(members)},
-    )  # fmt: skip
+        space="plane",
+        parameters={"a": {"positive": True}, "h": {"positive": True}, "P": {}},
+        trusses={
+            "T": {"nodes": {n: [f"{x}*a", f"{y}*h"] for n, x, y in nodes}, "members": [f"{i}-{j}" for i, j in members]}
+        },
+        constraints={
+            "A": {"kind": "pin", "points": ["T.L0"]},
+            "B": {"kind": "support", "point": f"T.L{panels}", "normal": [0, 1]},
+        },
+        forces=loads,
+        outputs={f"N{k}": f"tension(T, {i}-{j})" for k, (i, j) in enumerate(members)},
+    )
 
 
 def solved_truss(panels: int) -> Truss:
@@ -76,17 +81,24 @@ def solved_truss(panels: int) -> Truss:
 def beam_model(spans: int) -> eomgen.Model:
     """A Gerber beam: a part with two supports, then parts hinged to the one before, a support in their middle."""
     stands = ["3*a/4", *(f"{i}*a + a/2" for i in range(1, spans))]
-    bodies = {f"b{i}": {"points": {"A": [f"{i}*a", 0], "B": [f"{i + 1}*a", 0], "S": [at, 0]}}
-              for i, at in enumerate(stands)}  # fmt: skip
+    bodies = {
+        f"b{i}": {"points": {"A": [f"{i}*a", 0], "B": [f"{i + 1}*a", 0], "S": [at, 0]}} for i, at in enumerate(stands)
+    }
     ties: dict[str, Any] = {"A": {"kind": "pin", "points": ["b0.A"]}}
     ties |= {f"S{i}": {"kind": "support", "point": f"b{i}.S", "normal": [0, 1]} for i in range(spans)}
     ties |= {f"H{i}": {"kind": "pin", "points": [f"b{i - 1}.B", f"b{i}.A"]} for i in range(1, spans)}
-    loads = {f"q{i}": {"kind": "distributed", "body": f"b{i}", "between": ["A", "B"], "intensity": [0, "-p"]}
-             for i in range(spans)}  # fmt: skip
+    loads = {
+        f"q{i}": {"kind": "distributed", "body": f"b{i}", "between": ["A", "B"], "intensity": [0, "-p"]}
+        for i in range(spans)
+    }
     return eomgen.Model(
-        space="plane", parameters={"a": {"positive": True}, "p": {}}, bodies=bodies, constraints=ties, forces=loads,
+        space="plane",
+        parameters={"a": {"positive": True}, "p": {}},
+        bodies=bodies,
+        constraints=ties,
+        forces=loads,
         outputs={f"R{i}": f"reaction_n(S{i})" for i in range(spans)},
-    )  # fmt: skip
+    )
 
 
 def solved_beam(spans: int) -> Beam:
@@ -104,14 +116,19 @@ def solved_beam(spans: int) -> Beam:
 
 def composite_model(parts: int) -> eomgen.Model:
     """Boxes side by side, each with its own mass: about the origin."""
-    pieces = [{"kind": "box", "size": ["a", "b", "c"], "mass": "m", "at": [f"{k}*a", f"{k % 3}*b", f"{k % 5}*c"]}
-              for k in range(parts)]  # fmt: skip
+    pieces = [
+        {"kind": "box", "size": ["a", "b", "c"], "mass": "m", "at": [f"{k}*a", f"{k % 3}*b", f"{k % 5}*c"]}
+        for k in range(parts)
+    ]
     names = {name: {"positive": True} for name in "abcm"}
     axes = [(i, j) for i in "xyz" for j in "xyz" if i <= j]
     return eomgen.Model(
-        space="space", parameters=names, points={"O": [0, 0, 0]}, bodies={"B": {"parts": pieces}},
+        space="space",
+        parameters=names,
+        points={"O": [0, 0, 0]},
+        bodies={"B": {"parts": pieces}},
         outputs={f"I_{i}{j}": f"inertia_tensor(O, {i}, {j})" for i, j in axes},
-    )  # fmt: skip
+    )
 
 
 def solved_composite(parts: int) -> Any:
@@ -162,19 +179,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, help="write the section there instead of to stdout")
     arguments = parser.parse_args()
-    page = "\n".join((
-        "# Structures and composites, side by side with sympy",
-        "",
-        f"Made by `python benchmarks/instants.py` on Python {platform.python_version()}, sympy {sympy.__version__}, "
-        f"{platform.machine()}.",
-        "All dimensions and loads are symbols. `solve` is every tension, reaction or moment, exactly; `statics` adds",
-        "virtual work, with the released mechanism of each reaction, and the whole report. `-`: not run.",
-        "",
-        "| " + " | ".join(COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-        *table(),
-        "",
-    ))  # fmt: skip
+    page = "\n".join(
+        (
+            "# Structures and composites, side by side with sympy",
+            "",
+            f"Made by `python benchmarks/instants.py` on Python {platform.python_version()}, "
+            f"sympy {sympy.__version__}, {platform.machine()}.",
+            "All dimensions and loads are symbols. `solve` is every tension, reaction or moment, exactly; `statics`",
+            "adds virtual work, with the released mechanism of each reaction, and the whole report. `-`: not run.",
+            "",
+            "| " + " | ".join(COLUMNS) + " |",
+            "|" + "---|" * len(COLUMNS),
+            *table(),
+            "",
+        )
+    )
     if arguments.output is None:
         print(page, end="")
     else:

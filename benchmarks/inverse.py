@@ -21,9 +21,14 @@ from eomgen.codegen.targets.c import c_text
 
 MODELS = Path(__file__).parent.parent / "models"
 SYSTEMS = {
-    "double_pendulum": (), "arm3": (), "arm7": (), "chain20": (), "gyrostat": (), "four_bar": ("alpha",),
+    "double_pendulum": (),
+    "arm3": (),
+    "arm7": (),
+    "chain20": (),
+    "gyrostat": (),
+    "four_bar": ("alpha",),
     "stewart_platform": tuple(f"f{k}" for k in range(1, 7)),
-}  # fmt: skip
+}
 PLAIN = 779  # operations of a plain recursion over the arm of seven axes, inertias of the bodies not regrouped
 CALLS = 2000
 _MAIN = """
@@ -53,17 +58,24 @@ def instructions(program: Program, role: Role) -> int | None:
 
 def _counted(program: Program, role: Role, calls: int) -> int:
     sizes = {
-        "states": len(program.states), "speeds": len(program.symbols.u), "outputs": len(program.outputs),
-        "parameters": max(1, len(program.symbols.parameters)), "constants": len(program.hoisted) + 1,
-    }  # fmt: skip
+        "states": len(program.states),
+        "speeds": len(program.symbols.u),
+        "outputs": len(program.outputs),
+        "parameters": max(1, len(program.symbols.parameters)),
+        "constants": len(program.hoisted) + 1,
+    }
     text = c_text(program, "eomgen", role)
     text += _MAIN.format(prefix=role.prefix, calls=calls, a="a, " if program.accelerations else "", **sizes)
     with tempfile.TemporaryDirectory() as place:
         source, made = Path(place) / "run.c", Path(place) / "run"
         source.write_text(text)
         subprocess.run(["cc", "-std=c99", "-O2", "-o", str(made), str(source), "-lm"], check=True)
-        told = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={place}/out", str(made)],
-                              capture_output=True, text=True, check=True)  # fmt: skip
+        told = subprocess.run(
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={place}/out", str(made)],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
     return int(next(line for line in told.stderr.splitlines() if "Collected" in line).split()[-1])
 
 
@@ -84,14 +96,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("-o", "--output", type=Path)
     lines = [
-        "# Inverse dynamics beside the right-hand side", "",
+        "# Inverse dynamics beside the right-hand side",
+        "",
         f"Made by `python benchmarks/inverse.py` on Python {platform.python_version()}, {platform.machine()}.",
         "Operations a call, each sub-expression once, those of the parameters alone left out; instructions a call of",
-        f"the emitted C by valgrind. A plain recursion of Newton and Euler over `arm7` takes {PLAIN} operations.", "",
+        f"the emitted C by valgrind. A plain recursion of Newton and Euler over `arm7` takes {PLAIN} operations.",
+        "",
         "| system | speeds | operations | of the right-hand side | ratio | instructions | of the right-hand side |",
         "|---|---|---|---|---|---|---|",
-        *(row(name, actuated) for name, actuated in SYSTEMS.items()), "",
-    ]  # fmt: skip
+        *(row(name, actuated) for name, actuated in SYSTEMS.items()),
+        "",
+    ]
     path = parser.parse_args().output
     if path is None:
         print("\n".join(lines))

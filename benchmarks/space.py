@@ -109,14 +109,30 @@ def tree(bodies: int, joints: tuple[str, ...], branching: float, free: bool = Fa
         kind = "free" if free and i == 0 else rng.choice(joints)
         parameters += [f"m{i} = {rng.uniform(0.5, 2):.3f}", f"l{i} = {rng.uniform(0.2, 0.5):.3f}", f"a{i} = 0.03"]
         parameters += [f"A{i} = 0.02", f"B{i} = 0.03", f"C{i} = 0.025", f"D{i} = 0.001"]
-        parts += [f"[bodies.b{i}]", f'mass = "m{i}"',
-                  f'center = ["a{i}", 0, "l{i}/2"]',
-                  f'inertia = ["A{i}", "B{i}", "C{i}", "D{i}", 0, 0]',
-                  f'points = {{ end = [0, 0, "l{i}"] }}',
-                  joint(kind, i, on, rng, coordinates, speeds)]  # fmt: skip
-    return "\n".join(["eomgen = 1", 'space = "space"', "[parameters]", *parameters, "[coordinates]", *coordinates,
-                      "[speeds]", *speeds, *parts, "[forces.weight]", 'kind = "gravity"',
-                      'acceleration = [0, 0, "-g"]'])  # fmt: skip
+        parts += [
+            f"[bodies.b{i}]",
+            f'mass = "m{i}"',
+            f'center = ["a{i}", 0, "l{i}/2"]',
+            f'inertia = ["A{i}", "B{i}", "C{i}", "D{i}", 0, 0]',
+            f'points = {{ end = [0, 0, "l{i}"] }}',
+            joint(kind, i, on, rng, coordinates, speeds),
+        ]
+    return "\n".join(
+        [
+            "eomgen = 1",
+            'space = "space"',
+            "[parameters]",
+            *parameters,
+            "[coordinates]",
+            *coordinates,
+            "[speeds]",
+            *speeds,
+            *parts,
+            "[forces.weight]",
+            'kind = "gravity"',
+            'acceleration = [0, 0, "-g"]',
+        ]
+    )
 
 
 def joint(kind: str, i: int, on: str, rng: random.Random, coordinates: list[str], speeds: list[str]) -> str:
@@ -159,8 +175,17 @@ def trees() -> list[tuple[str, ...]]:
         deriving, equations = best(lambda model=model: eomgen.derive(model))
         ordering, program = best(lambda equations=equations: replace(equations).program)
         times = reading, deriving, ordering, reading + deriving + ordering
-        rows.append(report((name, str(len(equations.speeds)), *(f"{s:.2f}" for s in times),
-                            str(program.count.total), f"{compiling(c_text(program, 'eomgen')):.1f}")))  # fmt: skip
+        rows.append(
+            report(
+                (
+                    name,
+                    str(len(equations.speeds)),
+                    *(f"{s:.2f}" for s in times),
+                    str(program.count.total),
+                    f"{compiling(c_text(program, 'eomgen')):.1f}",
+                )
+            )
+        )
     return rows
 
 
@@ -207,24 +232,63 @@ def table(columns: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:
 def page(command: str, with_sympy: bool) -> str:
     """The measurements, in words and tables."""
     versions = f"Python {platform.python_version()}, sympy {sympy.__version__}, {platform.machine()}"
-    return "\n".join([
-        "# Systems of space", "",
-        f"Made by `{command}` on {versions}.", "",
-        "Times are of the process, not of the clock on the wall; ratios are of times in this one run.", "",
-        "## Right-hand sides in C", "",
-        "Speeds and closing rows; operations of one evaluation, the solve with its second pass included; instructions",
-        "by valgrind; ratios against the seven-axis arm.", "",
-        *table(("system", "speeds", "rows", "operations", "instructions", "µs", "µs/arm7 beside", "instructions/arm7"),
-               right_hand_sides()), "",
-        "## Trees", "",
-        "Every mass, centre, inertia and length is a symbol. Text to Model, to M and forcing, to the ordered program",
-        "of the right-hand side; the operations of that; gcc's time for its C.", "",
-        *table(("system", "speeds", "Model [s]", "M, F [s]", "program [s]", "all three [s]", "operations", "C [s]"),
-               trees()), "",
-        "## Whipple's bicycle, linearized", "",
-        "Model to M, C, K, state matrix and modes at zero steer; sympy: `test_kane3.test_bicycle`, import and all.", "",
-        *table(("eomgen [s]", "sympy [s]", "ratio"), bicycle(with_sympy)),
-    ]) + "\n"  # fmt: skip
+    return (
+        "\n".join(
+            [
+                "# Systems of space",
+                "",
+                f"Made by `{command}` on {versions}.",
+                "",
+                "Times are of the process, not of the clock on the wall; ratios are of times in this one run.",
+                "",
+                "## Right-hand sides in C",
+                "",
+                "Speeds and closing rows; operations of one evaluation, the solve with its second pass included;",
+                "instructions by valgrind; ratios against the seven-axis arm.",
+                "",
+                *table(
+                    (
+                        "system",
+                        "speeds",
+                        "rows",
+                        "operations",
+                        "instructions",
+                        "µs",
+                        "µs/arm7 beside",
+                        "instructions/arm7",
+                    ),
+                    right_hand_sides(),
+                ),
+                "",
+                "## Trees",
+                "",
+                "Every mass, centre, inertia and length is a symbol. Text to Model, to M and forcing, to the ordered",
+                "program of the right-hand side; the operations of that; gcc's time for its C.",
+                "",
+                *table(
+                    (
+                        "system",
+                        "speeds",
+                        "Model [s]",
+                        "M, F [s]",
+                        "program [s]",
+                        "all three [s]",
+                        "operations",
+                        "C [s]",
+                    ),
+                    trees(),
+                ),
+                "",
+                "## Whipple's bicycle, linearized",
+                "",
+                "Model to M, C, K, state matrix and modes at zero steer; sympy: `test_kane3.test_bicycle`,",
+                "import and all.",
+                "",
+                *table(("eomgen [s]", "sympy [s]", "ratio"), bicycle(with_sympy)),
+            ]
+        )
+        + "\n"
+    )
 
 
 def main() -> None:

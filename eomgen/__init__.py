@@ -29,12 +29,30 @@ _HOMES = {
     "answers": ("solve",),
     "certificate": ("Certificate", "Check"),
     "errors": (
-        "DerivationError", "EomgenError", "ExpressionError", "MissingValues", "ModelError", "NotYet", "Problem",
-        "RunFailed", "ToolMissing", "UsageError",
+        "DerivationError",
+        "EomgenError",
+        "ExpressionError",
+        "MissingValues",
+        "ModelError",
+        "NotYet",
+        "Problem",
+        "RunFailed",
+        "ToolMissing",
+        "UsageError",
     ),
     "mechanics.loops.freedom": ("Freedom", "freedom_of"),
     "model.parts": (
-        "Body", "Coordinate", "Given", "Input", "Linearize", "Model", "Output", "Parameter", "Piece", "Speed", "Truss",
+        "Body",
+        "Coordinate",
+        "Given",
+        "Input",
+        "Linearize",
+        "Model",
+        "Output",
+        "Parameter",
+        "Piece",
+        "Speed",
+        "Truss",
         "Unknown",
     ),
     "model.reader": ("load", "loads"),
@@ -49,7 +67,7 @@ _HOMES = {
     "simulation.trajectory": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),
     "velocities": ("kinematics",),
-}  # fmt: skip
+}
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)
 

@@ -107,8 +107,12 @@ class _Solver:
         given = self.model.given
         if given is None:
             return not self.model.coordinates and asks_motion(formula)
-        texts = [side for equations in (given.velocity, given.acceleration) for equation in equations or ()
-                 for side in (equation.left, equation.right)]  # fmt: skip
+        texts = [
+            side
+            for equations in (given.velocity, given.acceleration)
+            for equation in equations or ()
+            for side in (equation.left, equation.right)
+        ]
         unknown = self.model.unknowns.keys() & {name for text in texts for name in text.names}
         return asks_motion(formula) or not {*unknown, *self.model.speeds}.isdisjoint(formula.names)
 
@@ -139,8 +143,10 @@ class _Solver:
         def value(call: Call) -> Scalar:
             nonlocal exact
             if call.name not in LINEARIZED:
-                raise DerivationError(f"'{call}' is a function of the state, and stands beside the linearized system",
-                                      mend="ask it in an output of its own")  # fmt: skip
+                raise DerivationError(
+                    f"'{call}' is a function of the state, and stands beside the linearized system",
+                    mend="ask it in an output of its own",
+                )
             found, is_exact = self._linearization.value(call)
             exact = exact and is_exact
             return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
@@ -208,12 +214,12 @@ class _Solver:
             return self._started(situation.simple(self._in_unit(scalar, output)), method)
         if not journey.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
-        rates = rates_of(
-            situation.system, situation.assembly, journey.start, accelerations=situation.accelerations
-        )
+        rates = rates_of(situation.system, situation.assembly, journey.start, accelerations=situation.accelerations)
         if rates is None:
-            raise DerivationError("no integrals of the motion give the rates as functions of the coordinates",
-                                  mend="ask it at an instant: `at`")  # fmt: skip
+            raise DerivationError(
+                "no integrals of the motion give the rates as functions of the coordinates",
+                mend="ask it at an instant: `at`",
+            )
         (scalar,) = substituted((scalar,), rates)
         return self._started(situation.simple(self._in_unit(scalar, output)), "energy theorem")
 

@@ -22,8 +22,12 @@ JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
 
 
-FOLLOW = click.option("--follow", multiple=True, metavar="NAME=FILE",
-                      help="Drive a coordinate or an input through the samples of a CSV file.")  # fmt: skip
+FOLLOW = click.option(
+    "--follow",
+    multiple=True,
+    metavar="NAME=FILE",
+    help="Drive a coordinate or an input through the samples of a CSV file.",
+)
 
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
@@ -39,8 +43,12 @@ def _common(function: Callable[..., int]) -> Callable[..., int]:
 
 def _written(function: Callable[..., int]) -> Callable[..., int]:
     """Options of what is written step by step, and drawn."""
-    format_ = click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
-                           help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
+    format_ = click.option(
+        "--format",
+        "format_",
+        type=click.Choice(["text", "latex", "markdown", "json"]),
+        help="Form of the result.  [default: by the ending of -o, else text]",
+    )
     plot = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
     return _common(format_(plot(function)))
 
@@ -92,10 +100,19 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
 
 @main.command()
 @_common
-@click.option("--method", type=click.Choice(["lagrange", "projection", "kinetostatic"]), default="lagrange",
-              show_default=True, help="By energies, by projection, or body by body with every reaction.")  # fmt: skip
-@click.option("--format", "format_", type=click.Choice(["text", "latex", "markdown", "json"]),
-              help="Form of the result.  [default: by the ending of -o, else text]")  # fmt: skip
+@click.option(
+    "--method",
+    type=click.Choice(["lagrange", "projection", "kinetostatic"]),
+    default="lagrange",
+    show_default=True,
+    help="By energies, by projection, or body by body with every reaction.",
+)
+@click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["text", "latex", "markdown", "json"]),
+    help="Form of the result.  [default: by the ending of -o, else text]",
+)
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @click.option("--no-certify", is_flag=True, help="Make no certificate.")
 def derive(
@@ -104,9 +121,7 @@ def derive(
     """Derive the equations of motion and certify them."""
     from eomgen.verbs.derive import derive as derived
 
-    return _write(
-        derived, model, wants_json, output, format_, method=method, certify=not no_certify, full=full
-    )  # fmt: skip
+    return _write(derived, model, wants_json, output, format_, method=method, certify=not no_certify, full=full)
 
 
 @main.command()
@@ -123,14 +138,19 @@ def solve(model: str, wants_json: bool, output: str | None, follow: tuple[str, .
 
 @main.command()
 @_common
-@click.option("--at", metavar="EQUATION",
-              help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".')  # fmt: skip
+@click.option(
+    "--at", metavar="EQUATION", help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".'
+)
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
 def reactions(
-    model: str, wants_json: bool, output: str | None, at: str | None, from_rest: tuple[str, ...],
+    model: str,
+    wants_json: bool,
+    output: str | None,
+    at: str | None,
+    from_rest: tuple[str, ...],
     follow: tuple[str, ...],
-) -> int:  # fmt: skip
+) -> int:
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
@@ -163,8 +183,12 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
 @_written
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
-@click.option("--relative", multiple=True, metavar='"POINT in BODY"',
-              help="Motion of a point on a moving body: transport, relative, Coriolis.")  # fmt: skip
+@click.option(
+    "--relative",
+    multiple=True,
+    metavar='"POINT in BODY"',
+    help="Motion of a point on a moving body: transport, relative, Coriolis.",
+)
 def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give velocities and centres of rotation at one instant.
 
@@ -194,9 +218,12 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
 
 @main.command()
 @_written
-@click.option("--about", type=click.Choice(["equilibrium", "start", "steady"]),
-              help="Rest nearest to the start; the start, if its motion is steady; or the steady motion near "
-                   "it.  [default: see [linearize]]")  # fmt: skip
+@click.option(
+    "--about",
+    type=click.Choice(["equilibrium", "start", "steady"]),
+    help="Rest nearest to the start; the start, if its motion is steady; or the steady motion near "
+    "it.  [default: see [linearize]]",
+)
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give small motions about rest or a steady motion.
@@ -219,22 +246,46 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
 @click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
 @click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of the run.")
 @click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of the run.")
-@click.option("--method", default="DOP853", show_default=True, metavar="NAME",
-              help="DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.")  # fmt: skip
+@click.option(
+    "--method",
+    default="DOP853",
+    show_default=True,
+    metavar="NAME",
+    help="DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.",
+)
 @click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
-@click.option("--stabilize", type=click.Choice(["projection", "baumgarte", "none"]), default="projection",
-              show_default=True, help="What keeps ties closed.")  # fmt: skip
-@click.option("--project-every", type=click.IntRange(min=1), metavar="STEPS",
-              help="Project at each so many steps.  [default: where a tie opens by atol/10]")  # fmt: skip
-@click.option("--baumgarte", nargs=2, type=float, metavar="ALPHA BETA",
-              help="Rates of Baumgarte's rows [1/s].  [default: 10 10]")  # fmt: skip
+@click.option(
+    "--stabilize",
+    type=click.Choice(["projection", "baumgarte", "none"]),
+    default="projection",
+    show_default=True,
+    help="What keeps ties closed.",
+)
+@click.option(
+    "--project-every",
+    type=click.IntRange(min=1),
+    metavar="STEPS",
+    help="Project at each so many steps.  [default: where a tie opens by atol/10]",
+)
+@click.option(
+    "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
+)
 @FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
 def simulate(
-    model: str, wants_json: bool, output: str | None, method: str, rtol: float, atol: float, stabilize: str,
-    project_every: int | None, baumgarte: tuple[float, float] | None, follow: tuple[str, ...], **options: Any,
-) -> int:  # fmt: skip
+    model: str,
+    wants_json: bool,
+    output: str | None,
+    method: str,
+    rtol: float,
+    atol: float,
+    stabilize: str,
+    project_every: int | None,
+    baumgarte: tuple[float, float] | None,
+    follow: tuple[str, ...],
+    **options: Any,
+) -> int:
     """Integrate the motion from the start values.
 
     It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns. Ties are
@@ -265,20 +316,39 @@ def simulate(
 @FOLLOW
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
-@click.option("--baumgarte", nargs=2, type=float, metavar="ALPHA BETA",
-              help="Closing rows that pull back what has opened, with these rates [1/s].")  # fmt: skip
+@click.option(
+    "--baumgarte",
+    nargs=2,
+    type=float,
+    metavar="ALPHA BETA",
+    help="Closing rows that pull back what has opened, with these rates [1/s].",
+)
 def codegen(
-    model: str, wants_json: bool, target: str, output: str, inverse: bool, actuated: str | None,
-    follow: tuple[str, ...], baumgarte: tuple[float, float] | None,
-) -> int:  # fmt: skip
+    model: str,
+    wants_json: bool,
+    target: str,
+    output: str,
+    inverse: bool,
+    actuated: str | None,
+    follow: tuple[str, ...],
+    baumgarte: tuple[float, float] | None,
+) -> int:
     """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
 
     stem = "model" if model == "-" else Path(model).stem
     names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
     with reading(model) as declared:
-        outcome = generated(_followed(declared, follow), stem=stem, origin=Path(model).name, target=target,
-                            directory=output, inverse=inverse, actuated=names, baumgarte=baumgarte)  # fmt: skip
+        outcome = generated(
+            _followed(declared, follow),
+            stem=stem,
+            origin=Path(model).name,
+            target=target,
+            directory=output,
+            inverse=inverse,
+            actuated=names,
+            baumgarte=baumgarte,
+        )
     return deliver(outcome, wants_json)
 
 

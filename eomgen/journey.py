@@ -166,8 +166,10 @@ class Journey:
         if depends_on(scalar, (*symbols.q, *symbols.u)):
             return False
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
-            raise RunFailed(f"'{condition.text}' names no instant: nothing in it moves",
-                            mend="write an equation in coordinates, rates or t")  # fmt: skip
+            raise RunFailed(
+                f"'{condition.text}' names no instant: nothing in it moves",
+                mend="write an equation in coordinates, rates or t",
+            )
         return holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
     def _within(
@@ -295,5 +297,3 @@ def _reached(
     situation: Situation, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> Instant:
     return reached(situation.system, situation.assembly, situation.accelerations, condition, start, numbers)
-
-

@@ -89,8 +89,11 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> Moment:
     place = equilibria.nearest()
     system = place.statics.system
     if pulls := place.pulling:
-        raise DerivationError(f"'{pulls[0]}' would have to pull where the other forces balance",
-                              f"constraints.{pulls[0]}", "without it the system rests elsewhere")  # fmt: skip
+        raise DerivationError(
+            f"'{pulls[0]}' would have to pull where the other forces balance",
+            f"constraints.{pulls[0]}",
+            "without it the system rests elsewhere",
+        )
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}
     numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
@@ -112,4 +115,3 @@ def parameters_of(situation: Situation) -> dict[Node, float]:
     """The values of the parameters."""
     values = numeric_parameters(situation.model)
     return {situation.system.symbols.parameters[name]: float(x) for name, x in values.items()}
-

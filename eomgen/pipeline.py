@@ -87,8 +87,15 @@ def simulate(
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     equations = derive(with_inputs(model, inputs or {}))
     found = run(
-        equations, time=time, parameters=parameters, start=start, target=target, samples=samples, how=how, until=until,
-    )  # fmt: skip
+        equations,
+        time=time,
+        parameters=parameters,
+        start=start,
+        target=target,
+        samples=samples,
+        how=how,
+        until=until,
+    )
     if found.reactions and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)
     return found

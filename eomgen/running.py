@@ -46,10 +46,16 @@ LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
 
 
 def run(
-    equations: Equations, *, time: float, parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None, target: str | None = None, samples: int | Sequence[float] | None = None,
-    how: Stepping | None = None, until: str | None = None,
-) -> Trajectory:  # fmt: skip
+    equations: Equations,
+    *,
+    time: float,
+    parameters: Mapping[str, float] | None = None,
+    start: Mapping[str, float] | None = None,
+    target: str | None = None,
+    samples: int | Sequence[float] | None = None,
+    how: Stepping | None = None,
+    until: str | None = None,
+) -> Trajectory:
     """The motion by equations that are derived already.
 
     Args:
@@ -70,8 +76,17 @@ def run(
     _refuse_given(equations.model, start or {})
     how = replace(how.of_one_step(), knots=knots_of(equations.model))
     if has_phases(equations.model):
-        found = run_phases(equations.model, time=time, p=p, parameters=parameters, start=start, target=target,
-                           samples=samples, how=how, until=condition)  # fmt: skip
+        found = run_phases(
+            equations.model,
+            time=time,
+            p=p,
+            parameters=parameters,
+            start=start,
+            target=target,
+            samples=samples,
+            how=how,
+            until=condition,
+        )
         rhs, stage = equations.rhs(target), found.phases[0].stage
         begun = None if stage is None else start_of_motion(stage.system, parameters, start)
         found = found if begun is None else replace(found, assembled=begun.words)
@@ -108,14 +123,22 @@ def _refuse_fork_at_rest(equations: Equations, begun: Start, x0: np.ndarray, p: 
     rates, accelerations = np.split(np.abs(dx), [len(equations.coordinates)])
     if np.max(rates, initial=0.0) <= STILL and np.max(accelerations, initial=0.0) > STILL:
         what = f"it starts at rest in {begun.fork.words}: forces pull it away, on which branch nothing says"
-        raise DerivationError(what, f"constraints.{begun.fork.ties[0]}",
-                              "give it start speeds, or start beside that position")  # fmt: skip
+        raise DerivationError(
+            what, f"constraints.{begun.fork.ties[0]}", "give it start speeds, or start beside that position"
+        )
 
 
 def _one_phase(
-    equations: Equations, time: float, x0: np.ndarray, p: np.ndarray, *, how: Stepping, target: str | None,
-    samples: int | Sequence[float], condition: Condition | None,
-) -> tuple[RightHandSide, Trajectory]:  # fmt: skip
+    equations: Equations,
+    time: float,
+    x0: np.ndarray,
+    p: np.ndarray,
+    *,
+    how: Stepping,
+    target: str | None,
+    samples: int | Sequence[float],
+    condition: Condition | None,
+) -> tuple[RightHandSide, Trajectory]:
     """(the right-hand side, the motion) of a model whose contacts do not change."""
     equations = pulling(equations, how.rates) if how.stabilization == "baumgarte" else equations
     system, assembly, rhs = equations.system, equations.graph, equations.rhs(target)
@@ -196,16 +219,29 @@ def _told(found: Trajectory, until: str | None) -> Trajectory:
 
 
 def _watched(
-    equations: Equations, found: Trajectory, rhs: RightHandSide, p: np.ndarray, how: Stepping,
+    equations: Equations,
+    found: Trajectory,
+    rhs: RightHandSide,
+    p: np.ndarray,
+    how: Stepping,
     projection: Projection | None,
-) -> Trajectory:  # fmt: skip
+) -> Trajectory:
     """The run, ended where dependent coordinates or closing ties do not say how it goes on, and it went astray."""
     system = equations.system
     rtol, atol = (max(tolerance / 1000, 1e-13) for tolerance in (how.rtol, how.atol))
 
     def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
-        finer = integrate(rhs, time=(start, end), x0=x, p=p, rtol=rtol, atol=atol, samples=2, projection=projection,
-                          most_steps=STEPS_AGAIN)  # fmt: skip
+        finer = integrate(
+            rhs,
+            time=(start, end),
+            x0=x,
+            p=p,
+            rtol=rtol,
+            atol=atol,
+            samples=2,
+            projection=projection,
+            most_steps=STEPS_AGAIN,
+        )
         return finer.x[-1] if finer.ok else np.full_like(x, np.nan)
 
     def ended(run: Trajectory, determinants: Any, what: Sequence[str], **told: str) -> Trajectory:

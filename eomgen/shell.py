@@ -42,9 +42,13 @@ class Verbs(click.Group):
         return list(self.commands)  # in the order in which they are used
 
     def main(
-        self, args: Sequence[str] | None = None, prog_name: str | None = None, complete_var: str | None = None,
-        standalone_mode: bool = True, **extra: Any,
-    ) -> Any:  # fmt: skip
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
         words = list(sys.argv[1:] if args is None else args)
         name = prog_name or "eomgen"
         if not standalone_mode:
@@ -111,10 +115,14 @@ def _as_dict(problem: Problem) -> dict[str, Any]:
     file, line, column = (*problem.where.rsplit(":", 2), "", "")[:3]
     placed = line.isdigit() and column.isdigit()
     return {
-        "where": problem.where, "file": file if placed else None, "line": int(line) if placed else None,
-        "column": int(column) if placed else None, "what": problem.what, "excerpt": problem.excerpt,
+        "where": problem.where,
+        "file": file if placed else None,
+        "line": int(line) if placed else None,
+        "column": int(column) if placed else None,
+        "what": problem.what,
+        "excerpt": problem.excerpt,
         "mend": problem.mend,
-    }  # fmt: skip
+    }
 
 
 def _say(text: str) -> None:

@@ -200,8 +200,9 @@ class Situation:
         (scalar,) = substituted((scalar,), state)
         (scalar,) = substituted((self._known(scalar, quantities),), state)
         symbols = self.system.symbols
-        left = [x.name for x in (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
-                if depends_on(scalar, (x,))]  # fmt: skip
+        left = [
+            x.name for x in (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam) if depends_on(scalar, (x,))
+        ]
         if left:
             raise MissingValues(tuple(left))
         return scalar

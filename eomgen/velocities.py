@@ -44,8 +44,10 @@ def state_of(model: Model, at: Equation | None = None) -> KinematicState:
     if model.given is None and (model.coordinates or at is not None):
         return _on_the_way(model, at)
     if at is not None:
-        raise UsageError("[given] speaks of one configuration: there is no other instant",
-                         mend="leave --at out, or move the model by coordinates")  # fmt: skip
+        raise UsageError(
+            "[given] speaks of one configuration: there is no other instant",
+            mend="leave --at out, or move the model by coordinates",
+        )
     return _of_snapshot(model)
 
 
@@ -63,13 +65,22 @@ def _of_snapshot(model: Model) -> KinematicState:
     own = model.given
     given = () if own is None else (*(own.velocity or ()), *(own.acceleration or ()))
     found = KinematicState(
-        snapshot.system, snapshot.moving, {} if rate else _accelerated(snapshot), known.freedoms,
-        counted(snapshot.system.ties), "in this configuration", tuple(equation.text for equation in given), rate,
-        symbol, snapshot.exact,
-    )  # fmt: skip
+        snapshot.system,
+        snapshot.moving,
+        {} if rate else _accelerated(snapshot),
+        known.freedoms,
+        counted(snapshot.system.ties),
+        "in this configuration",
+        tuple(equation.text for equation in given),
+        rate,
+        symbol,
+        snapshot.exact,
+    )
     if known.freedoms == 0 and _rests(found):
-        raise DerivationError(f"nothing can move: {_held(model)} as a structure, with 0 freedoms",
-                              mend="for reactions: eomgen statics MODEL; for a mechanism take a tie away")  # fmt: skip
+        raise DerivationError(
+            f"nothing can move: {_held(model)} as a structure, with 0 freedoms",
+            mend="for reactions: eomgen statics MODEL; for a mechanism take a tie away",
+        )
     return found
 
 
@@ -108,8 +119,10 @@ def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)
     if not moving and (symbols.q or symbols.u):
-        raise DerivationError("the state has no closed form, and without values of all parameters no number",
-                              mend="give the parameters values")  # fmt: skip
+        raise DerivationError(
+            "the state has no closed form, and without values of all parameters no number",
+            mend="give the parameters values",
+        )
     moving = {**{symbols.t: 0}, **moving}
     free = freedoms(situation.system.ties)
     count = counted((situation.system.free or situation.system).ties)
@@ -158,9 +171,12 @@ def _with_accelerations(situation: Situation, moving: State, numbers: Mapping[No
 
 
 def kinematics(
-    model: Model, at: Equation | str | None = None, *, given: Sequence[Equation | str] = (),
+    model: Model,
+    at: Equation | str | None = None,
+    *,
+    given: Sequence[Equation | str] = (),
     relative: Sequence[tuple[str, str]] = (),
-) -> Kinematics:  # fmt: skip
+) -> Kinematics:
     """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
 
     Args:

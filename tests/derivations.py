@@ -23,9 +23,17 @@ from eomgen.symbolic.graph import Node, Scalar
 MODELS = Path(__file__).parent.parent / "models"
 PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])
 LARGE = (
-    "arm7", "bennett", "bricard", "chain20", "delta_robot", "puma560", "space_manipulator", "spatial_slider_crank",
-    "stewart_platform", "whipple_bicycle",
-)  # fmt: skip
+    "arm7",
+    "bennett",
+    "bricard",
+    "chain20",
+    "delta_robot",
+    "puma560",
+    "space_manipulator",
+    "spatial_slider_crank",
+    "stewart_platform",
+    "whipple_bicycle",
+)
 
 # closing ties, a driven coordinate, inputs, springs, and names that look alike or are special in a markup language
 LOOP = r"""

@@ -103,8 +103,10 @@ class Linkage:
         lines.append("[constraints]\n")
         lines += [f'H{k} = {{ kind = "pin", points = ["{a}", "{b}"] }}\n' for k, (a, b) in enumerate(self.hinges)]
         lines += [f'P{k} = {{ kind = "pin", points = ["{a}"] }}\n' for k, a in enumerate(self.pins)]
-        lines += [f'R{k} = {{ kind = "support", point = "{a}", normal = ["{n[0]}", "{n[1]}"] }}\n'
-                  for k, (a, n) in enumerate(self.rollers)]  # fmt: skip
+        lines += [
+            f'R{k} = {{ kind = "support", point = "{a}", normal = ["{n[0]}", "{n[1]}"] }}\n'
+            for k, (a, n) in enumerate(self.rollers)
+        ]
         return "".join(lines) + more
 
 
@@ -145,9 +147,12 @@ def stephenson(rng: Random) -> Linkage:
     """A six-bar without a four-bar at the driver: its centres are not all found by lines of three."""
     O, A, B, C, D, E, F, G = (somewhere(rng) for _ in range(8))
     bodies = {
-        "I": {"O": O, "A": A}, "II": {"A": A, "B": B, "C": C}, "III": {"B": B, "D": D}, "IV": {"C": C, "E": E},
+        "I": {"O": O, "A": A},
+        "II": {"A": A, "B": B, "C": C},
+        "III": {"B": B, "D": D},
+        "IV": {"C": C, "E": E},
         "V": {"D": D, "E": E, "F": F, "G": G},
-    }  # fmt: skip
+    }
     hinges = [("I.A", "II.A"), ("II.B", "III.B"), ("II.C", "IV.C"), ("III.D", "V.D"), ("IV.E", "V.E")]
     return Linkage(bodies, hinges, ["I.O", "V.F"])
 

@@ -144,11 +144,13 @@ def jacobi(I: Sequence[float], w: Sequence[float], t: float) -> np.ndarray:
     p = np.sqrt((c - b) * (L2 - T2 * a) / (a * b * c))
     k2 = (b - a) * (T2 * c - L2) / ((c - b) * (L2 - T2 * a))
     sn, cn, dn, _ = ellipj(p * t - ellipk(k2), k2)
-    return np.array([
-        np.sqrt((L2 - T2 * a) / (c * (c - a))) * dn,
-        -np.sqrt((T2 * c - L2) / (b * (c - b))) * sn,
-        np.sqrt((T2 * c - L2) / (a * (c - a))) * cn,
-    ])  # fmt: skip
+    return np.array(
+        [
+            np.sqrt((L2 - T2 * a) / (c * (c - a))) * dn,
+            -np.sqrt((T2 * c - L2) / (b * (c - b))) * sn,
+            np.sqrt((T2 * c - L2) / (a * (c - a))) * cn,
+        ]
+    )
 
 
 def platform_of_delta(motors: Sequence[float], out: float, L: float, l: float, u_P: float) -> np.ndarray:

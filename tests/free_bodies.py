@@ -132,9 +132,12 @@ class Tree:
             d, rate = R @ axis * self._value(s, self.q), R @ axis * self._value(s, u)
             v, acc = (
                 v + np.cross(w, d) + rate,
-                acc + np.cross(alpha, d) + np.cross(w, np.cross(w, d)) + 2 * np.cross(w, rate)
+                acc
+                + np.cross(alpha, d)
+                + np.cross(w, np.cross(w, d))
+                + 2 * np.cross(w, rate)
                 + R @ axis * self._value(s, a),
-            )  # fmt: skip
+            )
             p = p + d
         angle = joint.get("angle", 0)
         axis = self.vector(joint["axis"]) if "axis" in joint and joint["kind"] != "prismatic" else Z
@@ -302,8 +305,11 @@ class Tree:
         """Whether the ties hold, and something free moves each or nothing at all does."""
         J, open_ = self.rows_of_ties
         stuck = [rate for row, (_, _, rate) in zip(J, self.ties(), strict=True) if np.max(np.abs(row)) < 1e-9]
-        return bool(np.max(np.abs(open_), initial=0) < 1e-9 and np.max(np.abs(stuck), initial=0) < 1e-9
-                    and self.balance.residual < 1e-8 * np.max(np.abs(self.balance.right), initial=1))  # fmt: skip
+        return bool(
+            np.max(np.abs(open_), initial=0) < 1e-9
+            and np.max(np.abs(stuck), initial=0) < 1e-9
+            and self.balance.residual < 1e-8 * np.max(np.abs(self.balance.right), initial=1)
+        )
 
     def _velocity(self, pushes: list[Wrench], places: list[Place]) -> float:
         """Power of the pushes."""
@@ -418,8 +424,9 @@ class Tree:
             bias.append(rate)
         n = len(self.free)
         G = np.array(columns).T.reshape(len(applied), -1)
-        A = np.block([[np.array(inertia).T.reshape(-1, n), -G],
-                      [np.array(J).reshape(-1, n), np.zeros((len(J), G.shape[1]))]])  # fmt: skip
+        A = np.block(
+            [[np.array(inertia).T.reshape(-1, n), -G], [np.array(J).reshape(-1, n), np.zeros((len(J), G.shape[1]))]]
+        )
         right = np.concatenate([applied - self.inertia(self.here), -np.array(bias)])
         found, _, _, _ = np.linalg.lstsq(A, right, rcond=1e-11)
         return Balance(tuple(owners), A, right, found, n)

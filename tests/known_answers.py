@@ -151,8 +151,7 @@ SEEDS = {
         "M*l^2*(3 - sin(theta))*theta'^2",
         (
             (
-                "2*l*(3 - sin(theta))*theta'' - l*cos(theta)*theta'^2"
-                " - g*cos(theta)*(3 - 2/sqrt(2 + 2*sin(theta)))",
+                "2*l*(3 - sin(theta))*theta'' - l*cos(theta)*theta'^2 - g*cos(theta)*(3 - 2/sqrt(2 + 2*sin(theta)))",
                 "M*l",
             ),
         ),

@@ -172,8 +172,12 @@ class ByHand:
         found = {k: u[k] for k in self.u if k in q}
         for (a, b, c, d), omega in self.turns:
             e0, e1, e2, e3, (x, y, z) = q[a], q[b], q[c], q[d], (u[w] for w in omega)
-            found |= {a: (-e1 * x - e2 * y - e3 * z) / 2, b: (e0 * x + e2 * z - e3 * y) / 2,
-                      c: (e0 * y - e1 * z + e3 * x) / 2, d: (e0 * z + e1 * y - e2 * x) / 2}  # fmt: skip
+            found |= {
+                a: (-e1 * x - e2 * y - e3 * z) / 2,
+                b: (e0 * x + e2 * z - e3 * y) / 2,
+                c: (e0 * y - e1 * z + e3 * x) / 2,
+                d: (e0 * z + e1 * y - e2 * x) / 2,
+            }
         return found
 
     def second_rates(self, q: Numbers, u: Numbers, a: Numbers) -> dict[str, Any]:
@@ -199,10 +203,15 @@ class ByHand:
             dR = (after[name][0] - before[name][0]) / (2 * STEP)
             ddR = (after[name][0] - 2 * R + before[name][0]) / STEP**2
             found[name] = {
-                "R": R, "o": o, "seat": seat, "c": places[1], "w": spin_of(dR * R.T), "alpha": spin_of(ddR * R.T),
+                "R": R,
+                "o": o,
+                "seat": seat,
+                "c": places[1],
+                "w": spin_of(dR * R.T),
+                "alpha": spin_of(ddR * R.T),
                 "v": (after[name][1] - before[name][1]) / (2 * STEP),
                 "a": (places[2] - 2 * places[1] + places[0]) / STEP**2,
-            }  # fmt: skip
+            }
         return found
 
     def inertia_wrench(self, name: str, x: dict[str, mp.matrix]) -> tuple[mp.matrix, mp.matrix]:

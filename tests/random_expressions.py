@@ -28,8 +28,10 @@ polynomials = st.recursive(_leaves, lambda children: _grown((), children), max_l
 
 _angles = st.builds(
     lambda a, b, c: ("+", ("*", a, "theta"), ("+", ("*", b, "y"), c)),
-    st.integers(-2, 2), st.sampled_from((0, 1, -1, Fraction(1, 2))), st.sampled_from((0, 0, "quarter", "sixth")),
-)  # fmt: skip
+    st.integers(-2, 2),
+    st.sampled_from((0, 1, -1, Fraction(1, 2))),
+    st.sampled_from((0, 0, "quarter", "sixth")),
+)
 
 trigonometric = st.recursive(
     _leaves, lambda children: _grown((), children) | st.tuples(st.sampled_from(("sin", "cos")), _angles), max_leaves=8
@@ -38,9 +40,11 @@ trigonometric = st.recursive(
 
 smooth = st.recursive(
     _leaves,
-    lambda children: _grown(("sin", "cos", "tanh", "atan"), children)
-    | st.tuples(st.just("over"), children, children)
-    | st.tuples(st.sampled_from(("root", "exp", "log")), children),
+    lambda children: (
+        _grown(("sin", "cos", "tanh", "atan"), children)
+        | st.tuples(st.just("over"), children, children)
+        | st.tuples(st.sampled_from(("root", "exp", "log")), children)
+    ),
     max_leaves=8,
 )
 """Functions that are smooth everywhere: divisors and radicands are kept positive."""

@@ -9,8 +9,15 @@ from random import Random
 import numpy as np
 from float_statics import Structure, Vector, three
 
-DIRECTIONS = ((1, 0), (Fraction(3, 5), Fraction(4, 5)), (Fraction(4, 5), Fraction(-3, 5)), (0, 1), (0, -1),
-              (Fraction(-3, 5), Fraction(4, 5)), (Fraction(-5, 13), Fraction(-12, 13)))  # fmt: skip
+DIRECTIONS = (
+    (1, 0),
+    (Fraction(3, 5), Fraction(4, 5)),
+    (Fraction(4, 5), Fraction(-3, 5)),
+    (0, 1),
+    (0, -1),
+    (Fraction(-3, 5), Fraction(4, 5)),
+    (Fraction(-5, 13), Fraction(-12, 13)),
+)
 NORMALS = ((0, 1), (1, 0), (3, 4), (1, -2))
 STIFF = 0.03  # of the smallest singular value of a frame that is taken
 

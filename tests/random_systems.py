@@ -127,13 +127,24 @@ class Writer:
 
     def text(self) -> str:
         gravity = ", ".join(['"0"', '"-g"', '"g/5"'][: self.size])
-        return "\n".join([
-            f'eomgen = 1\nname = "random"\nspace = "{self.space}"',
-            "[parameters]", *(f"{p} = {number(self.rng)}" for p in ("m", "I", "l", "h", "g", "k", "c", "A", "w")),
-            "[coordinates]", *self.coordinates, '[inputs]\ntau = "A*sin(t)"',
-            "[points]", f"G = {self.vector()}", *self.bodies, "[constraints]", *self.ties,
-            "[forces]", f'weight = {{ kind = "gravity", acceleration = [{gravity}] }}', *self.forces,
-        ])  # fmt: skip
+        return "\n".join(
+            [
+                f'eomgen = 1\nname = "random"\nspace = "{self.space}"',
+                "[parameters]",
+                *(f"{p} = {number(self.rng)}" for p in ("m", "I", "l", "h", "g", "k", "c", "A", "w")),
+                "[coordinates]",
+                *self.coordinates,
+                '[inputs]\ntau = "A*sin(t)"',
+                "[points]",
+                f"G = {self.vector()}",
+                *self.bodies,
+                "[constraints]",
+                *self.ties,
+                "[forces]",
+                f'weight = {{ kind = "gravity", acceleration = [{gravity}] }}',
+                *self.forces,
+            ]
+        )
 
 
 def free_coordinates(writer: Writer) -> int:

@@ -57,11 +57,13 @@ class RoundBody:
         r, r_rate = self.reach(R, w, n, np.cross(turning, n))
         c, inertia = R @ self.com, R @ self.I @ R.T
         zero, one = np.zeros((3, 3)), np.eye(3)
-        left = np.block([[self.m * one, -self.m * skew(c), -one], [zero, inertia, -skew(r - c)],
-                         [one, -skew(r), zero]])  # fmt: skip
-        right = np.concatenate([
-            self.m * (g - np.cross(w, np.cross(w, c))), -np.cross(w, inertia @ w),
-            np.cross(turning, v + r_rate) - np.cross(w, r_rate),
-        ])  # fmt: skip
+        left = np.block([[self.m * one, -self.m * skew(c), -one], [zero, inertia, -skew(r - c)], [one, -skew(r), zero]])
+        right = np.concatenate(
+            [
+                self.m * (g - np.cross(w, np.cross(w, c))),
+                -np.cross(w, inertia @ w),
+                np.cross(turning, v + r_rate) - np.cross(w, r_rate),
+            ]
+        )
         found = np.linalg.solve(left, right)
         return found[:3], R.T @ found[3:6], found[6:]

@@ -393,10 +393,7 @@ ALTERNATIVES = {
         "ch20_p4",
         DISC_BAR_SLIDER + "[coordinates]\ntheta = 0\nphi = { dependent = true, near = -1.2 }",
     ),
-    **{
-        f"two loads, {how}": ("ch18_p1", ATWOOD + "[coordinates]\ntheta = 0\n" + loads)
-        for loads, how in FREE.items()
-    },
+    **{f"two loads, {how}": ("ch18_p1", ATWOOD + "[coordinates]\ntheta = 0\n" + loads) for loads, how in FREE.items()},
     "loads over two discs": ("ch20_p5", DOUBLE_ATWOOD),
     "disc on a wire": ("ch20_p1", UNROLLING_DISC),
     "rolling disc and leaning bar": ("ch22_p1", ROLLING_DISC_AND_BAR),

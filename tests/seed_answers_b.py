@@ -99,8 +99,7 @@ ANSWERS = {
     },
     "ch22_p3": {
         "kinetic_energy": "6*M*a^2*theta'^2 + 2*M*a^2*phi'^2",
-        "Q_theta": "-a*(6*M*g*sin(theta) + k*a*sin(theta)*cos(theta)"
-        " + 6*k*a*(3*sin(theta) + 2*sin(phi))*cos(theta))",
+        "Q_theta": "-a*(6*M*g*sin(theta) + k*a*sin(theta)*cos(theta) + 6*k*a*(3*sin(theta) + 2*sin(phi))*cos(theta))",
         "Q_phi": "-a*(3*M*g*sin(phi) + 4*k*a*(3*sin(theta) + 2*sin(phi))*cos(phi))",
     },
     "ch22_p4": {

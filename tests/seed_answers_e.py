@@ -18,14 +18,22 @@ ANSWERS: dict[str, dict[str, str | None]] = {
     "s1_torque_free": {
         "L_squared": SQUARED,
         "T": ENERGY,
-        "omega_at_5s": None, "omega1_at_5s": None, "omega2_at_5s": None, "omega3_at_5s": None,
-        "L_squared_case": None, "T_case": None, "L_x_at_5s": None, "L_z_at_5s": None,
+        "omega_at_5s": None,
+        "omega1_at_5s": None,
+        "omega2_at_5s": None,
+        "omega3_at_5s": None,
+        "L_squared_case": None,
+        "T_case": None,
+        "L_x_at_5s": None,
+        "L_z_at_5s": None,
         "omega2_d_at_0": "(I3 - I1)*w3*w1/I2",
     },
     "s1_symmetric_top": {
         "Omega_body": "(I_3 - I_t)/I_t*w3",
         "precession_space": "sqrt(I_t^2*(w1^2 + w2^2) + I_3^2*w3^2)/I_t",
-        "omega1": None, "omega2": None, "omega3": None,
+        "omega1": None,
+        "omega2": None,
+        "omega3": None,
     },
     "s1_dominant_spin": {
         "omega1_d": "(I2 - I3)/I1*w2*w3",
@@ -39,13 +47,19 @@ ANSWERS: dict[str, dict[str, str | None]] = {
         "theta_dd": "sin(theta)*(I_t*cos(theta)*phi'^2 - I_3*phi'*(psi' + phi'*cos(theta)) + M*g*d)/I_t",
         "p_psi_later": None,
     },
-}  # fmt: skip
+}
 """None: at an instant after the start, in numbers only."""
 
 UNITS = {
-    "s1_torque_free": {"omega_at_5s": "rad/s", "omega1_at_5s": "rad/s", "omega2_at_5s": "rad/s",
-                       "omega3_at_5s": "rad/s", "T_case": "J", "omega2_d_at_0": "rad/s^2"},
+    "s1_torque_free": {
+        "omega_at_5s": "rad/s",
+        "omega1_at_5s": "rad/s",
+        "omega2_at_5s": "rad/s",
+        "omega3_at_5s": "rad/s",
+        "T_case": "J",
+        "omega2_d_at_0": "rad/s^2",
+    },
     "s1_symmetric_top": {"Omega_body": "rad/s", "precession_space": "rad/s"},
     "s1_dominant_spin": {"omega1_d": "rad/s^2", "frequency_squared": "rad^2/s^2"},
     "s1_lagrange_top": {"omega3": "rad/s", "energy": "J"},
-}  # fmt: skip
+}

@@ -505,7 +505,10 @@ def ch22_p3() -> System:
             (theta, phi),
             (
                 Body(
-                    4 * M, rod(4 * M, 3 * a), (B[0] / 2, B[1] / 2), -theta,
+                    4 * M,
+                    rod(4 * M, 3 * a),
+                    (B[0] / 2, B[1] / 2),
+                    -theta,
                     (((0, 0), (X1, Y1)), (A, (F1, 0)), (B, (F2, 0))),
                 ),
                 Body(3 * M, rod(3 * M, 2 * a), middle, phi, (((d, -a), (X2, Y2)), (D, (-F2, 0)))),
@@ -517,7 +520,7 @@ def ch22_p3() -> System:
         ),
         theta,
         phi,
-    )  # fmt: skip
+    )
 
 
 def ch22_p4() -> System:
@@ -585,9 +588,6 @@ def ch22_p6() -> System:
     )
 
 
-
-
-
 def _right(place: Place, distance: Any) -> Place:
     return (place[0] + distance, place[1])
 
@@ -595,8 +595,23 @@ def _right(place: Place, distance: Any) -> Place:
 ALL: dict[str, Callable[[], System]] = {
     make.__name__: make
     for make in (
-        ch18_p1, ch18_p2, ch18_p3, ch18_p4, ch18_p5, ch20_p1, ch20_p2, ch20_p3, ch20_p4, ch20_p5, ch20_p6,
-        ch22_p1, ch22_p2, ch22_p3, ch22_p4, ch22_p5, ch22_p6,
+        ch18_p1,
+        ch18_p2,
+        ch18_p3,
+        ch18_p4,
+        ch18_p5,
+        ch20_p1,
+        ch20_p2,
+        ch20_p3,
+        ch20_p4,
+        ch20_p5,
+        ch20_p6,
+        ch22_p1,
+        ch22_p2,
+        ch22_p3,
+        ch22_p4,
+        ch22_p5,
+        ch22_p6,
     )
-}  # fmt: skip
+}
 """Every system of the three chapters, by its id."""

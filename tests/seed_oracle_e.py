@@ -87,12 +87,18 @@ def s1_torque_free(n: Numbers) -> Numbers:
     later, L_later = body.after(5, w)
     T = w @ body.inertia @ w / 2
     return {
-        "L_squared": L @ L, "T": T, "L_squared_case": L @ L, "T_case": T,
+        "L_squared": L @ L,
+        "T": T,
+        "L_squared_case": L @ L,
+        "T_case": T,
         "omega_at_5s": float(np.linalg.norm(later)),
-        "omega1_at_5s": later[0], "omega2_at_5s": later[1], "omega3_at_5s": later[2],
-        "L_x_at_5s": L_later[0], "L_z_at_5s": L_later[2],
+        "omega1_at_5s": later[0],
+        "omega2_at_5s": later[1],
+        "omega3_at_5s": later[2],
+        "L_x_at_5s": L_later[0],
+        "L_z_at_5s": L_later[2],
         "omega2_d_at_0": body.rates(np.eye(3), w)[1],
-    }  # fmt: skip
+    }
 
 
 @oracle
@@ -106,9 +112,12 @@ def s1_symmetric_top(n: Numbers) -> Numbers:
     turned = np.cross(w, axis)  # how the axis moves in space: Omega n x axis
     precession = np.linalg.norm(turned) / np.linalg.norm(np.cross(n_hat, axis))
     return {
-        "Omega_body": body.rates(np.eye(3), w)[1] / w[0], "precession_space": precession,
-        "omega1": later[0], "omega2": later[1], "omega3": later[2],
-    }  # fmt: skip
+        "Omega_body": body.rates(np.eye(3), w)[1] / w[0],
+        "precession_space": precession,
+        "omega1": later[0],
+        "omega2": later[1],
+        "omega3": later[2],
+    }
 
 
 @oracle
@@ -132,7 +141,10 @@ def s1_lagrange_top(n: Numbers) -> Numbers:
     moved = R @ (np.cross(body.rates(R, w), up) + np.cross(w, np.cross(w, up)))  # acceleration of the axis' tip
     p_psi = float(L @ spin_axis)
     return {
-        "p_phi": float(L @ up), "p_psi": p_psi, "p_psi_later": p_psi, "omega3": float(w[2]),
+        "p_phi": float(L @ up),
+        "p_psi": p_psi,
+        "p_psi_later": p_psi,
+        "omega3": float(w[2]),
         "energy": float(w @ inertia @ w / 2 + n["M"] * n["g"] * n["d"] * spin_axis[2]),
         "theta_dd": float(-moved[2] / np.sin(theta)),  # theta' = 0
-    }  # fmt: skip
+    }

@@ -31,9 +31,20 @@ BOLT_CUTTER = str(ROOT / "models" / "bolt_cutter.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = (MODELS / "seeds" / "ch22_p3.toml").read_text() + 'omega3 = "frequency(3)"\n'  # it has two
 VERBS = [
-    "new", "check", "derive", "solve", "reactions", "statics", "kinematics", "inertia", "linearize", "simulate",
-    "codegen", "schema", "doctor",
-]  # fmt: skip
+    "new",
+    "check",
+    "derive",
+    "solve",
+    "reactions",
+    "statics",
+    "kinematics",
+    "inertia",
+    "linearize",
+    "simulate",
+    "codegen",
+    "schema",
+    "doctor",
+]
 
 FALL = """
 eomgen = 1
@@ -109,9 +120,10 @@ def test_the_public_names_are_sorted_and_all_there():
 
 def test_the_version_is_told_once_and_everywhere_the_same():
     """pyproject, eomgen.__version__ and `eomgen --version`."""
-    assert f'version = "{__version__}"' in (ROOT / "pyproject.toml").read_text() or "dynamic" in (
-        ROOT / "pyproject.toml"
-    ).read_text()
+    assert (
+        f'version = "{__version__}"' in (ROOT / "pyproject.toml").read_text()
+        or "dynamic" in (ROOT / "pyproject.toml").read_text()
+    )
     assert run("--version").stdout.strip() == f"eomgen, version {__version__}"
     assert eomgen.__version__ == __version__
 
@@ -122,13 +134,22 @@ def test_the_version_is_told_once_and_everywhere_the_same():
 @pytest.mark.parametrize(
     "words",
     [
-        ("check", PENDULUM), ("check", TRUSS), ("derive", SEED), ("derive", SEED, "--no-certify"), ("solve", SEED),
-        ("reactions", SEED), ("simulate", PENDULUM, "--time", "0.1"), ("schema",), ("doctor",),
-        ("check", "no/such/file"), ("nonsense",),
-        ("simulate", PENDULUM, "--set", "q=1"), ("derive", TRUSS),
+        ("check", PENDULUM),
+        ("check", TRUSS),
+        ("derive", SEED),
+        ("derive", SEED, "--no-certify"),
+        ("solve", SEED),
+        ("reactions", SEED),
+        ("simulate", PENDULUM, "--time", "0.1"),
+        ("schema",),
+        ("doctor",),
+        ("check", "no/such/file"),
+        ("nonsense",),
+        ("simulate", PENDULUM, "--set", "q=1"),
+        ("derive", TRUSS),
     ],
     ids=lambda words: " ".join(Path(word).stem for word in words),
-)  # fmt: skip
+)
 def test_with_json_stdout_is_one_json_object_with_its_schema_version(words):
     """`--json` on every verb, errors too."""
     result = run(*words, "--json")
@@ -448,8 +469,10 @@ def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):
     """A body that nothing holds, reactions that have no single value: no file, null in the JSON, a line on stderr."""
     loose, _, weight = (MODELS / "atwood.toml").read_text().partition("[constraints.string]")
     (tmp_path / "loose.toml").write_text(loose + weight[weight.index("[forces") : weight.index("[outputs]")])
-    for path, line in ((tmp_path / "loose.toml", "no code for the reactions: body 'left' is held by nothing along y"),
-                       (MODELS / "four_cranks.toml", "no code for the reactions: none has a single value")):
+    for path, line in (
+        (tmp_path / "loose.toml", "no code for the reactions: body 'left' is held by nothing along y"),
+        (MODELS / "four_cranks.toml", "no code for the reactions: none has a single value"),
+    ):
         name = path.stem
         result = run("codegen", str(path), "-o", str(tmp_path / name))
         assert (result.exit_code, result.stderr) == (0, line + "\n")
@@ -476,12 +499,15 @@ def test_a_run_says_once_where_a_reaction_has_no_value(tmp_path):
     ("model", "more", "line"),
     [
         ("gerber_beam", "", "stable, statically determinate"),
-        ("gerber_beam", 'F = { kind = "support", point = "CD.C", normal = [0, 1] }',
-         "stable, statically indeterminate: 1 reaction more than independent ones"),
+        (
+            "gerber_beam",
+            'F = { kind = "support", point = "CD.C", normal = [0, 1] }',
+            "stable, statically indeterminate: 1 reaction more than independent ones",
+        ),
         ("bolt_cutter", "", "stable, statically determinate, held by P too"),
         ("seeds/ch11_p4", "", "a mechanism, it can move"),
     ],
-)  # fmt: skip
+)
 def test_check_says_how_a_structure_stands(model, more, line):
     """Mobility = velocities - rank, indeterminacy = reactions - rank; unknown loads hold too."""
     text = (MODELS / f"{model}.toml").read_text().replace("[constraints]", f"[constraints]\n{more}")

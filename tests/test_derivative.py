@@ -42,8 +42,9 @@ def test_forward_and_reverse_agree(tree):
     assert backward == pytest.approx(forward, rel=1e-9, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log",
-                                  "sqrt", "abs"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name", ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs"]
+)
 @pytest.mark.parametrize("point", [0.3, 0.8])
 def test_every_function_has_its_rule(name, point):
     """f'(x) against a difference, at two points."""

@@ -87,8 +87,13 @@ def test_fifty_digits_are_fifty(graph):
 def test_floats_outside_a_domain_are_nan(graph):
     """sqrt(-1), log(0), 1/0, asin(2), exp(1000): not a number, no exception."""
     x = graph.symbol("x")
-    outputs = [graph.sqrt(x - 2), graph.call("log", x - 1), 1 / (x - 1), graph.call("asin", 2 * x),
-               graph.call("exp", 1000 * x)]  # fmt: skip
+    outputs = [
+        graph.sqrt(x - 2),
+        graph.call("log", x - 1),
+        1 / (x - 1),
+        graph.call("asin", 2 * x),
+        graph.call("exp", 1000 * x),
+    ]
     assert all(math.isnan(value) for value in evaluate(outputs, {x: 1.0}, FLOAT))
 
 

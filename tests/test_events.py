@@ -43,10 +43,18 @@ def test_the_time_of_an_event_converges_with_the_tolerance():
     """Measured: sin t = 1/2 downwards at 5 pi/6; the error falls by the tolerance's own order."""
     tolerances = [1e-4, 1e-6, 1e-8, 1e-10]
     errors = [
-        abs(run(lambda t, x: np.array([x[1], -x[0]]), [0.0, 1.0], lambda t, x: [x[1] + math.sqrt(3) / 2],
-                rtol=tol, atol=tol).end - 5 * math.pi / 6)
+        abs(
+            run(
+                lambda t, x: np.array([x[1], -x[0]]),
+                [0.0, 1.0],
+                lambda t, x: [x[1] + math.sqrt(3) / 2],
+                rtol=tol,
+                atol=tol,
+            ).end
+            - 5 * math.pi / 6
+        )
         for tol in tolerances
-    ]  # fmt: skip
+    ]
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     assert errors[-1] < 1e-9 and 0.7 < slope < 1.4
 
@@ -87,7 +95,8 @@ def test_a_dip_between_two_looks_is_seen():
 def test_samples_go_up_to_the_event():
     """The instants asked for, and the event itself as the last one."""
     events = Events(lambda t, x: x[:, :1], np.array([1e-9]))
-    found = march(falling, (0.0, 1.0), np.array([1.0, 0.0]), how=Stepping(), instants=np.linspace(0, 1, 11),
-                  events=events)  # fmt: skip
+    found = march(
+        falling, (0.0, 1.0), np.array([1.0, 0.0]), how=Stepping(), instants=np.linspace(0, 1, 11), events=events
+    )
     assert found.t[:-1] == pytest.approx(np.linspace(0, 0.4, 5)) and found.t[-1] == pytest.approx(math.sqrt(2 / G))
     assert found.x[:, 0] == pytest.approx(1 - G * found.t**2 / 2, abs=1e-12)

@@ -252,8 +252,10 @@ def test_outputs_may_call_functions_of_the_model():
         Call("frequency", (Expression.number(1),)),
     )
     assert [(c.column, [a.column for a in c.args if isinstance(a, Reference)]) for c in expression.calls] == [
-        (2, [8]), (25, [33, 36]), (49, []),
-    ]  # fmt: skip
+        (2, [8]),
+        (25, [33, 36]),
+        (49, []),
+    ]
     values = {"speed": 3, "tension": 7, "frequency": Fraction(1, 2)}
     assert expression.evaluate({}, call=lambda call: values[call.name]) == 2 * 9 - 7 + Fraction(1, 2)
 

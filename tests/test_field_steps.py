@@ -77,9 +77,11 @@ def test_forces_of_a_turning_frame_stand_in_its_equation_of_motion():
     situation = journey_of(TURNTABLE).situation
     rows = rows_of(relative_steps(situation.system, "puck.center", "table", {}), "moving frame")
     true = {
-        "applied": ("3", "0"), "Euler": ("m*Omega*y", "-m*Omega*x"),
-        "centrifugal": ("m*(Omega*t)^2*x", "m*(Omega*t)^2*y"), "Coriolis": ("2*m*Omega*t*y'", "-2*m*Omega*t*x'"),
-    }  # fmt: skip
+        "applied": ("3", "0"),
+        "Euler": ("m*Omega*y", "-m*Omega*x"),
+        "centrifugal": ("m*(Omega*t)^2*x", "m*(Omega*t)^2*y"),
+        "Coriolis": ("2*m*Omega*t*y'", "-2*m*Omega*t*x'"),
+    }
     for name, row in true.items():
         assert all(same(situation, *pair) for pair in zip(rows[name], row, strict=True)), name
 

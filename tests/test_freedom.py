@@ -99,9 +99,7 @@ def test_particles_count_two_in_the_plane_and_three_in_space():
     body = '[bodies.p]\nshape = {{ kind = "particle", mass = "m" }}\njoint = {{ kind = "placed", at = {} }}\n'
     unused = HEAD.replace("l = 1.0\nd = 2.0\n", "")
     plane = eomgen.loads(unused + coordinates(x=0, y=0) + body.format('["x", "y"]'))
-    space = eomgen.loads(
-        unused.replace("plane", "space") + coordinates(x=0, y=0, z=0) + body.format('["x", "y", "z"]')
-    )
+    space = eomgen.loads(unused.replace("plane", "space") + coordinates(x=0, y=0, z=0) + body.format('["x", "y", "z"]'))
     assert [(f.by_rank, f.by_formula) for f in map(eomgen.freedom_of, (plane, space))] == [(2, 2), (3, 3)]
 
 

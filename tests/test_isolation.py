@@ -34,11 +34,21 @@ def test_a_function_stays_in_its_interval(name, seed):
             assert math.isnan(value) or found[0][k] <= value <= found[1][k]
 
 
-@pytest.mark.parametrize("make", [
-    lambda: x + y, lambda: x - 2 * y, lambda: x * y, lambda: x / y, lambda: x * x - y, lambda: graph.pow(x, 3),
-    lambda: graph.pow(x, -2), lambda: graph.call("min", x, y), lambda: graph.call("atan2", x, y),
-    lambda: graph.select(graph.call("less", x, y), x * y, x + y),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: x + y,
+        lambda: x - 2 * y,
+        lambda: x * y,
+        lambda: x / y,
+        lambda: x * x - y,
+        lambda: graph.pow(x, 3),
+        lambda: graph.pow(x, -2),
+        lambda: graph.call("min", x, y),
+        lambda: graph.call("atan2", x, y),
+        lambda: graph.select(graph.call("less", x, y), x * y, x + y),
+    ],
+)
 def test_operations_stay_in_their_intervals(make):
     rng = np.random.default_rng(7)
     f = make()

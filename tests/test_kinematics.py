@@ -214,12 +214,20 @@ def test_the_rate_of_every_twist_is_B_a_plus_alpha():
     for i, link in enumerate(motion.links):
         twist = (*link.twist.w, *link.twist.v)
         still = substituted(twist, {x: 0 for x in u})
-        assert equal(twist, [sum((b * x for b, x in zip(row, u, strict=True)), start=s)
-                             for row, s in zip(motion.B[i], still, strict=True)])  # fmt: skip
-        assert equal(scope.with_accelerations(twist), [
-            sum((b * x for b, x in zip(row, a, strict=True)), start=s)
-            for row, s in zip(motion.B[i], motion.alpha[i], strict=True)
-        ])  # fmt: skip
+        assert equal(
+            twist,
+            [
+                sum((b * x for b, x in zip(row, u, strict=True)), start=s)
+                for row, s in zip(motion.B[i], still, strict=True)
+            ],
+        )
+        assert equal(
+            scope.with_accelerations(twist),
+            [
+                sum((b * x for b, x in zip(row, a, strict=True)), start=s)
+                for row, s in zip(motion.B[i], motion.alpha[i], strict=True)
+            ],
+        )
 
 
 def kinematics(system: System, point: str):
@@ -252,7 +260,8 @@ joint = { kind = "placed", at = [0, "L*cos(phi)"], angle = "phi - pi/2" }
 
 def test_a_rolling_disc_touches_with_a_point_at_rest():
     """x = R theta, clockwise: v = 0 below, R theta' in the middle, 2 R theta' above; a = R theta'^2 up below."""
-    system = written("""
+    system = written(
+        """
 [parameters]
 m = 1.0
 R = 0.5
@@ -262,7 +271,8 @@ theta = 0.3
 shape = { kind = "disc", mass = "m", radius = "R" }
 points = { below = ["R*sin(theta0)", "-R*cos(theta0)"], above = ["-R*sin(theta0)", "R*cos(theta0)"] }
 joint = { kind = "placed", at = ["R*theta", "R"], angle = "-theta" }
-""".replace("theta0", "pi/3"))
+""".replace("theta0", "pi/3")
+    )
     here = {system.symbols.q[0]: value(system, "pi/3")}  # then the points are below and above
     expected = {"below": (0, 0, 0), "center": ("R*theta'", 0, 0), "above": ("2*R*theta'", 0, 0)}
     for name, velocity in expected.items():
@@ -331,8 +341,11 @@ joint = { kind = "revolute", on = "inner", angle = "phi" }
 def test_three_hinges_turn_a_wheel_by_eulers_equations():
     """Angular velocity of the wheel in its own axes (Goldstein, Classical Mechanics, 3rd ed., eq. 4.87)."""
     system = written(GYROSCOPE, "space")
-    expected = ("psi'*sin(theta)*sin(phi) + theta'*cos(phi)", "psi'*sin(theta)*cos(phi) - theta'*sin(phi)",
-         "psi'*cos(theta) + phi'")  # fmt: skip
+    expected = (
+        "psi'*sin(theta)*sin(phi) + theta'*cos(phi)",
+        "psi'*sin(theta)*cos(phi) - theta'*sin(phi)",
+        "psi'*cos(theta) + phi'",
+    )
     assert equal(system.motion.link("wheel").twist.w, [value(system, x) for x in expected])
 
 

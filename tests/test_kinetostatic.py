@@ -117,8 +117,9 @@ def along_motion(derived: Equations) -> dict[Node, Scalar]:
 def reactions_along_motion(derived: Equations) -> dict[Node, Scalar]:
     """What the symbols of the reactions and of friction stand for, no acceleration left in it."""
     named, motion = letters(derived), along_motion(derived)
-    values = dict(zip(named.symbols, substituted([x for x in derived.reactions.values if x is not None], motion),
-                      strict=True))  # fmt: skip
+    values = dict(
+        zip(named.symbols, substituted([x for x in derived.reactions.values if x is not None], motion), strict=True)
+    )
     for rub, frictions in zip(named.rubs, named.frictions, strict=True):
         along = derived.reactions.components[rub.component].friction
         for friction, rubs in zip(frictions, along, strict=True):
@@ -144,8 +145,11 @@ def test_the_printed_equations_of_every_body_hold_along_every_motion(name):
     """sum F + F_in = 0, sum M + M_in = 0 with the reactions and accelerations that the equations give"""
     derived = derived_from(name)
     motion, known = along_motion(derived), reactions_along_motion(derived)
-    balances = [f.sides[0] for f in formulas(derived.derivation, "body_") if f.sides[-1] == 0 and len(f.sides) == 2
-                and not hasattr(f.sides[0], "letter")]  # fmt: skip
+    balances = [
+        f.sides[0]
+        for f in formulas(derived.derivation, "body_")
+        if f.sides[-1] == 0 and len(f.sides) == 2 and not hasattr(f.sides[0], "letter")
+    ]
     assert len(balances) == len(derived.reactions.balance.equations)
     left = substituted(substituted([whole(derived.derivation, x) for x in balances], known), motion)
     assert equal_at_random_states([(x, 0) for x in left]).equal
@@ -171,8 +175,9 @@ def test_printed_reactions_are_those_of_the_balance_by_every_method(name, method
     shown = [f for f in formulas(derived.derivation, "reactions") if f.sides[0] in own]  # the others are definitions
     rubbing = {letters(derived).symbols[rub.component] for rub in letters(derived).rubs}
     assert {f.sides[0] for f in shown} == own - rubbing
-    pairs = [(substituted((whole(derived.derivation, x),), motion)[0], known[f.sides[0]])
-             for f in shown for x in f.sides[1:]]  # fmt: skip
+    pairs = [
+        (substituted((whole(derived.derivation, x),), motion)[0], known[f.sides[0]]) for f in shown for x in f.sides[1:]
+    ]
     assert not pairs or equal_at_random_states(pairs).equal
 
 
@@ -183,8 +188,10 @@ def test_multipliers_are_the_reactions_that_they_are_said_to_be(name):
     system, named = derived.system, letters(derived)
     rng = random.Random(5)
     symbols, graph = system.symbols, derived.graph
-    state = {x: rng.uniform(0.4, 1.1) for x in (*symbols.q, *symbols.u, *symbols.parameters.values(), symbols.t,
-                                                *symbols.inputs.values())}  # fmt: skip
+    state = {
+        x: rng.uniform(0.4, 1.1)
+        for x in (*symbols.q, *symbols.u, *symbols.parameters.values(), symbols.t, *symbols.inputs.values())
+    }
     M, J = (np.array(evaluate([x for row in rows for x in row], state, FLOAT)) for rows in (graph.M, graph.J))
     n, k = len(graph.M), len(graph.J)
     M, J = M.reshape(n, n), J.reshape(k, n)
@@ -209,8 +216,10 @@ def test_indeterminate_reactions_are_said_with_what_they_leave_open():
     closed = {b: a, c: a, e: a, d: 0}
     for space in data["reaction_null_space"]:
         change = {names.index(name): read_back(text, derived) for name, text in space.items() if name in names}
-        sums = [sum((e.coefficients[j] * change[j] for j in e.coefficients if j in change), start=0)
-                for e in derived.reactions.balance.equations]  # fmt: skip
+        sums = [
+            sum((e.coefficients[j] * change[j] for j in e.coefficients if j in change), start=0)
+            for e in derived.reactions.balance.equations
+        ]
         assert equal_at_random_states([(x, 0) for x in substituted(sums, closed)]).equal
     text = " ".join(rendered(derived.derivation, "text").split())
     assert "are statically indeterminate: rigid bodies in balance leave them open" in text
@@ -228,8 +237,11 @@ def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     reactions = reactions_of(derived.system)
     asked = {named.name: named for named in named_reactions(reactions.balance)}
     assert list(data["reactions"]) == list(asked)
-    pairs = [(read_back(text, derived, also), reactions.combined(asked[n].combination, n) + asked[n].given)
-             for n, text in data["reactions"].items() if text is not None]  # fmt: skip
+    pairs = [
+        (read_back(text, derived, also), reactions.combined(asked[n].combination, n) + asked[n].given)
+        for n, text in data["reactions"].items()
+        if text is not None
+    ]
     assert equal_at_random_states([substituted(pair, motion) for pair in pairs]).equal
 
 
@@ -263,9 +275,11 @@ UNHELD = LADDER.replace('floor = { kind = "support", point = "ladder.end", norma
 
 @pytest.mark.parametrize(
     ("model", "word"),
-    [(loads(UNHELD.replace(', friction = "mu"', "")), "body 'ladder' is held by nothing along y"),
-     (model_called("loop"), "'pot' acts on coordinates and at no place")],
-)  # fmt: skip
+    [
+        (loads(UNHELD.replace(', friction = "mu"', "")), "body 'ladder' is held by nothing along y"),
+        (model_called("loop"), "'pot' acts on coordinates and at no place"),
+    ],
+)
 def test_what_nothing_holds_is_told_and_has_no_kinetostatics(model, word):
     """one sentence in other derivations, an error by this method"""
     derived = derive(model)

@@ -88,11 +88,15 @@ def test_documents_are_balanced(name):
 @pytest.mark.parametrize(
     ("name", "method", "full"),
     [
-        ("double_pendulum", "lagrange", False), ("loop", "lagrange", False), ("andrews_squeezer", "lagrange", False),
-        ("arm7", "lagrange", True), ("arm3", "kinetostatic", False), ("four_cranks", "kinetostatic", False),
+        ("double_pendulum", "lagrange", False),
+        ("loop", "lagrange", False),
+        ("andrews_squeezer", "lagrange", False),
+        ("arm7", "lagrange", True),
+        ("arm3", "kinetostatic", False),
+        ("four_cranks", "kinetostatic", False),
         ("ch16_p7", "kinetostatic", False),
     ],
-)  # fmt: skip
+)
 def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, method, full, tmp_path):
     """pdflatex ends without an error, whatever stands in the user's names and remarks, and no line is too wide"""
     derived = equations(name, method)
@@ -100,8 +104,10 @@ def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, method, full,
     (tmp_path / "a.tex").write_text(rendered(derivation, "latex"))
     run = subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "a.tex"],
-        cwd=tmp_path, capture_output=True, text=True,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
     assert run.returncode == 0, run.stdout[-2000:]
     assert "Overfull" not in run.stdout
 
@@ -131,10 +137,12 @@ def test_a_kinetic_energy_is_set_as_in_a_textbook():
         (lambda a, b: a.graph.pow(a + b, b), r"\left(a + b\right)^{b}"),
         (lambda a, b: a.graph.call("abs", a), r"\left\lvert a \right\rvert"),
         (lambda a, b: a.graph.call("atan2", a, b), r"\operatorname{atan2}\left(a, b\right)"),
-        (lambda a, b: a.graph.select(a.graph.call("less", a, b), 1, b),
-         r"\begin{cases} 1 & a < b \\ b & \text{otherwise} \end{cases}"),
+        (
+            lambda a, b: a.graph.select(a.graph.call("less", a, b), 1, b),
+            r"\begin{cases} 1 & a < b \\ b & \text{otherwise} \end{cases}",
+        ),
     ],
-)  # fmt: skip
+)
 def test_each_operation_is_set_by_its_own_rule(make, expected):
     assert tex(make(*names("a b"))) == expected
 
@@ -167,9 +175,11 @@ def test_two_names_that_would_look_alike_are_told_apart_everywhere():
     """theta1 and theta_1, and their rates"""
     found = notation(["theta_1", "theta1", "theta1'", "theta_1''"])
     assert found == {
-        "theta_1": r"\theta_{1}", "theta1": r"\mathrm{theta1}",
-        "theta1'": r"\dot{\mathrm{theta1}}", "theta_1''": r"\ddot{\theta}_{1}",
-    }  # fmt: skip
+        "theta_1": r"\theta_{1}",
+        "theta1": r"\mathrm{theta1}",
+        "theta1'": r"\dot{\mathrm{theta1}}",
+        "theta_1''": r"\ddot{\theta}_{1}",
+    }
     assert len(set(found.values())) == len(found)
 
 
@@ -228,8 +238,9 @@ def test_long_sums_are_broken_before_their_signs():
     rows = rows_of(setter, [setter.set(symbols[0]), total])
     assert len(rows) > 2
     assert all(row.startswith(r"&\quad + ") for row in rows[1:])
-    assert all(sum(part.width for part in pieces(setter, total, LINE) if part.tex in row.split(" + ")) < LINE
-               for row in rows)  # fmt: skip
+    assert all(
+        sum(part.width for part in pieces(setter, total, LINE) if part.tex in row.split(" + ")) < LINE for row in rows
+    )
     joined = " ".join(row.replace(r"&\quad", "").replace("&=", "=").strip() for row in rows)
     assert joined == f"x_{{0}} = {setter.set(total).tex}"
 

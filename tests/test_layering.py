@@ -9,10 +9,26 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
-    ("version", "errors"), ("symbolic",), ("model",), ("mechanics",), ("codegen",), ("simulation",), ("report",),
-    ("proof",), ("certificate", "instants", "situation"), ("moments",), ("journey",), ("answers", "velocities"),
-    ("equations",), ("running",), ("pipeline",), ("verbs", "notebook"), ("shell",), ("cli",), ("__main__",),
-)  # fmt: skip
+    ("version", "errors"),
+    ("symbolic",),
+    ("model",),
+    ("mechanics",),
+    ("codegen",),
+    ("simulation",),
+    ("report",),
+    ("proof",),
+    ("certificate", "instants", "situation"),
+    ("moments",),
+    ("journey",),
+    ("answers", "velocities"),
+    ("equations",),
+    ("running",),
+    ("pipeline",),
+    ("verbs", "notebook"),
+    ("shell",),
+    ("cli",),
+    ("__main__",),
+)
 RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}
 
 

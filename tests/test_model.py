@@ -116,8 +116,13 @@ def test_points_are_resolved_and_listed():
 
 def test_own_points_may_be_written_with_their_body():
     """`rod.start` in the rod's own table and beside `body` is `start`."""
-    bodies = {"rod": Body(shape=Rod(mass="m", length="l"), line=("rod.start", "end"),
-                          joint=Revolute(at="O", point="rod.start", angle="theta - pi/2"))}  # fmt: skip
+    bodies = {
+        "rod": Body(
+            shape=Rod(mass="m", length="l"),
+            line=("rod.start", "end"),
+            joint=Revolute(at="O", point="rod.start", angle="theta - pi/2"),
+        )
+    }
     load = Distributed(body="rod", between=("start", "rod.end"), intensity=(0, -1))
     model = pendulum(bodies=bodies, forces={"load": load})
     assert model.bodies["rod"].line == ("start", "end") and model.bodies["rod"].joint.point == "start"
@@ -153,10 +158,15 @@ def test_starts_are_expressions_of_parameters():
     assert start_values(pendulum(), {"l": 3})[1] == {"theta'": 6.0}
 
 
-@pytest.mark.parametrize(("law", "start"), [
-    ({"motion": "3*sin(2*t) + 1"}, (1.0, 6.0)), ({"rate": "5 + t", "start": 2}, (2.0, 5.0)),
-    ({"acceleration": "t", "start": 2, "speed": 4}, (2.0, 4.0)), ({"dependent": True, "near": 7}, (7.0, 0.0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("law", "start"),
+    [
+        ({"motion": "3*sin(2*t) + 1"}, (1.0, 6.0)),
+        ({"rate": "5 + t", "start": 2}, (2.0, 5.0)),
+        ({"acceleration": "t", "start": 2, "speed": 4}, (2.0, 4.0)),
+        ({"dependent": True, "near": 7}, (7.0, 0.0)),
+    ],
+)
 def test_a_driven_coordinate_starts_where_its_law_says(law, start):
     """q(0) = f(0), q'(0) = f'(0) for a motion f."""
     q, u = start_values(pendulum(coordinates={"theta": Coordinate(**law)}))
@@ -183,8 +193,9 @@ def test_no_kind_waits_for_a_later_version():
     assert unbuilt(model) == ()
     bar = {"kind": "cylindrical", "axis": [0, 0, 1], "displacement": "s", "angle": "q"}
     waiting = Model(
-        space="space", coordinates={"s": 0, "q": 0},
+        space="space",
+        coordinates={"s": 0, "q": 0},
         bodies={"bar": {"shape": {"kind": "rod", "mass": 1, "length": 1}, "joint": bar}},
         constraints={"g": {"kind": "guide", "point": "bar.end", "along": [1, 0, 0]}},
-    )  # fmt: skip
+    )
     assert unbuilt(waiting) == unbuilt_ties(waiting) == ()

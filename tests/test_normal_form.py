@@ -153,9 +153,15 @@ def test_kinetic_energies_read_as_in_a_textbook(the):
     M, m, R, l, theta, w, psi, phi_rate = the("M m R l theta theta' psi phi'")
     ellipsograph = M * R**2 * (Fraction(39, 2) - Fraction(27, 2) * sin(theta) ** 2) * w**2
     assert to_text(readable(ellipsograph)) == "6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2"
-    spherical = HALF * m * ((l * cos(theta) * cos(psi) * w - l * sin(theta) * sin(psi) * phi_rate) ** 2
-                            + (l * cos(theta) * sin(psi) * w + l * sin(theta) * cos(psi) * phi_rate) ** 2
-                            + (l * sin(theta) * w) ** 2)  # fmt: skip
+    spherical = (
+        HALF
+        * m
+        * (
+            (l * cos(theta) * cos(psi) * w - l * sin(theta) * sin(psi) * phi_rate) ** 2
+            + (l * cos(theta) * sin(psi) * w + l * sin(theta) * cos(psi) * phi_rate) ** 2
+            + (l * sin(theta) * w) ** 2
+        )
+    )
     text = to_text(readable(spherical))
     assert sorted(text.split(" + ")) == ["1/2*m*l^2*sin(theta)^2*phi'^2", "1/2*m*l^2*theta'^2"]
 

@@ -21,11 +21,14 @@ def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Gen
     return A, [list(range(6 * i, 6 * i + 6)) for i in range(len(parents))]
 
 
-@pytest.mark.parametrize("parents, loops, core", [
-    ([-1, 0, 1, 1, 3], [], 0),  # a tree: nothing is left over
-    ([-1, 0, 1, -1, 3, 4], [(2, -1)], 17),  # one loop: three joints and the tie are solved as one
-    ([-1, 0, -1, 2], [(1, 3), (1, -1)], 24),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "parents, loops, core",
+    [
+        ([-1, 0, 1, 1, 3], [], 0),  # a tree: nothing is left over
+        ([-1, 0, 1, -1, 3, 4], [(2, -1)], 17),  # one loop: three joints and the tie are solved as one
+        ([-1, 0, -1, 2], [(1, 3), (1, -1)], 24),
+    ],
+)
 def test_blocks_give_what_the_whole_gives(parents, loops, core):
     A, groups = _bodies(parents, loops, np.random.default_rng(2))
     rho = np.random.default_rng(3).normal(size=(4, A.shape[2]))

@@ -66,11 +66,14 @@ def test_inputs_are_replaced_by_expressions_numbers_and_samples():
     assert sampled["q"] == pytest.approx(sampled.t**3 / 2, abs=1e-9)
 
 
-@pytest.mark.parametrize("inputs, error, words", [
-    ({"tua": 1}, UsageError, "no input 'tua'"),
-    ({"tau": lambda t: t}, UsageError, "Python function"),
-    ({"tau": "2*x"}, ModelError, "unknown name 'x'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "inputs, error, words",
+    [
+        ({"tua": 1}, UsageError, "no input 'tua'"),
+        ({"tau": lambda t: t}, UsageError, "Python function"),
+        ({"tau": "2*x"}, ModelError, "unknown name 'x'"),
+    ],
+)
 def test_inputs_that_cannot_be_replaced(inputs, error, words):
     with pytest.raises(error, match=words):
         eomgen.simulate(eomgen.loads(BEAM), time=1, inputs=inputs)

@@ -27,8 +27,10 @@ def tree_mass_matrix(parents: list[int]):
     for i, parent in enumerate(parents):
         if parent >= 0:
             ancestors[i] |= ancestors[parent]
-    M = [[g.symbol(f"m{max(i, j)}{min(i, j)}") if i in ancestors[j] or j in ancestors[i] else 0 for j in range(n)]
-         for i in range(n)]  # fmt: skip
+    M = [
+        [g.symbol(f"m{max(i, j)}{min(i, j)}") if i in ancestors[j] or j in ancestors[i] else 0 for j in range(n)]
+        for i in range(n)
+    ]
     return M, [g.symbol(f"f{i}") for i in range(n)]
 
 
@@ -229,9 +231,11 @@ def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
     J, f, g = rng.normal(size=(rows, size)).tolist(), rng.normal(size=size).tolist(), rng.normal(size=rows).tolist()
     exact = fifty_digits().number(1)
     long = solve_bordered(
-        [[exact * x for x in row] for row in lower], [[exact * x for x in row] for row in J],
-        [exact * x for x in f], [exact * x for x in g],
-    )  # fmt: skip
+        [[exact * x for x in row] for row in lower],
+        [[exact * x for x in row] for row in J],
+        [exact * x for x in f],
+        [exact * x for x in g],
+    )
     assert solve_bordered(lower, J, f, g) == pytest.approx([float(x) for x in long], rel=1e-13)
 
 

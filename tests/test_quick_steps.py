@@ -37,8 +37,11 @@ def test_steps_in_c_are_those_of_scipy(method, name):
         own.step(), other.step()
         assert own.t == pytest.approx(other.t, rel=1e-6) and own.nfev == other.nfev
         between = (other.t_old + other.t) / 2
-        for found, expected in ((own.y, other.y), (own.f, other.f),
-                                (own.dense_output()(between), other.dense_output()(between))):  # fmt: skip
+        for found, expected in (
+            (own.y, other.y),
+            (own.f, other.f),
+            (own.dense_output()(between), other.dense_output()(between)),
+        ):
             assert found == pytest.approx(expected, rel=1e-5, abs=1e-5 * np.max(np.abs(expected)))
     assert own.status == other.status and other.t > 0
 

@@ -32,9 +32,7 @@ from eomgen.symbolic.expressions import parse
 MODELS = Path(__file__).parent.parent / "models"
 UNPLACED = {"balancing_robot": "ahead", "delta_robot": "platform", "foucault_pendulum": "weight"}
 """Models with forces at no place, or bodies that nothing holds: reactions are refused, with what is to blame."""
-HELD = sorted(
-    path for path in MODELS.rglob("*.toml") if path.stem not in UNPLACED and not in_loads(eomgen.load(path))
-)
+HELD = sorted(path for path in MODELS.rglob("*.toml") if path.stem not in UNPLACED and not in_loads(eomgen.load(path)))
 
 
 def derived(name: str) -> Equations:

@@ -48,9 +48,13 @@ def test_every_model_of_the_gallery_loads(path):
 
 def test_an_error_is_told_as_the_style_asks():
     """file:line:column: what / source line / caret under the culprit inside the text / mend."""
-    text = HEAD.format(space="plane") + ARM.replace("bodies.arm", "bodies.forearm") + (
-        '[bodies.hand]\nshape = { kind = "particle", mass = 1 }\n'
-        'joint = { kind = "revolute", on = "forarm.end", angle = "q" }\n'
+    text = (
+        HEAD.format(space="plane")
+        + ARM.replace("bodies.arm", "bodies.forearm")
+        + (
+            '[bodies.hand]\nshape = { kind = "particle", mass = 1 }\n'
+            'joint = { kind = "revolute", on = "forarm.end", angle = "q" }\n'
+        )
     )
     with pytest.raises(ModelError) as caught:
         loads(text, name="models/robot.toml")
@@ -93,7 +97,10 @@ WRONG = {
     ),
     "nan": ("[parameters]\na = nan\n", "5:5: 'nan' is not a number that can be calculated with / "),
     "infinity in a text": ("[parameters]\na = '-inf'\n", "5:7: 'inf' is not a number that can be calculated with / "),
-    "zero radius": (BODY.format("disc", "mass = 1, radius = 0"), "5:45: 'radius' in the shape of body 'b' is zero: 0 / "),
+    "zero radius": (
+        BODY.format("disc", "mass = 1, radius = 0"),
+        "5:45: 'radius' in the shape of body 'b' is zero: 0 / ",
+    ),
     "negative length by a parameter": (
         "[parameters]\nl = -2\n" + BODY.format("rod", 'mass = 1, length = "l/2"'),
         "7:44: 'length' in the shape of body 'b' is negative: 'l/2' = -1 / ",
@@ -126,7 +133,7 @@ WRONG = {
         "5:1: speed 'w' has no 'rate' and no joint names it in 'omega' / give its 'rate', an expression in the rates",
     ),
     "a prime on a parameter": (
-        "[parameters]\na = 1\n[outputs]\no = \"a'\"\n",
+        '[parameters]\na = 1\n[outputs]\no = "a\'"\n',
         "7:6: a prime on what does not move: a' ('a' is a parameter) / write a",
     ),
     "a cycle of parameters": (
@@ -207,7 +214,8 @@ WRONG = {
         "10:1: friction needs sliding / slip = true, or leave 'friction' out",
     ),
     "a direction of length zero": (
-        BODY.format("particle", "mass = 1") + '[constraints.s]\nkind = "support"\npoint = "b.center"\nnormal = [0, 0]\n',
+        BODY.format("particle", "mass = 1")
+        + '[constraints.s]\nkind = "support"\npoint = "b.center"\nnormal = [0, 0]\n',
         "9:10: the normal of constraint 's': a direction cannot be zero / give a direction",
     ),
     "a direction that parameters make zero": (
@@ -221,8 +229,9 @@ WRONG = {
         "7:16: the start of coordinate 'q': 'asin' has no value here: math domain error / ",
     ),
     "a space joint in the plane": (
-        BODY.format("particle", "mass = 1") + "joint = { kind = 'spherical', orientation = 'zxz', angles = [0, 0, 0] }\n",
-        "6:18: a spherical joint needs space, but the model is in the plane / use \"revolute\", \"prismatic\" or \"free\"",
+        BODY.format("particle", "mass = 1")
+        + "joint = { kind = 'spherical', orientation = 'zxz', angles = [0, 0, 0] }\n",
+        '6:18: a spherical joint needs space, but the model is in the plane / use "revolute", "prismatic" or "free"',
     ),
 }
 
@@ -239,9 +248,15 @@ def test_a_ring_of_bodies_is_told_once():
     assert "bodies hang on one another in a ring: a -> b -> a" in only_problem(text)
 
 
-@pytest.mark.parametrize(("inertia", "possible"), [
-    ("[1, 2, 3]", True), ("[1, 2, 3.001]", False), ("[1, 1, 1, 0, 0, 0.5]", True), ("[1, 1, 1, 0.6, 0, 0]", False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("inertia", "possible"),
+    [
+        ("[1, 2, 3]", True),
+        ("[1, 2, 3.001]", False),
+        ("[1, 1, 1, 0, 0, 0.5]", True),
+        ("[1, 1, 1, 0.6, 0, 0]", False),
+    ],
+)
 def test_the_triangle_inequality_holds_for_principal_moments(inertia, possible):
     """I_1 <= I_2 + I_3, equality allowed: tr(I)/2 - I has no negative eigenvalue."""
     text = f'[coordinates]\nq = 0\n[bodies.b]\nmass = 1\ninertia = {inertia}\njoint = {{ kind = "revolute", angle = "q" }}\n'
@@ -252,10 +267,15 @@ def test_the_triangle_inequality_holds_for_principal_moments(inertia, possible):
         loads(HEAD.format(space="space") + text.replace("mass = 1", "mass = 1\nmeasured = true"))
 
 
-@pytest.mark.parametrize(("joint", "needed"), [
-    ('{ kind = "revolute", angle = "q" }', True), ('{ kind = "prismatic", axis = [1, 0], displacement = "q" }', False),
-    ('{ kind = "fixed", on = "arm" }', True), ('{ kind = "placed", at = ["q", 0], angle = 1 }', False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("joint", "needed"),
+    [
+        ('{ kind = "revolute", angle = "q" }', True),
+        ('{ kind = "prismatic", axis = [1, 0], displacement = "q" }', False),
+        ('{ kind = "fixed", on = "arm" }', True),
+        ('{ kind = "placed", at = ["q", 0], angle = 1 }', False),
+    ],
+)
 def test_an_inertia_is_needed_once_the_body_can_turn(joint, needed):
     """A body that turns, or hangs on one that does, has no inertia that may be left out."""
     text = ARM + f"[bodies.b]\nmass = 1\njoint = {joint}\n"
@@ -288,7 +308,9 @@ def test_a_key_given_twice_does_not_hide_the_rest():
 
 def test_text_that_is_not_toml_is_told_with_its_place():
     """An expression without quotes is the usual case."""
-    assert only_problem('[bodies.b.joint]\nkind = "revolute"\nangle = theta\n').startswith("6:9: not TOML: Invalid value")
+    assert only_problem('[bodies.b.joint]\nkind = "revolute"\nangle = theta\n').startswith(
+        "6:9: not TOML: Invalid value"
+    )
 
 
 def test_bytes_that_are_not_utf8_are_told_with_their_place():
@@ -301,10 +323,14 @@ def test_a_byte_order_mark_and_windows_line_ends_do_no_harm():
     assert loads(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode()) == loads(text)
 
 
-@pytest.mark.parametrize(("first", "told"), [
-    ("", "the file does not say that it is a model"), ("eomgen = 2\n", "version 2 of the model file is not known here"),
-    ("eomgen = true\n", "version true of the model file is not known here"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("first", "told"),
+    [
+        ("", "the file does not say that it is a model"),
+        ("eomgen = 2\n", "version 2 of the model file is not known here"),
+        ("eomgen = true\n", "version true of the model file is not known here"),
+    ],
+)
 def test_the_version_must_be_there_and_known(first, told):
     with pytest.raises(ModelError, match=told):
         loads(first + 'space = "plane"\n')
@@ -381,9 +407,55 @@ def test_any_value_in_any_place_gives_a_model_or_a_model_error(data):
         assert all(p.where for p in error.problems)
 
 
-NASTY = ['"', "'", "[", "]", "{", "}", "=", ".", "\n", "\\", '"""', "[[", "nan", "''", "#", "-", "^", "1e9", "\ufeff", "\0"]
+NASTY = [
+    '"',
+    "'",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ".",
+    "\n",
+    "\\",
+    '"""',
+    "[[",
+    "nan",
+    "''",
+    "#",
+    "-",
+    "^",
+    "1e9",
+    "\ufeff",
+    "\0",
+]
 VALUES = [
-    "0", "-1", '""', '"x"', "true", "[]", "[1]", "[[1]]", "{}", "{ a = 1 }", '{ kind = "rod" }', "2020-01-01", "nan",
-    "1e400", '"1/0"', '"a.b.c"', '"."', '"-"', '"t"', '"pi"', "[1, 2, 3, 4, 5, 6, 7]", '{ value = "x", unit = "deg" }',
-    '"sqrt(-1)"', '"log(0)"', '["", ""]', '"ground"', "[true]", '"theta = "',
-]  # fmt: skip
+    "0",
+    "-1",
+    '""',
+    '"x"',
+    "true",
+    "[]",
+    "[1]",
+    "[[1]]",
+    "{}",
+    "{ a = 1 }",
+    '{ kind = "rod" }',
+    "2020-01-01",
+    "nan",
+    "1e400",
+    '"1/0"',
+    '"a.b.c"',
+    '"."',
+    '"-"',
+    '"t"',
+    '"pi"',
+    "[1, 2, 3, 4, 5, 6, 7]",
+    '{ value = "x", unit = "deg" }',
+    '"sqrt(-1)"',
+    '"log(0)"',
+    '["", ""]',
+    '"ground"',
+    "[true]",
+    '"theta = "',
+]

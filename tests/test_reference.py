@@ -78,7 +78,6 @@ def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
     assert {name: a.message for name, a in eomgen.solve(model).items() if a.message} == {}
 
 
-
 @pytest.mark.parametrize("room", ROOMS)
 def test_the_reference_names_every_kind_with_exactly_its_fields(room):
     """| `kind` | its fields | ...: a kind or a field that is new, or gone, must be written down."""

@@ -185,8 +185,11 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
     """Q(theta) as printed = Q of the equations"""
     derived = equations(name)
     formulas = [f for f in step(derived.derivation, "work").statements if isinstance(f, Formula)]
-    total = [f.sides[1] for f in formulas if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q"
-             and f.sides[0].of == ""]  # fmt: skip
+    total = [
+        f.sides[1]
+        for f in formulas
+        if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q" and f.sides[0].of == ""
+    ]
     also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
     forces = generalized_forces(_printed_system(derived).loads)
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
@@ -255,17 +258,25 @@ def test_the_payload_reads_back_as_the_equations(name):
     pairs = [
         (read_back(text, derived, also), x)
         for key, rows in (("kinematic_matrix", graph.N), ("mass_matrix", graph.M), ("constraint_jacobian", graph.J))
-        for texts, row in zip(data[key], rows, strict=True) for text, x in zip(texts, row, strict=True)
-    ]  # fmt: skip
-    for key, vector in (("kinematic_bias", graph.nu), ("forcing", graph.forcing), ("velocity_bias", graph.sigma),
-                        ("constraint_bias", graph.gamma), ("gaps", graph.phi)):  # fmt: skip
+        for texts, row in zip(data[key], rows, strict=True)
+        for text, x in zip(texts, row, strict=True)
+    ]
+    for key, vector in (
+        ("kinematic_bias", graph.nu),
+        ("forcing", graph.forcing),
+        ("velocity_bias", graph.sigma),
+        ("constraint_bias", graph.gamma),
+        ("gaps", graph.phi),
+    ):
         texts = data[key]
         assert [text is None for text in texts] == [x is None for x in vector]
         pairs += [(read_back(t, derived, also), x) for t, x in zip(texts, vector, strict=True) if t is not None]
     pairs += [(read_back(data["kinetic_energy"], derived, also), graph.T)]
     pairs += [(read_back(data["potential_energy"], derived, also), graph.V)]
-    pairs += [(read_back(data["generalized_forces"][u], derived, also), Q)
-              for u, Q in zip(data["speeds"], graph.Q, strict=True)]  # fmt: skip
+    pairs += [
+        (read_back(data["generalized_forces"][u], derived, also), Q)
+        for u, Q in zip(data["speeds"], graph.Q, strict=True)
+    ]
     for equation, residual in zip(data["equations"], residuals(derived), strict=True):
         left, right = equation.split(" = ")
         pairs.append((read_back(left, derived, also) - read_back(right, derived, also), residual))
@@ -414,8 +425,22 @@ def test_json_steps_carry_every_formula_as_text():
     data = json.loads(rendered(equations("ch22_p1").derivation, "json"))
     assert data["schema_version"] == 1 and data["method"] == "lagrange"
     keys = [part["key"] for part in data["steps"]]
-    assert keys == ["data", "freedom", "coordinates", "positions", "velocities", "constraints", "kinetic_energy",
-                    "work", "derivatives", "equations", "solved", "integrals", "reactions", "notation"]  # fmt: skip
+    assert keys == [
+        "data",
+        "freedom",
+        "coordinates",
+        "positions",
+        "velocities",
+        "constraints",
+        "kinetic_energy",
+        "work",
+        "derivatives",
+        "equations",
+        "solved",
+        "integrals",
+        "reactions",
+        "notation",
+    ]
     equation = data["equations"][0]
     assert equation["divisor"] == "3*M*R" and equation["right"] == "2*g*sin(theta)"
 

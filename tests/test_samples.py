@@ -106,8 +106,10 @@ def test_many_samples_stay_short_and_right():
     assert max(c.denominator.bit_length() for piece in spline.pieces for c in piece) < 2000
     bend = spline.derivative().derivative()
     size = max(abs(bend.at(t)) for t in times)
-    assert all(abs(_polynomial(bend, k, times[k]) - _polynomial(bend, k + 1, times[k])) < size / 10**60
-               for k in range(1, len(times) - 1))  # fmt: skip
+    assert all(
+        abs(_polynomial(bend, k, times[k]) - _polynomial(bend, k + 1, times[k])) < size / 10**60
+        for k in range(1, len(times) - 1)
+    )
 
 
 @pytest.mark.parametrize("pi_power", [0, 1, -1])
@@ -124,8 +126,9 @@ def test_every_scalar_gives_the_same_value(pi_power):
         assert evaluate((x,), {t: float(at)}, FLOAT)[0] == pytest.approx(float(exact), rel=1e-12)
         digits = fifty_digits()
         assert float(evaluate((x,), {t: digits.number(at)}, digits)[0]) == pytest.approx(float(exact), rel=1e-12)
-        assert float(form.subs("t", at) if not form.free_symbols else form.subs(
-            {symbol: at for symbol in form.free_symbols})) == pytest.approx(float(exact), rel=1e-12)
+        assert float(
+            form.subs("t", at) if not form.free_symbols else form.subs({symbol: at for symbol in form.free_symbols})
+        ) == pytest.approx(float(exact), rel=1e-12)
 
 
 # -- in models ------------------------------------------------------------------------------------
@@ -143,11 +146,11 @@ def test_the_drive_of_a_sampled_motion_is_that_of_the_motion():
 
 
 LAWS = {
-    "motion": "{ motion = { samples = [[0, 10], [0.5, 20], [1, 15], [2, 40]] }, unit = \"deg\" }",
-    "rate": "{ rate = { samples = [[0, 1], [0.5, 2], [2, -1]], between = \"linear\" }, start = 0.2 }",
-    "acceleration": "{ acceleration = { samples = [[0, 1], [0.5, 2], [2, -1]], between = \"steps\" }, speed = 0.3 }",
-    "degrees": "{ acceleration = { samples = [[0, 90], [2, 30]] }, start = 30, speed = 60, unit = \"deg\" }",
-}  # fmt: skip
+    "motion": '{ motion = { samples = [[0, 10], [0.5, 20], [1, 15], [2, 40]] }, unit = "deg" }',
+    "rate": '{ rate = { samples = [[0, 1], [0.5, 2], [2, -1]], between = "linear" }, start = 0.2 }',
+    "acceleration": '{ acceleration = { samples = [[0, 1], [0.5, 2], [2, -1]], between = "steps" }, speed = 0.3 }',
+    "degrees": '{ acceleration = { samples = [[0, 90], [2, 30]] }, start = 30, speed = 60, unit = "deg" }',
+}
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -264,16 +267,16 @@ def test_a_file_without_samples_is_refused(tmp_path, text, what):
         ("{ motion = { samples = [[0, 1]] } }", "a list of 2 to 10000 samples is needed here, not 1"),
         ("{ motion = { samples = [[0, 1], [0, 2]] } }", "the times of samples ascend, but 0 comes after 0"),
         ("{ motion = { samples = [[0, 1], [1]] } }", "a time and a value are needed here"),
-        ("{ motion = { samples = [[0, 1], [1, \"m\"]] } }", "unknown name 'm'"),
+        ('{ motion = { samples = [[0, 1], [1, "m"]] } }', "unknown name 'm'"),
         ("{ motion = { samples = [[0, 1], [1, nan]] } }", "nan"),
-        ("{ motion = { samples = [[0, 1], [1, 2]], between = \"linear\" } }", "unknown word 'linear'"),
-        ("{ rate = { samples = [[0, 1], [1, 2]], between = \"steps\" } }", "unknown word 'steps'"),
-        ("{ rate = { samples = [[0, 1], [1, 2]], between = \"linear\", ends = \"rest\" } }", "'ends' is for cubics"),
-        ("{ motion = { samples = [[0, 1], [1, 2]], end = \"rest\" } }", "unknown key 'end'"),
+        ('{ motion = { samples = [[0, 1], [1, 2]], between = "linear" } }', "unknown word 'linear'"),
+        ('{ rate = { samples = [[0, 1], [1, 2]], between = "steps" } }', "unknown word 'steps'"),
+        ('{ rate = { samples = [[0, 1], [1, 2]], between = "linear", ends = "rest" } }', "'ends' is for cubics"),
+        ('{ motion = { samples = [[0, 1], [1, 2]], end = "rest" } }', "unknown key 'end'"),
         ("{ motion = { samples = 3 } }", "a list of 2 to 10000 samples is needed here, not 3"),
         ("{ start = { samples = [[0, 1], [1, 2]] } }", "unknown key 'samples'"),
     ],
-)  # fmt: skip
+)
 def test_samples_that_cannot_be_meant_are_refused_where_they_stand(law, what):
     with pytest.raises(ModelError, match=what) as caught:
         arm(law)

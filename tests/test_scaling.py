@@ -15,8 +15,9 @@ from eomgen.symbolic.text import to_text
 
 def values(scalars):
     number = fifty_digits().number
-    return evaluate(scalars, {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))},
-                    fifty_digits())  # fmt: skip
+    return evaluate(
+        scalars, {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))}, fifty_digits()
+    )
 
 
 def test_a_product_is_a_number_times_powers():

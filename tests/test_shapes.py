@@ -75,9 +75,13 @@ def moment_tensor(m, measure, integral):
 
 
 SECOND = (
-    lambda x, y, z: x * x, lambda x, y, z: y * y, lambda x, y, z: z * z,
-    lambda x, y, z: x * y, lambda x, y, z: y * z, lambda x, y, z: z * x,
-)  # fmt: skip
+    lambda x, y, z: x * x,
+    lambda x, y, z: y * y,
+    lambda x, y, z: z * z,
+    lambda x, y, z: x * y,
+    lambda x, y, z: y * z,
+    lambda x, y, z: z * x,
+)
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
@@ -100,11 +104,14 @@ def test_an_inertia_is_symmetric_and_obeys_the_triangle_inequality(cls):
     assert xx <= yy + zz and yy <= zz + xx and zz <= xx + yy
 
 
-@pytest.mark.parametrize(("shape", "radius_at"), [
-    (Cone(**EXAMPLES["cone"]), lambda z: 0.5 * (1.5 - z) / 2),  # base at -h/4, apex at 3h/4
-    (Sphere(**EXAMPLES["sphere"]), lambda z: max(0.0, 0.25 - z * z) ** 0.5),
-    (Cylinder(**EXAMPLES["cylinder"]), lambda z: 0.5),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("shape", "radius_at"),
+    [
+        (Cone(**EXAMPLES["cone"]), lambda z: 0.5 * (1.5 - z) / 2),  # base at -h/4, apex at 3h/4
+        (Sphere(**EXAMPLES["sphere"]), lambda z: max(0.0, 0.25 - z * z) ** 0.5),
+        (Cylinder(**EXAMPLES["cylinder"]), lambda z: 0.5),
+    ],
+)
 def test_round_solids_agree_with_the_integral_over_their_volume(shape, radius_at):
     """I = (m / V) times the integral of (r.r 1 - r r^T) dV about the origin, which is the mass centre."""
     low, high = {"cone": (-0.5, 1.5), "sphere": (-0.5, 0.5), "cylinder": (-1.0, 1.0)}[shape.kind]
@@ -114,7 +121,7 @@ def test_round_solids_agree_with_the_integral_over_their_volume(shape, radius_at
 
         return tplquad(
             lambda a, r, z: r * f(r * cos(a), r * sin(a), z), low, high, 0, radius_at, 0, 2 * pi, epsabs=1e-8
-        )[0]  # fmt: skip
+        )[0]
 
     volume = integral(lambda x, y, z: 1.0)
     assert integral(lambda x, y, z: z) == pytest.approx(0, abs=1e-7)
@@ -181,8 +188,10 @@ def turned_about_z(profile):
 def around(r, z, weight):
     """Rings of the radius r at the height z: second moments of a whole turn."""
     m = weight.sum()
-    return m, (0, 0, (weight * z).sum() / m), np.diag(
-        [(weight * r * r).sum() / 2, (weight * r * r).sum() / 2, (weight * z * z).sum()]
+    return (
+        m,
+        (0, 0, (weight * z).sum() / m),
+        np.diag([(weight * r * r).sum() / 2, (weight * r * r).sum() / 2, (weight * z * z).sum()]),
     )
 
 

@@ -105,9 +105,13 @@ def test_the_gap_of_a_tie_is_reported():
     p = [1.0, 1.0, 9.81]
     gaps = compiled(program_of(assembly.phi, assembly.symbols), "numpy")
     result = integrate(
-        rhs_of(assembly), time=2.0, x0=[0.6, -0.8, 0, 0], p=p, gaps=lambda t, x: gaps.many(t, x, p),
+        rhs_of(assembly),
+        time=2.0,
+        x0=[0.6, -0.8, 0, 0],
+        p=p,
+        gaps=lambda t, x: gaps.many(t, x, p),
         energy=energy_of(assembly, p),
-    )  # fmt: skip
+    )
     assert result.ok and 0 < result.gap < 1e-7 and result.drift < 1e-7
     assert "Ties open by at most" in result.summary()
 
@@ -196,7 +200,7 @@ def test_a_run_is_carried_across_a_change_point():
     with pytest.warns(RuntimeWarning, match="Statically indeterminate"):
         result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=0.3, target="numpy")
     assert result.ok and result.drift < 1e-6
-    (start, end), = result.passages
+    ((start, end),) = result.passages
     assert 0.24 < start < end < 0.25 and result["a"][-1] < 0
     assert result["b"] == pytest.approx(result["a"], abs=1e-7)
 
@@ -301,9 +305,14 @@ def test_a_condition_may_ask_for_a_reaction():
     assert -found["y"][-1] == pytest.approx(2 / 3, abs=1e-8)
 
 
-@pytest.mark.parametrize(("until", "message"), [
-    ("thta = 1", "unknown name 'thta'"), ("theta1", "is no equation"), ("theta1 = = 2", "until 'theta1 = = 2'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("until", "message"),
+    [
+        ("thta = 1", "unknown name 'thta'"),
+        ("theta1", "is no equation"),
+        ("theta1 = = 2", "until 'theta1 = = 2'"),
+    ],
+)
 def test_a_condition_that_makes_no_sense_is_refused(until, message):
     with pytest.raises(UsageError, match=message):
         eomgen.simulate(eomgen.load(MODELS / "double_pendulum.toml"), time=1, until=until)

@@ -161,9 +161,14 @@ def test_a_tree_of_twenty_bodies_in_space_is_cut_and_runs():
         on = f'on = "b{(2 * i) // 3}.end", ' if i else ""
         axis = ([1, 0, 0], [0, 1, 0], [1, 2, 2])[i % 3]
         drive = ', torque = "F"' if i == 12 else ""
-        text += [f"[bodies.b{i}]", f"mass = {1 + i % 3}", 'center = [0.02, 0, "l/2"]', "inertia = [0.02, 0.03, 0.01]",
-                 'points = { end = [0, 0, "l"] }',
-                 f'joint = {{ kind = "revolute", {on}axis = {axis}, angle = "q{i}"{drive} }}']  # fmt: skip
+        text += [
+            f"[bodies.b{i}]",
+            f"mass = {1 + i % 3}",
+            'center = [0.02, 0, "l/2"]',
+            "inertia = [0.02, 0.03, 0.01]",
+            'points = { end = [0, 0, "l"] }',
+            f'joint = {{ kind = "revolute", {on}axis = {axis}, angle = "q{i}"{drive} }}',
+        ]
     text += ["[forces.weight]", 'kind = "gravity"', 'acceleration = [0, 0, "-g"]']
     equations = eomgen.derive(eomgen.loads("\n".join(text)))
     assert parts_of(layout(equations.program)).all

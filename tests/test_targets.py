@@ -272,10 +272,17 @@ def reactions_written(tmp_path, target):
     equations = eomgen.derive(eomgen.load(MODELS / "double_pendulum.toml"))
     names, reactions = equations.reactions_program
     description = Description("Double pendulum", "made by eomgen", {}, vectors(equations.program, seed=2))
-    told = replace(description, vectors=vectors(reactions), role=REACTIONS, outputs=names,
-                   remarks=dict.fromkeys(names, "[N]"))  # fmt: skip
-    return write_files("double_pendulum", equations.program, description, target=target, directory=tmp_path,
-                       reactions=(reactions, told))  # fmt: skip
+    told = replace(
+        description, vectors=vectors(reactions), role=REACTIONS, outputs=names, remarks=dict.fromkeys(names, "[N]")
+    )
+    return write_files(
+        "double_pendulum",
+        equations.program,
+        description,
+        target=target,
+        directory=tmp_path,
+        reactions=(reactions, told),
+    )
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -32,7 +32,9 @@ def turned(angle, x, y):
     return cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 M = 3
 m = 1.5
@@ -52,7 +54,9 @@ ay = "ay(swing.center)"
 p = "momentum(theta)"
 P = "power(weight)"
 Q = "generalized_force(r)"
-""" + WEIGHT)  # fmt: skip
+"""
+    + WEIGHT,
+)
 def swinging_atwood(f: Frame) -> Book:
     """Tufillaro, Abbott & Griffiths, Am. J. Phys. 52 (1984) 895."""
     r, theta, (M, m, g) = f.q["r"], f.q["theta"], f.p.values()
@@ -62,7 +66,9 @@ def swinging_atwood(f: Frame) -> Book:
     return Book(T, V, outputs=outputs | {"Q": -V.diff(r)})
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 m = 1
 l = "1/2"
@@ -81,7 +87,9 @@ joint = { kind = "revolute", on = "pivot", angle = "phi", point = "top" }
 vy = "vy(bob.center)"
 ay = "ay(bob.center)"
 seen = "speed(bob.center, pivot)"
-""" + WEIGHT)  # fmt: skip
+"""
+    + WEIGHT,
+)
 def kapitza(f: Frame) -> Book:
     """The pendulum with a vibrated pivot: Landau & Lifshitz, Mechanics, sec. 5, problem 3c."""
     phi, (m, l, a, Om, g) = f.q["phi"], f.p.values()
@@ -90,7 +98,9 @@ def kapitza(f: Frame) -> Book:
     return Book(m / 2 * f.square(x, y), m * g * y, outputs=outputs)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 m = 1
 l = 1
@@ -119,7 +129,9 @@ length = "b"
 kind = "damper"
 points = ["left.hook", "right.hook"]
 damping = "c"
-""" + WEIGHT)  # fmt: skip
+"""
+    + WEIGHT,
+)
 def coupled_pendulums(f: Frame) -> Book:
     """Two rods, a spring and a damper between them, at large angles."""
     alpha, beta, (m, l, h, b, k, c, g) = f.q["alpha"], f.q["beta"], f.p.values()
@@ -129,7 +141,9 @@ def coupled_pendulums(f: Frame) -> Book:
     return Book(T, V, c / 2 * f.rate(stretch) ** 2)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 r = 0.3
 l = 1
@@ -152,7 +166,9 @@ joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F" }
 [constraints.wrist]
 kind = "pin"
 points = ["rod.end", "piston.center"]
-""" + WEIGHT)  # fmt: skip
+"""
+    + WEIGHT,
+)
 def slider_crank(f: Frame) -> Book:
     """Three coordinates and one loop."""
     theta, psi, x, (r, l, g, F) = *f.q.values(), f.p.values()
@@ -163,7 +179,9 @@ def slider_crank(f: Frame) -> Book:
     return Book(T + f.u["x"] ** 2 / 2, V, Q={"x": F}, phi=phi)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 a = 1
 L = 3
@@ -180,14 +198,27 @@ y4 = 0.5
 [bodies.crank]
 shape = { kind = "rod", mass = 2, length = "a" }
 joint = { kind = "revolute", at = ["a", 0], angle = "phi" }
-""" + "".join(
-    f'[bodies.P{k}]\nshape = {{ kind = "particle", mass = 1 }}\njoint = {{ kind = "placed", at = ["x{k}", "y{k}"] }}\n'
-    for k in (2, 3, 4)
-) + "".join(f'[constraints.rod{k}]\nkind = "equation"\ngap = "{gap}"\n' for k, gap in enumerate((
-    "x2^2 + y2^2 - L^2", "x3^2 + y3^2 - L^2", "(x2 - a - a*cos(phi))^2 + (y2 - a*sin(phi))^2 - b^2",
-    "(x3 - a - a*cos(phi))^2 + (y3 - a*sin(phi))^2 - b^2", "(x4 - x2)^2 + (y4 - y2)^2 - b^2",
-    "(x4 - x3)^2 + (y4 - y3)^2 - b^2",
-))) + WEIGHT)  # fmt: skip
+"""
+    + "".join(
+        f'[bodies.P{k}]\nshape = {{ kind = "particle", mass = 1 }}\n'
+        f'joint = {{ kind = "placed", at = ["x{k}", "y{k}"] }}\n'
+        for k in (2, 3, 4)
+    )
+    + "".join(
+        f'[constraints.rod{k}]\nkind = "equation"\ngap = "{gap}"\n'
+        for k, gap in enumerate(
+            (
+                "x2^2 + y2^2 - L^2",
+                "x3^2 + y3^2 - L^2",
+                "(x2 - a - a*cos(phi))^2 + (y2 - a*sin(phi))^2 - b^2",
+                "(x3 - a - a*cos(phi))^2 + (y3 - a*sin(phi))^2 - b^2",
+                "(x4 - x2)^2 + (y4 - y2)^2 - b^2",
+                "(x4 - x3)^2 + (y4 - y3)^2 - b^2",
+            )
+        )
+    )
+    + WEIGHT,
+)
 def peaucellier(f: Frame) -> Book:
     """Peaucellier's straight-line linkage: a crank, three joints, six rods."""
     phi, (a, L, b, g) = f.q["phi"], f.p.values()
@@ -199,7 +230,9 @@ def peaucellier(f: Frame) -> Book:
     return Book(T, g * (a * sin(phi) + P[2][1] + P[3][1] + P[4][1]), phi=gaps)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 G = 1
 [coordinates]
@@ -209,14 +242,18 @@ x2 = -1
 y2 = 0
 x3 = 0
 y3 = 2
-""" + "".join(
-    f'[bodies.P{k}]\nshape = {{ kind = "particle", mass = {k} }}\n'
-    f'joint = {{ kind = "placed", at = ["x{k}", "y{k}"] }}\n'
-    for k in (1, 2, 3)
-) + "".join(
-    f'[forces.pull{i}{j}]\nkind = "between"\npoints = ["P{i}.center", "P{j}.center"]\npull = "{i * j}*G/r^2 + r\'/10"\n'
-    for i, j in ((1, 2), (2, 3), (3, 1))
-))  # fmt: skip
+"""
+    + "".join(
+        f'[bodies.P{k}]\nshape = {{ kind = "particle", mass = {k} }}\n'
+        f'joint = {{ kind = "placed", at = ["x{k}", "y{k}"] }}\n'
+        for k in (1, 2, 3)
+    )
+    + "".join(
+        f'[forces.pull{i}{j}]\nkind = "between"\n'
+        f'points = ["P{i}.center", "P{j}.center"]\npull = "{i * j}*G/r^2 + r\'/10"\n'
+        for i, j in ((1, 2), (2, 3), (3, 1))
+    ),
+)
 def three_bodies(f: Frame) -> Book:
     """Newton's attraction between three bodies, and a drag on the rates of their distances."""
     P = {k: (f.q[f"x{k}"], f.q[f"y{k}"]) for k in (1, 2, 3)}
@@ -227,7 +264,9 @@ def three_bodies(f: Frame) -> Book:
     return Book(sum(Rational(k, 2) * f.square(*P[k]) for k in P), V, D)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 m = 1
 e = 0.2
@@ -246,7 +285,9 @@ v = "speed(block.center)"
 ay = "ay(block.center)"
 w = "omega(table)"
 epsilon = "epsilon(table)"
-""", phi=1 + t**2 + sin(t))  # fmt: skip
+""",
+    phi=1 + t**2 + sin(t),
+)
 def groove_in_a_turning_table(f: Frame) -> Book:
     """Relative motion on a table whose angular acceleration is given: Euler's, Coriolis' and centrifugal terms."""
     s, phi, (m, e) = f.q["s"], f.q["phi"], f.p.values()
@@ -255,7 +296,9 @@ def groove_in_a_turning_table(f: Frame) -> Book:
     return Book(m / 2 * f.square(x, y), outputs=outputs | {"w": 1 + t**2 + sin(t), "epsilon": 2 * t + cos(t)})
 
 
-@system("space", """
+@system(
+    "space",
+    """
 [parameters]
 m = 2
 l = 10
@@ -286,7 +329,9 @@ axes = "laboratory"
 [outputs]
 seen = "speed(bob.center, laboratory)"
 v = "speed(bob.center)"
-""", day=sympy.Symbol("p_Om"))  # fmt: skip
+""",
+    day=sympy.Symbol("p_Om"),
+)
 def foucault(f: Frame) -> Book:
     """Foucault's pendulum: the laboratory turns with the earth, the weight with the laboratory."""
     x, y, day, (m, l, _, lat, Re, g) = f.q["x"], f.q["y"], f.q["day"], f.p.values()
@@ -298,7 +343,9 @@ def foucault(f: Frame) -> Book:
     return Book(m / 2 * f.square(*place), Q=Q, outputs=outputs)
 
 
-@system("space", """
+@system(
+    "space",
+    """
 [parameters]
 m = 2
 l = 1.5
@@ -318,7 +365,9 @@ force = ["-k*l*(theta'*cos(theta)*cos(phi) - phi'*sin(theta)*sin(phi))", 0, 0]
 taken = "power(wind)"
 Q = "generalized_force(phi)"
 P = "power()"
-""" + WEIGHT_IN_SPACE)  # fmt: skip
+"""
+    + WEIGHT_IN_SPACE,
+)
 def spherical_pendulum_in_wind(f: Frame) -> Book:
     """A drag along x on a spherical pendulum: its power, and what it does to each coordinate."""
     theta, phi, (m, l, g, k) = f.q["theta"], f.q["phi"], f.p.values()
@@ -329,7 +378,9 @@ def spherical_pendulum_in_wind(f: Frame) -> Book:
     return Book(m / 2 * f.square(x, y, z), m * g * z, Q=Q, outputs=outputs)
 
 
-@system("plane", """
+@system(
+    "plane",
+    """
 [parameters]
 g = 9.81
 k = 3
@@ -366,7 +417,10 @@ axes = "plate"
 kind = "couple"
 body = "plate"
 couple = "x*t - 0.1*f'"
-""" + WEIGHT, s=2 * t / 5 + cos(t))  # fmt: skip
+"""
+    + WEIGHT,
+    s=2 * t / 5 + cos(t),
+)
 def plate_on_a_driven_cart(f: Frame) -> Book:
     """A free plate on a slanted cart that is driven, with forces in the axes of either and a spring from its start."""
     s, x, y, angle, (g, k) = f.q["s"], f.q["x"], f.q["y"], f.q["f"], f.p.values()
@@ -392,7 +446,9 @@ def plate_on_a_driven_cart(f: Frame) -> Book:
     return Book(T, V, Q=Q)
 
 
-@system("space", """
+@system(
+    "space",
+    """
 [parameters]
 A = 0.5
 C = 0.9
@@ -420,7 +476,8 @@ spin = "momentum(phi)"
 wx = "omega_x(rotor)"
 ez = "epsilon_z(rotor)"
 seen = "omega_z(rotor, inner)"
-""")  # fmt: skip
+""",
+)
 def gyroscope_in_gimbals(f: Frame) -> Book:
     """T by Euler's angles zxz; C (phi' + psi' cos theta) is the spin that stays."""
     psi, theta = f.q["psi"], f.q["theta"]

@@ -21,9 +21,15 @@ Emitted = tuple[Program, Description]
 
 
 def write_files(
-    name: str, program: Program, description: Description, *, target: str, directory: Path,
-    reactions: Emitted | None = None, inverse: Emitted | None = None,
-) -> list[Path]:  # fmt: skip
+    name: str,
+    program: Program,
+    description: Description,
+    *,
+    target: str,
+    directory: Path,
+    reactions: Emitted | None = None,
+    inverse: Emitted | None = None,
+) -> list[Path]:
     """Write NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
 
     Args:
@@ -72,8 +78,11 @@ def vectors_text(
         names = json.dumps(list(reactions[1].outputs), ensure_ascii=False)
         lines += [' "reactions": {', f'  "names": {names},', *_listed(reactions[1], "  "), " },"]
     if inverse is not None:
-        own = {"names": inverse[1].outputs, "accelerations": [x.name for x in inverse[0].accelerations],
-               "inputs": list(inverse[0].symbols.inputs)}  # fmt: skip
+        own = {
+            "names": inverse[1].outputs,
+            "accelerations": [x.name for x in inverse[0].accelerations],
+            "inputs": list(inverse[0].symbols.inputs),
+        }
         told = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
         lines += [' "inverse": {', *told, *_listed(inverse[1], "  "), " },"]
     return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
@@ -83,10 +92,17 @@ def _listed(description: Description, indent: str) -> list[str]:
     """The vectors, a line each."""
     result = description.role.result
     rows = [
-        {"t": v.t, "x": v.x, **({"a": v.a} if v.a else {}), "p": v.p, "inputs": v.inputs, result: v.result,
-         "tolerance": v.tolerance}
+        {
+            "t": v.t,
+            "x": v.x,
+            **({"a": v.a} if v.a else {}),
+            "p": v.p,
+            "inputs": v.inputs,
+            result: v.result,
+            "tolerance": v.tolerance,
+        }
         for v in description.vectors
-    ]  # fmt: skip
+    ]
     listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
     return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]
 

@@ -71,8 +71,13 @@ class InverseDynamics:
         """tau as a straight-line program: the recursion, and where ties close one solve."""
         symbols = self.graph.system.symbols
         own = {name: node for name, node in symbols.inputs.items() if name in self.graph.inputs}
-        return program_of(self.graph.tau, replace(symbols, inputs=own), inputs=self.graph.inputs,
-                          solve=_least(self.graph), accelerations=symbols.a)  # fmt: skip
+        return program_of(
+            self.graph.tau,
+            replace(symbols, inputs=own),
+            inputs=self.graph.inputs,
+            solve=_least(self.graph),
+            accelerations=symbols.a,
+        )
 
     def function(self, target: str | None = None) -> InverseFunction:
         """`inverse(t, x, a, p, inputs=())`; the target as of `Equations.rhs`."""

@@ -224,5 +224,3 @@ def _dot(a: Six, b: Six) -> Scalar:
 
 def _turn(branch: Branch, a: Vector) -> Vector:
     return a if branch.E is IDENTITY else apply(branch.E, a)
-
-

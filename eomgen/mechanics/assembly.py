@@ -49,14 +49,23 @@ class Assembly:
     friction: Row = ()
 
 
-def assembled(
-    system: System, *, M: tuple[Row, ...], c: Row, Q: Row, T: Scalar, forcing: Row | None = None
-) -> Assembly:
+def assembled(system: System, *, M: tuple[Row, ...], c: Row, Q: Row, T: Scalar, forcing: Row | None = None) -> Assembly:
     """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
     scope, ties = system.scope, system.ties
     if forcing is None:
         forcing = tuple(force - inertia for force, inertia in zip(Q, c, strict=True))
     return Assembly(
-        system.symbols, scope.N, scope.nu, M, c, Q, forcing,
-        ties.J, ties.sigma, ties.gamma, ties.phi, T, system.loads.potential_energy,
-    )  # fmt: skip
+        system.symbols,
+        scope.N,
+        scope.nu,
+        M,
+        c,
+        Q,
+        forcing,
+        ties.J,
+        ties.sigma,
+        ties.gamma,
+        ties.phi,
+        T,
+        system.loads.potential_energy,
+    )

@@ -76,9 +76,13 @@ def _unit(k: int, size: int) -> tuple[int, ...]:
 
 
 def _rates_solved(
-    scope: Scope, declared: Sequence[str], replaced: Sequence[Node], place: dict[str, int],
-    vanishes: Callable[[Scalar], bool], shorter: Callable[[Scalar], Scalar],
-) -> tuple[Rows, tuple[Solved, ...]]:  # fmt: skip
+    scope: Scope,
+    declared: Sequence[str],
+    replaced: Sequence[Node],
+    place: dict[str, int],
+    vanishes: Callable[[Scalar], bool],
+    shorter: Callable[[Scalar], Scalar],
+) -> tuple[Rows, tuple[Solved, ...]]:
     """u = Y^-1 (w - y) of the rates that stand in declared speeds, by determinants."""
     formulas = tuple(scope.names[name] for name in declared)
     Y = jacobian(formulas, replaced)

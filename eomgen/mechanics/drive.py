@@ -41,8 +41,10 @@ def drive(system: System, coordinate: str) -> Scalar:
     if not part.driven and ties:
         return sum((multiplier(system, tie) for tie in ties), start=0)
     if not part.driven:
-        raise DerivationError(f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
-                              mend="ask it of a coordinate with `motion`, `rate` or `acceleration`")  # fmt: skip
+        raise DerivationError(
+            f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
+            mend="ask it of a coordinate with `motion`, `rate` or `acceleration`",
+        )
     freed = altered(part, motion=None, rate=None, acceleration=None)
     free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
     assembly = recursive.assemble(free)

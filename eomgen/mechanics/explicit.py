@@ -1,6 +1,6 @@
 """Assembly -> accelerations and multipliers as expressions, by determinants: the shortest formulas of small systems.
 
-    M a - J^T lam = forcing,   J a = -gamma
+M a - J^T lam = forcing,   J a = -gamma
 """
 
 from __future__ import annotations

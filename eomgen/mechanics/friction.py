@@ -65,8 +65,10 @@ def with_friction(system: System, assembly: Assembly) -> Assembly:
         return assembly
     rubbing = _Rubbing(system, assembly)
     a, forces = rubbing.accelerations, rubbing.normals
-    friction = tuple(sum((rub.force[k] * N for rub, N in zip(rubbing.found, forces, strict=True)), start=0)
-                     for k in range(len(assembly.M)))  # fmt: skip
+    friction = tuple(
+        sum((rub.force[k] * N for rub, N in zip(rubbing.found, forces, strict=True)), start=0)
+        for k in range(len(assembly.M))
+    )
     return replace(
         assembly,
         Q=tuple(x + f for x, f in zip(assembly.Q, friction, strict=True)),
@@ -172,8 +174,11 @@ class _Rubbing:
     def _sizes(self) -> dict[Node, Scalar]:
         """|N| of what holds on all sides, by its symbol."""
         known = dict(zip(self.system.symbols.a, self._values, strict=False))
-        pairs = {self._symbols[rub.name]: tuple(self._component(rub.name, j, known) for j in rub.normals)
-                 for rub in self.found if rub.normals}  # fmt: skip
+        pairs = {
+            self._symbols[rub.name]: tuple(self._component(rub.name, j, known) for j in rub.normals)
+            for rub in self.found
+            if rub.normals
+        }
         entries = [N for pair in pairs.values() for N in pair]
         values = values_at_a_state(self.system, substituted(entries, dict.fromkeys(pairs, 0)))
         return sizes(pairs, values)

@@ -66,8 +66,10 @@ class Inverse:
         if not self.unknowns:
             return self.tau
         if len(self.rows) != len(self.unknowns):
-            raise DerivationError("tau has no single expression: ties that follow from others share their forces",
-                                  mend="take the generated code")  # fmt: skip
+            raise DerivationError(
+                "tau has no single expression: ties that follow from others share their forces",
+                mend="take the generated code",
+            )
         lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in self.rows]
         values = [x for (x,) in cramer.solved(lines, [(x,) for x in self.right])[0]]
         return substituted(self.tau, dict(zip(self.unknowns, values, strict=True)))
@@ -84,8 +86,10 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
         DerivationError: Coulomb friction; an input that does not act linearly.
     """
     if rubs(system):
-        raise DerivationError("inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
-                              mend="give the coordinates their `motion`, and ask for drive(...)")  # fmt: skip
+        raise DerivationError(
+            "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
+            mend="give the coordinates their `motion`, and ask for drive(...)",
+        )
     symbols, closing = system.symbols, system.symbols.lam
     if not symbols.u:
         raise UsageError("nothing is free to move: every motion is given", mend="ask for drive(...) of what is driven")
@@ -106,9 +110,12 @@ def residual(system: System) -> Row:
     motion, loads, a = system.motion, system.loads, system.symbols.a
     branches = branches_of(motion)
     forces = bias_forces(
-        branches, len(a),
-        base_acceleration=times(-1, loads.fields), applied=applied_wrenches(loads, branches), a=a,
-    )  # fmt: skip
+        branches,
+        len(a),
+        base_acceleration=times(-1, loads.fields),
+        applied=applied_wrenches(loads, branches),
+        a=a,
+    )
     rotors = armature_bias(motion, len(a))
     for i, j, value in armature_mass(motion):
         rotors[i] = rotors[i] + value * a[j]
@@ -131,8 +138,10 @@ def _columns(system: System, names: Sequence[str], needed: Row) -> tuple[Row, ..
         if name in symbols.inputs:
             known[name] = _column_of_input(name, symbols.inputs[name], needed)
         elif name not in known:
-            raise UsageError(f"there is no coordinate, speed, input or hinged body '{name}'",
-                             mend=nearest(name, [*known, *symbols.inputs]))  # fmt: skip
+            raise UsageError(
+                f"there is no coordinate, speed, input or hinged body '{name}'",
+                mend=nearest(name, [*known, *symbols.inputs]),
+            )
         elif all(is_zero(x) for x in known[name]):
             asked = name if name in scope.model.coordinates else "its coordinate"
             raise UsageError(f"'{name}' is driven: it takes what drive({asked}) says", mend=NAME)

@@ -163,8 +163,11 @@ class SystemScene:
     def angle(self, body: str) -> Scalar:
         angle = self.motion.link(body).angle
         if angle is None:
-            raise DerivationError(f"body '{body}' has no single angle in space", f"bodies.{body}",
-                                  "put the spring or damper into the joint")
+            raise DerivationError(
+                f"body '{body}' has no single angle in space",
+                f"bodies.{body}",
+                "put the spring or damper into the joint",
+            )
         return angle
 
     def angle_rate(self, body: str) -> Scalar:
@@ -180,8 +183,11 @@ class SystemScene:
         slopes = gradient(value, tuple(symbols.values()))
         linear = [k for k, at in enumerate(values.values()) if at is None]
         if any(depends_on(slopes[k], [tuple(symbols.values())[j]]) for k in linear for j in linear):
-            raise ModelError(f"'{law.text}' is not linear in the velocities", self.where,
-                             "write it as a sum of velocities, each times a function of the configuration")  # fmt: skip
+            raise ModelError(
+                f"'{law.text}' is not linear in the velocities",
+                self.where,
+                "write it as a sum of velocities, each times a function of the configuration",
+            )
         at = {symbol: 0 if (x := values[call]) is None else x for call, symbol in symbols.items()}
         found = substituted((value, *slopes), at)
         return found[0], found[1:]
@@ -203,8 +209,11 @@ class SystemScene:
         link = self.motion.link(body)
         turning = [(s, w) for s, (w, _) in zip(link.s, link.S, strict=False) if not all(map(is_zero, w))]
         if len(turning) != 1:
-            raise DerivationError(f"the joint of body '{body}' has no single angle", self.where,
-                                  "hang it on a revolute, cylindrical or screw joint")  # fmt: skip
+            raise DerivationError(
+                f"the joint of body '{body}' has no single angle",
+                self.where,
+                "hang it on a revolute, cylindrical or screw joint",
+            )
         parent = None if link.parent == GROUND else self.motion.links[link.parent].name
         return *turning[0], parent
 
@@ -332,8 +341,11 @@ def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
             continue
         drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
         if motion.moves((*link.before.p, *link.point)):
-            raise DerivationError("a joint with a drive, spring or damper sits at a place that moves in its body",
-                                  f"bodies.{link.name}.joint", "let another joint carry the motion of the seat")
+            raise DerivationError(
+                "a joint with a drive, spring or damper sits at a place that moves in its body",
+                f"bodies.{link.name}.joint",
+                "let another joint carry the motion of the seat",
+            )
         stretch = link.s[k] - scope.value(e.rest)
         stiffness = scope.value(e.stiffness)
         potential = Fraction(1, 2) * stiffness * stretch * stretch

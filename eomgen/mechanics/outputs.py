@@ -64,12 +64,28 @@ LINEARIZED = frozenset(("mass", "damping", "stiffness", "frequency"))
 """Functions of the linearized system, which is none of a state."""
 
 
-OF_MOTION = frozenset((
-    *(name for name, (n, _) in COMPONENTS.items() if n), *MAGNITUDES, *TURNING, *ALONG_THE_PATH, *PARTS_OF_MOTION,
-    *SIZES_OF_PARTS, "omega", "epsilon", "rotation_center_x", "rotation_center_y", "acceleration_pole_x",
-    "acceleration_pole_y", "least_speed", "kinetic_energy", "power", "angular_momentum_x", "angular_momentum_y",
-    "angular_momentum_z",
-))  # fmt: skip
+OF_MOTION = frozenset(
+    (
+        *(name for name, (n, _) in COMPONENTS.items() if n),
+        *MAGNITUDES,
+        *TURNING,
+        *ALONG_THE_PATH,
+        *PARTS_OF_MOTION,
+        *SIZES_OF_PARTS,
+        "omega",
+        "epsilon",
+        "rotation_center_x",
+        "rotation_center_y",
+        "acceleration_pole_x",
+        "acceleration_pole_y",
+        "least_speed",
+        "kinetic_energy",
+        "power",
+        "angular_momentum_x",
+        "angular_momentum_y",
+        "angular_momentum_z",
+    )
+)
 """Functions of velocities and accelerations."""
 
 
@@ -254,8 +270,10 @@ class Quantities:
             if sought in names and coordinate not in turning and not (part and part.dependent):
                 return system, names.index(sought)
         if coordinate in turning:
-            raise DerivationError(f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
-                                  mend="ask it of the speeds that the joint's `omega` names")  # fmt: skip
+            raise DerivationError(
+                f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
+                mend="ask it of the speeds that the joint's `omega` names",
+            )
         raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
 
     def _carried(self, system: System, scalar: Scalar) -> Scalar:

@@ -16,9 +16,10 @@ def positive_parameters(scope: Scope) -> frozenset[Node]:
     values = exact_parameters(model)
     sizes = _sizes(model)
     return frozenset(
-        node for name, node in symbols.parameters.items()
+        node
+        for name, node in symbols.parameters.items()
         if model.parameters[name].positive or (values[name] > 0 if name in values else name in sizes)
-    )  # fmt: skip
+    )
 
 
 def _sizes(model: Model) -> frozenset[str]:

@@ -49,22 +49,20 @@ def inertia_wrench(body: Moments, acc: Vector, U: Matrix) -> Wrench:
     """Force m acc + U h and moment h x acc + vee(U J - J U^T) that the motion of a body takes."""
     J = body.J
     f = plus(times(body.m, acc), apply(U, body.h))
-    x = (
-        J[1][1] * U[2][1] - J[2][2] * U[1][2] + J[1][2] * (U[2][2] - U[1][1]) + J[0][1] * U[2][0] - J[0][2] * U[1][0]
-    )
-    y = (
-        J[2][2] * U[0][2] - J[0][0] * U[2][0] + J[0][2] * (U[0][0] - U[2][2]) + J[1][2] * U[0][1] - J[0][1] * U[2][1]
-    )
-    z = (
-        J[0][0] * U[1][0] - J[1][1] * U[0][1] + J[0][1] * (U[1][1] - U[0][0]) + J[0][2] * U[1][2] - J[1][2] * U[0][2]
-    )
+    x = J[1][1] * U[2][1] - J[2][2] * U[1][2] + J[1][2] * (U[2][2] - U[1][1]) + J[0][1] * U[2][0] - J[0][2] * U[1][0]
+    y = J[2][2] * U[0][2] - J[0][0] * U[2][0] + J[0][2] * (U[0][0] - U[2][2]) + J[1][2] * U[0][1] - J[0][1] * U[2][1]
+    z = J[0][0] * U[1][0] - J[1][1] * U[0][1] + J[0][1] * (U[1][1] - U[0][0]) + J[0][2] * U[1][2] - J[1][2] * U[0][2]
     return Wrench(plus(cross(body.h, acc), (x, y, z)), f)
 
 
 def bias_forces(
-    branches: tuple[Branch, ...], size: int, *, base_acceleration: Vector, applied: dict[int, Wrench],
+    branches: tuple[Branch, ...],
+    size: int,
+    *,
+    base_acceleration: Vector,
+    applied: dict[int, Wrench],
     a: Sequence[Scalar] = (),
-) -> list[Scalar]:  # fmt: skip
+) -> list[Scalar]:
     """Generalized forces that the motion takes: M a + c - Q of the wrenches, the ground accelerating up for weight.
 
     Args:
@@ -92,9 +90,7 @@ def carried(branch: Branch, wrench: Wrench) -> Wrench:
     return turned.moved(branch.p)
 
 
-def _inertia_wrenches(
-    branches: tuple[Branch, ...], base_acceleration: Vector, a: Sequence[Scalar]
-) -> list[Wrench]:
+def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector, a: Sequence[Scalar]) -> list[Wrench]:
     rates: list[Rates] = []
     accelerations: list[Vector] = []
     wrenches = []

@@ -105,8 +105,9 @@ def _solved(rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar]) -> list[S
         return []
     (first, *_), *_ = rows
     shares = [over(row[0], first) for row in rows[1:]]
-    below = [[x - k * y for x, y in zip(row[1:], rows[0][1:], strict=True)]
-             for k, row in zip(shares, rows[1:], strict=True)]  # fmt: skip
+    below = [
+        [x - k * y for x, y in zip(row[1:], rows[0][1:], strict=True)] for k, row in zip(shares, rows[1:], strict=True)
+    ]
     others = _solved(below, [b - k * right[0] for k, b in zip(shares, right[1:], strict=True)])
     return [over(right[0] - inner(rows[0][1:], others), first), *others]
 

@@ -185,9 +185,10 @@ def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
     F = primitive(f, t)
     if F is None:
         raise DerivationError(
-            "the given acceleration has no integral in closed form", where,
+            "the given acceleration has no integral in closed form",
+            where,
             "give the coordinate's `motion` or `rate` instead",
-        )  # fmt: skip
+        )
     return F - substituted((F,), {t: 0})[0]
 
 

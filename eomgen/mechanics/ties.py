@@ -122,9 +122,7 @@ class Ties:
         return tuple(row.gap for row in self.closing)
 
 
-def ties_of(
-    motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: Modes | None = None
-) -> Ties:
+def ties_of(motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: Modes | None = None) -> Ties:
     """The rows of every constraint of the model.
 
     Args:
@@ -187,9 +185,23 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
-    return Row(name, number, wrenches, direct, velocity, row.gap, status, row.component, row.pushes,
-               row.tangent, sliding, part=row.part, across=across, cross_tangent=row.cross_tangent,
-               round=row.round)  # fmt: skip
+    return Row(
+        name,
+        number,
+        wrenches,
+        direct,
+        velocity,
+        row.gap,
+        status,
+        row.component,
+        row.pushes,
+        row.tangent,
+        sliding,
+        part=row.part,
+        across=across,
+        cross_tangent=row.cross_tangent,
+        round=row.round,
+    )
 
 
 def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
@@ -252,8 +264,11 @@ def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
     """The row of an equation in the rates, which must be linear in them: J u + sigma = 0."""
     speeds = motion.scope.symbols.u
     if speeds and any(depends_on(entry, speeds) for row in jacobian((rate,), speeds) for entry in row):
-        raise ModelError(f"the rate of '{name}' is not linear in the rates", f"constraints.{name}.rate",
-                         "write it as a sum of rates, each times a function of the coordinates")  # fmt: skip
+        raise ModelError(
+            f"the rate of '{name}' is not linear in the rates",
+            f"constraints.{name}.rate",
+            "write it as a sum of rates, each times a function of the coordinates",
+        )
     return rate
 
 

@@ -131,9 +131,18 @@ def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane:
         w = shortened(Twist(w)).w
         w_bias = scope.rate_of(w)
     return Branch(
-        link, link.parent, E, apply(parent_axes, offset), own_rate, apply(parent_axes, bias), w, w_bias,
-        _columns(motion, w, own_rate if plane else apply(E, rate)), moments, axes,
-    )  # fmt: skip
+        link,
+        link.parent,
+        E,
+        apply(parent_axes, offset),
+        own_rate,
+        apply(parent_axes, bias),
+        w,
+        w_bias,
+        _columns(motion, w, own_rate if plane else apply(E, rate)),
+        moments,
+        axes,
+    )
 
 
 def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, Column]:

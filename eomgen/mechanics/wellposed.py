@@ -59,10 +59,16 @@ def massless_motions(system: System, assembly: Assembly) -> tuple[Problem, ...]:
 def _massless(speed: str) -> Problem:
     q = speed.rstrip("'")
     if q == speed:
-        return Problem(f"speeds.{q}", f"the speed '{q}' moves no mass, so it has no derivative",
-                       mend="give the bodies that it moves a mass")  # fmt: skip
-    return Problem(f"coordinates.{q}", f"the free coordinate '{q}' moves no mass, so it has no acceleration",
-                   mend="give the bodies that it moves a mass, or drive the coordinate by `motion`")  # fmt: skip
+        return Problem(
+            f"speeds.{q}",
+            f"the speed '{q}' moves no mass, so it has no derivative",
+            mend="give the bodies that it moves a mass",
+        )
+    return Problem(
+        f"coordinates.{q}",
+        f"the free coordinate '{q}' moves no mass, so it has no acceleration",
+        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`",
+    )
 
 
 # -- motions that move no mass -----------------------------------------------------------------------

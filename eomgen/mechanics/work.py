@@ -117,5 +117,3 @@ def joint_forces(loads: Loads) -> Row:
         rate = motion.link(effort.body).s_rate[effort.variable]
         rows.append(tuple(effort.effort * d for d in gradient(rate, motion.scope.symbols.u)))
     return total(rows, size)
-
-

@@ -59,8 +59,7 @@ def contacts_of(model: Model) -> tuple[Contact, ...]:
 
 def rough_contacts(model: Model) -> tuple[Contact, ...]:
     """Every tie with dry friction, and every body on a path of which a piece has it."""
-    pieces = (_on_path(model, name, piece.friction)
-              for name, body in model.bodies.items() for piece in pieces_of(body))  # fmt: skip
+    pieces = (_on_path(model, name, piece.friction) for name, body in model.bodies.items() for piece in pieces_of(body))
     return tuple(contact for contact in (*_ties(model), *pieces) if contact.mu is not None)
 
 

@@ -269,8 +269,13 @@ class NameRule:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
         mend = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
-        found.append(Finding(path, f"the name of {article(self.of)} is needed here, not {shown(raw)}",
-                             mend if self.of == "point" else ""))  # fmt: skip
+        found.append(
+            Finding(
+                path,
+                f"the name of {article(self.of)} is needed here, not {shown(raw)}",
+                mend if self.of == "point" else "",
+            )
+        )
         return None
 
     def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:

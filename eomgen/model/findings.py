@@ -70,10 +70,18 @@ def shown(raw: Any) -> str:
 
 
 TABLES = {
-    "parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input", "points": "point",
-    "bodies": "body", "constraints": "constraint", "trusses": "truss", "forces": "force", "outputs": "output",
+    "parameters": "parameter",
+    "coordinates": "coordinate",
+    "speeds": "speed",
+    "inputs": "input",
+    "points": "point",
+    "bodies": "body",
+    "constraints": "constraint",
+    "trusses": "truss",
+    "forces": "force",
+    "outputs": "output",
     "unknowns": "unknown",
-}  # fmt: skip
+}
 """The tables of a model that name things, and what one of those is called."""
 
 

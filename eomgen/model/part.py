@@ -45,9 +45,15 @@ def _slots_of(cls: Any) -> tuple[Slot, ...]:
         default = field.default_factory() if field.default_factory is not MISSING else field.default
         required = default is MISSING
         slots.append(
-            Slot(field.name, field.name.rstrip("_"), _rule_of(field.type), required,
-                 bool(field.metadata.get("inline")), None if required else default)
-        )  # fmt: skip
+            Slot(
+                field.name,
+                field.name.rstrip("_"),
+                _rule_of(field.type),
+                required,
+                bool(field.metadata.get("inline")),
+                None if required else default,
+            )
+        )
     return tuple(slots)
 
 
@@ -77,9 +83,9 @@ class Part:
         for name, value in _in_si(type(self), values, raw).items():
             object.__setattr__(self, name, value)
         if found:
-            raise ModelError(tuple(
-                Problem(".".join([title_of(type(self)), *map(str, f.path)]), f.what, mend=f.mend) for f in found
-            ))  # fmt: skip
+            raise ModelError(
+                tuple(Problem(".".join([title_of(type(self)), *map(str, f.path)]), f.what, mend=f.mend) for f in found)
+            )
 
 
 def _in_si(cls: Any, values: dict, raw: Mapping) -> dict:

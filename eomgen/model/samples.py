@@ -48,12 +48,15 @@ class TimeLawRule(FormulaRule):
     def schema(self, definitions: dict) -> dict:
         pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
         samples = {
-            "type": "object", "required": ["samples"], "additionalProperties": False,
+            "type": "object",
+            "required": ["samples"],
+            "additionalProperties": False,
             "properties": {
                 "samples": {"type": "array", "items": pair, "minItems": 2, "maxItems": MOST},
-                "between": {"enum": list(self.ways)}, "ends": {"enum": list(ENDS)},
+                "between": {"enum": list(self.ways)},
+                "ends": {"enum": list(ENDS)},
             },
-        }  # fmt: skip
+        }
         return {"anyOf": [FormulaRule.schema(self, definitions), samples]}
 
 

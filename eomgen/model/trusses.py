@@ -20,9 +20,11 @@ def in_parts(model: Model) -> Model:
     nodes = {f"{name}.{node}": _node(at) for name, truss in model.trusses.items() for node, at in truss.nodes.items()}
     members = {name: _members(name, truss) for name, truss in model.trusses.items() if truss.members}
     return altered(
-        model, bodies=Table({**model.bodies, **nodes}), constraints=Table({**model.constraints, **members}),
+        model,
+        bodies=Table({**model.bodies, **nodes}),
+        constraints=Table({**model.constraints, **members}),
         trusses=Table(),
-    )  # fmt: skip
+    )
 
 
 def _node(at: tuple[Expression, ...]) -> Body:

@@ -48,8 +48,11 @@ def refuse_motion(model: Model) -> None:
     """
     for path, name in uses(model):
         where = ".".join(map(str, path))
-        raise DerivationError(f"the unknown '{name}' stands in {where}: a motion does not follow from it", where,
-                              "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it")
+        raise DerivationError(
+            f"the unknown '{name}' stands in {where}: a motion does not follow from it",
+            where,
+            "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it",
+        )
 
 
 def _is_load(path: Path) -> bool:

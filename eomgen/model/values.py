@@ -94,8 +94,11 @@ def _normed(e: list[float], body: str) -> list[float]:
 
 def no_orientation(body: str) -> ModelError:
     """That a quaternion starts at 0."""
-    return ModelError(f"the quaternion of body '{body}' starts at 0", f"bodies.{body}.joint.quaternion",
-                      "start = 1 of its first coordinate: no turn")  # fmt: skip
+    return ModelError(
+        f"the quaternion of body '{body}' starts at 0",
+        f"bodies.{body}.joint.quaternion",
+        "start = 1 of its first coordinate: no turn",
+    )
 
 
 def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:

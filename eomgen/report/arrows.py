@@ -31,16 +31,30 @@ def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "",
     if not length:
         return
     begin, end = ((x, y), (x + dx, y + dy)) if outward else ((x - dx, y - dy), (x, y))
-    panel.annotate("", end, xytext=begin, zorder=7,
-                   arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0})
+    panel.annotate(
+        "",
+        end,
+        xytext=begin,
+        zorder=7,
+        arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
+    )
     free = end if outward else begin
     panel.plot(*free, alpha=0)  # so that the axes hold it
     if label:
         sense = 1 if outward else -1
         x, y = 8 * sense * dx / length, 8 * sense * dy / length
-        panel.annotate(label, free, xytext=(x, y), textcoords="offset points", color=color, fontsize=9, zorder=7,
-                       ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"),
-                       path_effects=halo())  # fmt: skip
+        panel.annotate(
+            label,
+            free,
+            xytext=(x, y),
+            textcoords="offset points",
+            color=color,
+            fontsize=9,
+            zorder=7,
+            ha=_aligned(x, "right", "left"),
+            va=_aligned(y, "top", "bottom"),
+            path_effects=halo(),
+        )
 
 
 def is_freer_outward(lines: Iterable[np.ndarray], at: Place, vector: Place) -> bool:
@@ -78,11 +92,26 @@ def moment_arc(panel: Any, sketch: Sketch, at: Place, sense: float, *, color: st
     turns = turns if sense > 0 else turns[::-1]
     x, y = at[0] + r * np.cos(turns), at[1] + r * np.sin(turns)
     panel.plot(x[:-2], y[:-2], color=color, linewidth=1.5, zorder=7)
-    panel.annotate("", (x[-1], y[-1]), xytext=(x[-4], y[-4]), zorder=7,
-                   arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0})
+    panel.annotate(
+        "",
+        (x[-1], y[-1]),
+        xytext=(x[-4], y[-4]),
+        zorder=7,
+        arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
+    )
     if label:
-        panel.annotate(label, (at[0], at[1] + r), xytext=(0, 5), textcoords="offset points", color=color, fontsize=9,
-                       ha="center", va="bottom", zorder=7, path_effects=halo())  # fmt: skip
+        panel.annotate(
+            label,
+            (at[0], at[1] + r),
+            xytext=(0, 5),
+            textcoords="offset points",
+            color=color,
+            fontsize=9,
+            ha="center",
+            va="bottom",
+            zorder=7,
+            path_effects=halo(),
+        )
 
 
 def distributed(
@@ -105,6 +134,15 @@ def distributed(
     panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
     if label:
         x, y = -4 * (p + q) / (np.linalg.norm(p + q) or 1.0)
-        panel.annotate(label, tuple(np.mean(tails, axis=0)), xytext=(x, y), textcoords="offset points", color=color,
-                       fontsize=9, ha=_aligned(x, "right", "left"), va=_aligned(y, "top", "bottom"), zorder=7,
-                       path_effects=halo())  # fmt: skip
+        panel.annotate(
+            label,
+            tuple(np.mean(tails, axis=0)),
+            xytext=(x, y),
+            textcoords="offset points",
+            color=color,
+            fontsize=9,
+            ha=_aligned(x, "right", "left"),
+            va=_aligned(y, "top", "bottom"),
+            zorder=7,
+            path_effects=halo(),
+        )

@@ -1,6 +1,6 @@
 """Balance -> the kineto-static steps: each body cut free, with its reactions, applied forces and inertia.
 
-    F_in = -m a_C,  M_in = -d(I omega)/dt;   sum F + F_in = 0,  sum M_C + M_in = 0
+F_in = -m a_C,  M_in = -d(I omega)/dt;   sum F + F_in = 0,  sum M_C + M_in = 0
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ from eomgen.symbolic.text import text_size
 BOOK = 12_000  # characters of the equations of all bodies together
 WORK = 2000  # products of terms for dividing a coefficient by the factor of friction
 
-INERTIA = Law("F_in = -m*a, M_in = -d/dt(I*omega)",
-              r"F^{\mathrm{in}} = -m a, \quad M^{\mathrm{in}} = -\frac{d}{dt} \left(I \omega\right)")  # fmt: skip
-DALEMBERT = Law("sum F + F_in = 0, sum M + M_in = 0",
-                r"\sum F + F^{\mathrm{in}} = 0, \quad \sum M + M^{\mathrm{in}} = 0")  # fmt: skip
+INERTIA = Law(
+    "F_in = -m*a, M_in = -d/dt(I*omega)",
+    r"F^{\mathrm{in}} = -m a, \quad M^{\mathrm{in}} = -\frac{d}{dt} \left(I \omega\right)",
+)
+DALEMBERT = Law(
+    "sum F + F_in = 0, sum M + M_in = 0", r"\sum F + F^{\mathrm{in}} = 0, \quad \sum M + M^{\mathrm{in}} = 0"
+)
 LETTERS = ("Fin_x", "Fin_y", "Fin_z", "Min_x", "Min_y", "Min_z")
 
 

@@ -37,8 +37,10 @@ def tabled(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]]) -> tuple[Sta
         return (Grid(head, tuple(rows)),)
     return tuple(
         Formula((_named(row[0], what), cell))
-        for row in rows for what, cell in zip(head[1:], row[1:], strict=True) if not isinstance(cell, str)
-    )  # fmt: skip
+        for row in rows
+        for what, cell in zip(head[1:], row[1:], strict=True)
+        if not isinstance(cell, str)
+    )
 
 
 def _named(first: Cell, what: str) -> Law:
@@ -57,7 +59,12 @@ def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:
 
 def elsewhere(operations: int) -> Prose:
     """Where to get what is too long to print."""
-    return Prose((
-        f"The equations take {operations} operations and are too long to print here: ", FULL,
-        " prints them with names for their parts, ", Code("eomgen codegen MODEL"), " gives them as code.",
-    ))  # fmt: skip
+    return Prose(
+        (
+            f"The equations take {operations} operations and are too long to print here: ",
+            FULL,
+            " prints them with names for their parts, ",
+            Code("eomgen codegen MODEL"),
+            " gives them as code.",
+        )
+    )

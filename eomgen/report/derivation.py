@@ -66,9 +66,15 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
     return Derivation(
-        model.name, model.about or "", model.source or "", model.space, method,
-        (*written.steps, notation_step(written.steps, system.scope.names)), written.equations, written.definitions,
-    )  # fmt: skip
+        model.name,
+        model.about or "",
+        model.source or "",
+        model.space,
+        method,
+        (*written.steps, notation_step(written.steps, system.scope.names)),
+        written.equations,
+        written.definitions,
+    )
 
 
 def _by_method(
@@ -131,9 +137,7 @@ def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tu
     return steps, equations_of(system, reader, assembly, sides, ("Lagrange's equations ", law, ":"))
 
 
-def _by_maggi(
-    system: System, free: System, reader: Reader, assembly: Assembly
-) -> tuple[tuple[Step, ...], Result]:
+def _by_maggi(system: System, free: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
     """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
     energies = body_energies(free.motion)
     T = _whole(free, reader, energies)

@@ -122,9 +122,7 @@ class Sketch:
         return SYMBOL * self.extent
 
 
-def draw_model(
-    panel: Any, sketch: Sketch, *, names: bool = True, colors: Mapping[str, str] | None = None
-) -> None:
+def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mapping[str, str] | None = None) -> None:
     """Bodies, wires, hinges and supports on matplotlib axes; the axes have equal scales and no frame.
 
     Args:
@@ -157,8 +155,18 @@ def _body(panel: Any, sketch: Sketch, link: Link, named: bool, color: str) -> No
     if lines and named:
         x, y = _beside(lines[0])
         side = "right" if x < -AWAY / 2 else "left" if x > AWAY / 2 else "center"
-        panel.annotate(_escaped(link.name), _middle(lines[0]), xytext=(x, y), textcoords="offset points", color=color,
-                       fontsize=9, ha=side, va="center", zorder=6, path_effects=halo())  # fmt: skip
+        panel.annotate(
+            _escaped(link.name),
+            _middle(lines[0]),
+            xytext=(x, y),
+            textcoords="offset points",
+            color=color,
+            fontsize=9,
+            ha=side,
+            va="center",
+            zorder=6,
+            path_effects=halo(),
+        )
     if not lines and not is_node(link.name):
         panel.plot(*sketch.place(link.pose.p), marker="o", markersize=6, color=color, zorder=3)
 
@@ -207,8 +215,15 @@ def _points(panel: Any, sketch: Sketch) -> None:
         key = (round(1e4 * x / sketch.extent), round(1e4 * y / sketch.extent))
         if key not in named:
             named[key] = name
-            panel.annotate(_escaped(name.rpartition(".")[2]), (x, y), xytext=(5, 5), textcoords="offset points",
-                           fontsize=8, color=GROUNDED, zorder=6)  # fmt: skip
+            panel.annotate(
+                _escaped(name.rpartition(".")[2]),
+                (x, y),
+                xytext=(5, 5),
+                textcoords="offset points",
+                fontsize=8,
+                color=GROUNDED,
+                zorder=6,
+            )
 
 
 def _escaped(name: str) -> str:

@@ -22,8 +22,10 @@ T, V = Name("T"), Name("V")
 KINETIC = Law(
     "T = 1/2*m*v^2 + 1/2*omega*I*omega", r"T = \tfrac{1}{2} m v^{2} + \tfrac{1}{2} \omega^{\mathsf{T}} I \omega"
 )
-WORK = Law("Q_k = sum F*dr/dq_k - dV/dq_k",
-           r"Q_{k} = \sum F \cdot \frac{\partial r}{\partial q_{k}} - \frac{\partial V}{\partial q_{k}}")  # fmt: skip
+WORK = Law(
+    "Q_k = sum F*dr/dq_k - dV/dq_k",
+    r"Q_{k} = \sum F \cdot \frac{\partial r}{\partial q_{k}} - \frac{\partial V}{\partial q_{k}}",
+)
 
 
 @dataclass(frozen=True)
@@ -52,9 +54,7 @@ def momenta_of(system: System, reader: Reader, T: Scalar) -> Momenta:
     return Momenta(T, momenta, rates, held)
 
 
-def kinetic_energy_step(
-    system: System, reader: Reader, energies: tuple[BodyEnergy, ...], total: Scalar
-) -> Step:
+def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEnergy, ...], total: Scalar) -> Step:
     """T of each body, then of the whole."""
     formulas: list[Pair] = []
     for link, energy in zip(system.motion.links, energies, strict=True):
@@ -135,6 +135,8 @@ def derivatives_step(system: System, reader: Reader, momenta: Momenta) -> Step:
     for k, (u, q) in enumerate(zip(system.symbols.u, moved_coordinates(system), strict=True)):
         momentum = Partial(T, u)
         formulas += [
-            (momentum, momenta.momenta[k]), (Rate(momentum), momenta.rates[k]), (Partial(T, q), momenta.held[k]),
-        ]  # fmt: skip
+            (momentum, momenta.momenta[k]),
+            (Rate(momentum), momenta.rates[k]),
+            (Partial(T, q), momenta.held[k]),
+        ]
     return Step("derivatives", "Derivatives of the kinetic energy", page(reader, formulas))

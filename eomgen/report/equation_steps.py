@@ -110,9 +110,12 @@ def _equations(
         return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
     equations, definitions = found
     statements = (
-        Prose(rule), Prose((f"{SHORTEST}{', with names for parts' if definitions else ''}:",)),
-        *map(Formula, definitions), *printed(system, equations), *closing(reader, assembly),
-    )  # fmt: skip
+        Prose(rule),
+        Prose((f"{SHORTEST}{', with names for parts' if definitions else ''}:",)),
+        *map(Formula, definitions),
+        *printed(system, equations),
+        *closing(reader, assembly),
+    )
     return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
@@ -148,9 +151,7 @@ def _with_shorter(sides: Sequence[Scalar], simple: Mapping[Node, Scalar], share:
     return substituted(sides, {x: found for x, found in simple.items() if operations((found,)).total <= size[x]})
 
 
-def _named(
-    reader: Reader, assembly: Assembly
-) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
+def _named(reader: Reader, assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
     """The shortest form of the equations with named sub-expressions; None where even that is too long."""
     graph = assembly.symbols.graph
     taken = {node.name for node in _symbols(assembly)}
@@ -246,9 +247,7 @@ def _by_cramer(sides: Sequence[tuple[Scalar, Scalar]], a: Sequence[Node]) -> tup
     """(determinant, numerators) of left = right, which is linear in a."""
     M = [[_coefficient(left, x) for x in a] for left, _ in sides]
     rest = [readable(right - _without(left, a), WORK) for left, right in sides]
-    return readable(_determinant(M), WORK), [
-        readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))
-    ]
+    return readable(_determinant(M), WORK), [readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))]
 
 
 def _coefficient(x: Scalar, a: Node) -> Scalar:

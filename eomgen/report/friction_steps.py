@@ -1,6 +1,6 @@
 """Contacts that rub -> their step, and their friction in the equations of motion.
 
-    F = -mu |N| sign(v),   M a + c = Q + sum F_r dv_r/du,   N from the balance of the bodies
+F = -mu |N| sign(v),   M a + c = Q + sum F_r dv_r/du,   N from the balance of the bodies
 """
 
 from __future__ import annotations
@@ -89,8 +89,10 @@ def _along(
     """F = factor N along each direction in which a contact rubs."""
     factors = substituted([x.factor for x in letters.reactions.components[rub.component].friction], senses)
     normal = letters.symbols[rub.component]
-    return [Formula((friction, readable_value(reader, factor) * normal))
-            for friction, factor in zip(frictions, factors, strict=True)]  # fmt: skip
+    return [
+        Formula((friction, readable_value(reader, factor) * normal))
+        for friction, factor in zip(frictions, factors, strict=True)
+    ]
 
 
 def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node, Node]) -> Scalar:

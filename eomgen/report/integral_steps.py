@@ -57,9 +57,7 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
     return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
 
 
-def _of_the_whole(
-    system: System, reader: Reader, assembly: Assembly, known: Sequence[Scalar]
-) -> list[Statement]:
+def _of_the_whole(system: System, reader: Reader, assembly: Assembly, known: Sequence[Scalar]) -> list[Statement]:
     """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
     statements: list[Statement] = []
     found = momenta_of_the_whole(system, assembly, known)

@@ -38,8 +38,10 @@ def kinetostatic_steps(
     )
     words = (
         "Each equation times the velocity of its body for a unit of a speed, all added up, inertia on the left: ",
-        "the reactions do no work on these motions and drop out, ", DROPPED, ":",
-    )  # fmt: skip
+        "the reactions do no work on these motions and drop out, ",
+        DROPPED,
+        ":",
+    )
     result = equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), words)
     return (*steps, *_multipliers(system, letters)), result
 

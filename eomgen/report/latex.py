@@ -53,13 +53,29 @@ SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
-    "vx": "v_{x", "vy": "v_{y", "vz": "v_{z", "Fx": "F_{x", "Fy": "F_{y", "Fz": "F_{z", "speed": "v_{",
-    "angle": r"\varphi_{", "omega": r"\omega_{", "omega_x": r"\omega_{x", "omega_y": r"\omega_{y",
-    "omega_z": r"\omega_{z", "gap": r"\phi_{", "couple": r"\tau_{",
-    "Fin_x": r"F^{\mathrm{in}}_{x", "Fin_y": r"F^{\mathrm{in}}_{y", "Fin_z": r"F^{\mathrm{in}}_{z",
-    "Min": r"M^{\mathrm{in}}_{", "Min_x": r"M^{\mathrm{in}}_{x", "Min_y": r"M^{\mathrm{in}}_{y",
-    "Min_z": r"M^{\mathrm{in}}_{z", "Delta": r"\Delta_{",
-}  # fmt: skip
+    "vx": "v_{x",
+    "vy": "v_{y",
+    "vz": "v_{z",
+    "Fx": "F_{x",
+    "Fy": "F_{y",
+    "Fz": "F_{z",
+    "speed": "v_{",
+    "angle": r"\varphi_{",
+    "omega": r"\omega_{",
+    "omega_x": r"\omega_{x",
+    "omega_y": r"\omega_{y",
+    "omega_z": r"\omega_{z",
+    "gap": r"\phi_{",
+    "couple": r"\tau_{",
+    "Fin_x": r"F^{\mathrm{in}}_{x",
+    "Fin_y": r"F^{\mathrm{in}}_{y",
+    "Fin_z": r"F^{\mathrm{in}}_{z",
+    "Min": r"M^{\mathrm{in}}_{",
+    "Min_x": r"M^{\mathrm{in}}_{x",
+    "Min_y": r"M^{\mathrm{in}}_{y",
+    "Min_z": r"M^{\mathrm{in}}_{z",
+    "Delta": r"\Delta_{",
+}
 """letter -> how it begins, its subscript opened"""
 
 
@@ -250,8 +266,10 @@ def _ruled(alignment: str, head: str, rows: list[str]) -> str:
 
 def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas; columns of long words are wrapped, units and numbers set as such."""
-    longest = [max(len(cell) if isinstance(cell, str) else SIDE for cell in column)
-               for column in zip(grid.head, *grid.rows, strict=True)]  # fmt: skip
+    longest = [
+        max(len(cell) if isinstance(cell, str) else SIDE for cell in column)
+        for column in zip(grid.head, *grid.rows, strict=True)
+    ]
     room = WORDS if sum(longest) <= LINE else NARROW
     alignment = "".join(f"p{{{room}mm}}" if length > room else "l" for length in longest)
     units = [head == "unit" for head in grid.head]
@@ -262,5 +280,7 @@ def _grid(setter: Setter, grid: Grid) -> str:
 def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:
     """The cells of a row; `units`: which of them are units, if they are words."""
     words = [unit_latex if unit else value_latex for unit in units]
-    return " & ".join(set_(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$"
-                      for set_, cell in zip(words, row, strict=True))  # fmt: skip
+    return " & ".join(
+        set_(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$"
+        for set_, cell in zip(words, row, strict=True)
+    )

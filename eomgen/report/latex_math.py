@@ -22,9 +22,15 @@ from eomgen.symbolic.splines import sampled_of
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
 FUNCTIONS = TRIGONOMETRIC | {
-    "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan", "log": r"\ln", "min": r"\min", "max": r"\max",
-    "sign": r"\operatorname{sign}", "atan2": r"\operatorname{atan2}",
-}  # fmt: skip
+    "asin": r"\arcsin",
+    "acos": r"\arccos",
+    "atan": r"\arctan",
+    "log": r"\ln",
+    "min": r"\min",
+    "max": r"\max",
+    "sign": r"\operatorname{sign}",
+    "atan2": r"\operatorname{atan2}",
+}
 WRAPPED: dict[str, Callable[[str], str]] = {
     "sqrt": lambda x: rf"\sqrt{{{x}}}",
     "exp": lambda x: f"e^{{{x}}}",

@@ -14,15 +14,28 @@ SMALL = (
 LARGE = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
 GREEK = {name: rf"\{name}" for name in SMALL + LARGE} | {"epsilon": r"\varepsilon"}
 LETTERS = dict(
-    zip("αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ",
-        [GREEK[n] for n in SMALL[:23]] + [GREEK[n] for n in LARGE], strict=True)
-)  # fmt: skip
+    zip("αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", [GREEK[n] for n in SMALL[:23]] + [GREEK[n] for n in LARGE], strict=True)
+)
 DOTS = {1: r"\dot", 2: r"\ddot", 3: r"\dddot"}
 SPECIAL = {
-    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
-    "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
-    "²": r"\textsuperscript{2}", "³": r"\textsuperscript{3}", "µ": r"$\mu$", "°": r"$^{\circ}$", "·": r"$\cdot$",
-}  # fmt: skip
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "²": r"\textsuperscript{2}",
+    "³": r"\textsuperscript{3}",
+    "µ": r"$\mu$",
+    "°": r"$^{\circ}$",
+    "·": r"$\cdot$",
+}
 _COMPONENT = re.compile(r"(?P<letter>[IJFcprvw])(?P<axes>[xyz]{1,2})(?P<number>\d*)")  # Ixx1, cy2, Fz
 _NAME = re.compile(r"(?P<letters>[^\W\d_]+?)(?P<rest>[\d_].*)?")
 _MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")

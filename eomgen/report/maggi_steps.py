@@ -52,9 +52,12 @@ def maggi_equations(
     law = WITH_TIES if assembly.J else MAGGI
     words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
     statements = (
-        Prose((words, law, ":")), *printed(system, equations), *closing(reader, assembly),
-        Prose(("The dependent coordinates follow, their rates as above:",)), *map(Formula, shown[len(shown) // 2 :]),
-    )  # fmt: skip
+        Prose((words, law, ":")),
+        *printed(system, equations),
+        *closing(reader, assembly),
+        Prose(("The dependent coordinates follow, their rates as above:",)),
+        *map(Formula, shown[len(shown) // 2 :]),
+    )
     definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
     return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 

@@ -69,6 +69,8 @@ def _grid(setter: Setter, grid: Grid) -> str:
 
 
 def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
-    cells = (escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
-             for cell in row)  # fmt: skip
+    cells = (
+        escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
+        for cell in row
+    )
     return "| " + " | ".join(cells) + " |"

@@ -17,8 +17,9 @@ from eomgen.symbolic.graph import Node, Scalar, is_zero
 from eomgen.symbolic.spatial import Vector, dot
 
 AXES = "xyz"
-ALONG = Law("d/dq_k = sum_i N_ik*d/dq_i",
-            r"\frac{\partial}{\partial q_{k}} = \sum_{i} N_{ik} \frac{\partial}{\partial q_{i}}")  # fmt: skip
+ALONG = Law(
+    "d/dq_k = sum_i N_ik*d/dq_i", r"\frac{\partial}{\partial q_{k}} = \sum_{i} N_{ik} \frac{\partial}{\partial q_{i}}"
+)
 WITH = Law("N_ik = dq_i'/dq_k'", r"N_{ik} = \frac{\partial \dot{q}_{i}}{\partial \dot{q}_{k}}")
 Pair = tuple[Side, Scalar]
 
@@ -86,13 +87,21 @@ def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
     meant = [(u, system.free.scope.names[u.name]) for u in scope.symbols.u if u.name in model.speeds]
     own = {f"{u.name}" for u in scope.symbols.u}
     rates: list[Pair] = [
-        (Rate(q), rate) for q, rate in zip(scope.symbols.q, scope.rates, strict=True)
+        (Rate(q), rate)
+        for q, rate in zip(scope.symbols.q, scope.rates, strict=True)
         if f"{q.name}'" not in own and not model.coordinates[q.name].driven
-    ]  # fmt: skip
+    ]
     statements: list[Statement] = [Prose(("The speeds are combinations of the rates:",)), *page(reader, meant)]
     for each in quaternions_of(model):
         words = f"{', '.join(each.coordinates)} is a unit quaternion, and {', '.join(each.speeds)} "
-        statements.append(Prose((words, f"is the angular velocity of {each.body} against what it hangs on.",)))
+        statements.append(
+            Prose(
+                (
+                    words,
+                    f"is the angular velocity of {each.body} against what it hangs on.",
+                )
+            )
+        )
     return (Step("speeds", "Speeds", (*statements, Prose(("Solved for the rates:",)), *page(reader, rates))),)
 
 

@@ -57,8 +57,9 @@ def notation_step(steps: Sequence[Step], taken: Container[str]) -> Step:
     letters = {name.letter for step in steps for statement in step.statements for name in quantities(statement)}
     rows = tuple(
         Meaning(Name(letter), meaning + (f"; not the model's own {letter}" if letter in taken else ""), unit)
-        for letter, (meaning, unit) in MEANINGS.items() if letter in letters
-    )  # fmt: skip
+        for letter, (meaning, unit) in MEANINGS.items()
+        if letter in letters
+    )
     return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), rows),))
 
 

@@ -1,6 +1,6 @@
 """Equations -> what `derive --json` carries, as plain data. Every expression is text that the grammar reads back.
 
-    q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
+q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
 """
 
 from __future__ import annotations

@@ -89,9 +89,14 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
     panel.set_ylabel("$E - E(0)$ [J]")
     within = " in each phase" if len(trajectory.phases) > 1 else ""
     panel.annotate(
-        f"relative drift {trajectory.drift:.1e}{within}", (1.0, 1.02), xycoords="axes fraction", ha="right",
-        va="bottom", fontsize=9, color="#505050",
-    )  # fmt: skip
+        f"relative drift {trajectory.drift:.1e}{within}",
+        (1.0, 1.02),
+        xycoords="axes fraction",
+        ha="right",
+        va="bottom",
+        fontsize=9,
+        color="#505050",
+    )
 
 
 def _reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
@@ -118,14 +123,21 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
     for color, owner in zip(colormaps["tab10"](np.arange(len(shown))), shown, strict=True):
         for name in owners[owner]:
             component = _component(name)
-            panel.plot(trajectory.t, trajectory.reactions[name], label=f"{owner}: {component}".replace("$", r"\$"),
-                       color=color, linewidth=1.4, linestyle=DASHES.get(component.split(" ")[-1], "-"))  # fmt: skip
+            panel.plot(
+                trajectory.t,
+                trajectory.reactions[name],
+                label=f"{owner}: {component}".replace("$", r"\$"),
+                color=color,
+                linewidth=1.4,
+                linestyle=DASHES.get(component.split(" ")[-1], "-"),
+            )
     panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     if len(shown) < len(owners):
         words = f"the largest, at {len(shown)} of {len(owners)} joints and ties"
-        panel.annotate(words, (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=9,
-                       color="#505050")  # fmt: skip
+        panel.annotate(
+            words, (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=9, color="#505050"
+        )
 
 
 def _largest(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
@@ -147,4 +159,3 @@ def _component(name: str) -> str:
     head, _, arguments = name.partition("(")
     number = arguments.rstrip(")").partition(",")[2].strip()
     return " ".join(word for word in (head.removeprefix("reaction_").replace("_", " "), number) if word)
-

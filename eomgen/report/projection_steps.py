@@ -43,13 +43,17 @@ def balance_step(system: System, reader: Reader, assembly: Assembly) -> Step:
     u, q = system.symbols.u, moved_coordinates(system)
     inertia: list[Pair] = [
         (Entry("M", u[i], u[j]), assembly.M[i][j])
-        for i in range(len(u)) for j in range(i, len(u)) if not is_zero(assembly.M[i][j])
-    ]  # fmt: skip
+        for i in range(len(u))
+        for j in range(i, len(u))
+        if not is_zero(assembly.M[i][j])
+    ]
     inertia += [(Name("c", by=x), c) for x, c in zip(u, assembly.c, strict=True)]
     forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, assembly.Q, strict=True)]
     statements = (
         Prose(("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that")),
         Formula((PROJECTED,)),
-        Prose(("Sorted by accelerations:",)), *page(reader, inertia), *page(reader, forces),
-    )  # fmt: skip
+        Prose(("Sorted by accelerations:",)),
+        *page(reader, inertia),
+        *page(reader, forces),
+    )
     return Step("balance", "Balance of momentum along the free motions", statements)

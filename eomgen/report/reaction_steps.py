@@ -50,9 +50,10 @@ def reactions_step(
         return ()
     formulas, left_out = _formulas(readings_of(system, reader, assembly, free=True), letters)
     shown = {formula.sides[0] for formula in formulas} | {
-        symbol for c, symbol in zip(letters.balance.components, letters.symbols, strict=True)
+        symbol
+        for c, symbol in zip(letters.balance.components, letters.symbols, strict=True)
         if c in letters.reactions.indeterminate
-    }  # fmt: skip
+    }
     statements: list[Statement] = [letters.table(shown)] if table and shown else []
     if formulas:
         statements += [Prose(("From the balance of forces and moments of every body:",)), *formulas]
@@ -64,8 +65,15 @@ def reactions_step(
 
 def _too_long(number: int, after: bool) -> Prose:
     more = f"{number} more" if after else "All of them" if number > 1 else "It"
-    return Prose((f"{more} {'are' if number > 1 else 'is'} too long to print here: ", VERB,
-                  " evaluates them, ", Code("eomgen codegen MODEL"), " gives them as code."))  # fmt: skip
+    return Prose(
+        (
+            f"{more} {'are' if number > 1 else 'is'} too long to print here: ",
+            VERB,
+            " evaluates them, ",
+            Code("eomgen codegen MODEL"),
+            " gives them as code.",
+        )
+    )
 
 
 def _formulas(readings: Readings, letters: Lettered) -> tuple[list[Formula], int]:
@@ -99,9 +107,7 @@ def _sides(readings: Readings, j: int) -> list[Scalar]:
 # -- along the motion from the start ----------------------------------------------------------------
 
 
-def along_the_motion(
-    system: System, reader: Reader, assembly: Assembly, letters: Lettered
-) -> tuple[Step, ...]:
+def along_the_motion(system: System, reader: Reader, assembly: Assembly, letters: Lettered) -> tuple[Step, ...]:
     """The reactions as functions of the coordinates alone, where first integrals give the speeds and that is short."""
     if system.free is not None:
         return ()
@@ -157,15 +163,19 @@ def _open(reader: Reader, letters: Lettered) -> list[Statement]:
     names = listed(tuple(symbol[c.name] for c in reactions.indeterminate))
     one = len(reactions.indeterminate) == 1
     words = (
-        *names, f" {'is' if one else 'are'} statically indeterminate: rigid bodies in balance leave ",
+        *names,
+        f" {'is' if one else 'are'} statically indeterminate: rigid bodies in balance leave ",
         f"{'it' if one else 'them'} open. To all of these at once may be added, with any number k, without a trace:",
-    )  # fmt: skip
+    )
     statements: list[Statement] = [Prose(words)]
     spaces = reactions.null_space
     factors = _factors(reactions, letters, len(spaces))
-    statements.append(Table(("symbol", "meaning", "unit", ""), tuple(
-        Meaning(k, "any number: an inner stress that rigid bodies do not show") for k in factors
-    )))  # fmt: skip
+    statements.append(
+        Table(
+            ("symbol", "meaning", "unit", ""),
+            tuple(Meaning(k, "any number: an inner stress that rigid bodies do not show") for k in factors),
+        )
+    )
     for k, space in zip(factors, spaces, strict=True):
         statements += _shares(reader, symbol, k, space)
     return statements
@@ -184,9 +194,7 @@ def _factors(reactions: Reactions, letters: Lettered, number: int) -> list[Node]
     return found
 
 
-def _shares(
-    reader: Reader, symbol: Mapping[str, Node], k: Node, space: Mapping[str, Scalar]
-) -> Sequence[Statement]:
+def _shares(reader: Reader, symbol: Mapping[str, Node], k: Node, space: Mapping[str, Scalar]) -> Sequence[Statement]:
     """Delta of each reaction = coefficient * k."""
     formulas: list[Statement] = []
     left_out = 0

@@ -74,8 +74,11 @@ class Readings:
 
     def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
         """The shortest of the values after a replacement; None where all of them are long."""
-        short = [simplest(y, WORK, self.positive) if not conditions_in(y) else y
-                 for x in values if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED]  # fmt: skip
+        short = [
+            simplest(y, WORK, self.positive) if not conditions_in(y) else y
+            for x in values
+            if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED
+        ]
         return self._shortest(short) if short else None
 
     def _shortest(self, values: list[Scalar]) -> Scalar:
@@ -122,4 +125,3 @@ def _ways(system: System) -> tuple[Reactions, ...]:
     few = reactions_of(system, short=True)
     size = len(few.balance.equations) * len(few.components)
     return (few,) if size > TOO_MANY else (few, reactions_of(system))
-

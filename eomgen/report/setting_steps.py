@@ -46,10 +46,14 @@ def data_step(system: System) -> Step:
         rows.append(Meaning(symbol, part.about or "", _unit(part), _in_unit(values.get(name), part)))
     statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [Prose(("No parameters.",))]
     inputs = tuple(
-        Meaning(symbol, model.inputs[name].about or "a known function of time", _unit(model.inputs[name]),
-                model.inputs[name].value.text)
+        Meaning(
+            symbol,
+            model.inputs[name].about or "a known function of time",
+            _unit(model.inputs[name]),
+            model.inputs[name].value.text,
+        )
         for name, symbol in symbols.inputs.items()
-    )  # fmt: skip
+    )
     if inputs:
         statements.append(Table(INPUTS, inputs))
     return Step("data", "Data", tuple(statements))
@@ -72,32 +76,53 @@ def _freedom(system: System) -> Step:
     dependent = len(dependent_coordinates(system.scope))
     driven = sum(part.driven for part in system.scope.model.coordinates.values())
     others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
-    statements: list[Statement] = [Prose((
-        f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
-        "".join(f", {other}" for other in others), ".",
-    ))]  # fmt: skip
+    statements: list[Statement] = [
+        Prose(
+            (
+                f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
+                "".join(f", {other}" for other in others),
+                ".",
+            )
+        )
+    ]
     identical = [row for row in system.ties.rows if row.identical]
     if identical:
         ties = ", ".join(dict.fromkeys(row.tie for row in identical))
-        statements.append(Prose((
-            f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves ({ties}): ",
-            "they carry reactions and take no freedom.",
-        )))  # fmt: skip
+        statements.append(
+            Prose(
+                (
+                    f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves "
+                    f"({ties}): they carry reactions and take no freedom.",
+                )
+            )
+        )
     eliminated = [row for row in system.ties.rows if row.status == "eliminated"]
     if eliminated:
         ties = ", ".join(dict.fromkeys(row.tie for row in eliminated))
-        statements.append(Prose((
-            f"{count(len(eliminated), 'equation')} of the constraints ",
-            "gives" if len(eliminated) == 1 else "give",
-            " the rate of the dependent coordinate" if dependent == 1 else " the rates of the dependent coordinates",
-            f" ({ties}).",
-        )))  # fmt: skip
+        statements.append(
+            Prose(
+                (
+                    f"{count(len(eliminated), 'equation')} of the constraints ",
+                    "gives" if len(eliminated) == 1 else "give",
+                    " the rate of the dependent coordinate"
+                    if dependent == 1
+                    else " the rates of the dependent coordinates",
+                    f" ({ties}).",
+                )
+            )
+        )
     if closing:
-        statements.append(Prose((
-            f"{count(len(closing), 'equation')} of the constraints ",
-            "remains to be satisfied by the motion" if len(closing) == 1 else "remain to be satisfied by the motion",
-            " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
-        )))  # fmt: skip
+        statements.append(
+            Prose(
+                (
+                    f"{count(len(closing), 'equation')} of the constraints ",
+                    "remains to be satisfied by the motion"
+                    if len(closing) == 1
+                    else "remain to be satisfied by the motion",
+                    " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
+                )
+            )
+        )
     statements += _velocities(system)
     freedom = len(symbols.u) - len(closing)
     independent = ", where the constraints' equations are independent" if closing else ""

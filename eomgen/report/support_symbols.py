@@ -29,16 +29,18 @@ def weld(panel: Any, d: float, at: Place) -> None:
 
 def pin(panel: Any, d: float, at: Place) -> None:
     """A triangle on the ground under a hinge."""
-    panel.fill(*_turned(at, 0.0, [(0, 0), (-d, -1.7 * d), (d, -1.7 * d)]).T, facecolor="white", edgecolor=GROUNDED,
-               zorder=4)  # fmt: skip
+    panel.fill(
+        *_turned(at, 0.0, [(0, 0), (-d, -1.7 * d), (d, -1.7 * d)]).T, facecolor="white", edgecolor=GROUNDED, zorder=4
+    )
     _ground(panel, d, at, 0.0, -1.7 * d)
     hinge(panel, d, at)
 
 
 def roller(panel: Any, d: float, at: Place, turn: float) -> None:
     """The same on wheels, turned by an angle."""
-    panel.fill(*_turned(at, turn, [(0, 0), (-d, -1.4 * d), (d, -1.4 * d)]).T, facecolor="white", edgecolor=GROUNDED,
-               zorder=4)  # fmt: skip
+    panel.fill(
+        *_turned(at, turn, [(0, 0), (-d, -1.4 * d), (d, -1.4 * d)]).T, facecolor="white", edgecolor=GROUNDED, zorder=4
+    )
     wheel = [(0.28 * d * math.cos(a), 0.28 * d * math.sin(a) - 1.7 * d) for a in np.linspace(0, 2 * math.pi, 25)]
     for side in (-0.55 * d, 0.55 * d):
         panel.plot(*_turned(at, turn, [(x + side, y) for x, y in wheel]).T, color=GROUNDED, linewidth=0.9, zorder=4)
@@ -63,5 +65,6 @@ def _ground(panel: Any, d: float, at: Place, turn: float, below: float) -> None:
     panel.plot(*_turned(at, turn, [(-1.7 * d, below), (1.7 * d, below)]).T, color=GROUNDED, linewidth=1.2, zorder=4)
     for k in range(6):
         x = (-1.5 + 0.6 * k) * d
-        panel.plot(*_turned(at, turn, [(x, below), (x - 0.5 * d, below - 0.6 * d)]).T, color=GROUNDED, linewidth=0.7,
-                   zorder=4)  # fmt: skip
+        panel.plot(
+            *_turned(at, turn, [(x, below), (x - 0.5 * d, below - 0.6 * d)]).T, color=GROUNDED, linewidth=0.7, zorder=4
+        )

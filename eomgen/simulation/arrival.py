@@ -38,9 +38,15 @@ class NeverReached(RunFailed):
 
 
 def first_arrival(
-    f: Function, g: Function, s: float, x: Any,
-    *, sense: int = 1, valid: Function | None = None, within: float = np.inf,
-) -> Arrival:  # fmt: skip
+    f: Function,
+    g: Function,
+    s: float,
+    x: Any,
+    *,
+    sense: int = 1,
+    valid: Function | None = None,
+    within: float = np.inf,
+) -> Arrival:
     """The first zero of g after the start; a zero at the start is none.
 
     Args:

@@ -1,6 +1,6 @@
 """Along the configurations of one freedom, without time: where a motion goes from a rest or a dead centre.
 
-    dq/ds = d(q),   u_s^2 = y(q) >= 0 where the motion may be
+dq/ds = d(q),   u_s^2 = y(q) >= 0 where the motion may be
 """
 
 from __future__ import annotations
@@ -72,9 +72,7 @@ class Configurations:
                 return arrival, sense
         raise reasons[-1]
 
-    def _one_way(
-        self, g: Condition, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float
-    ) -> Arrival:
+    def _one_way(self, g: Condition, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float) -> Arrival:
         regular = self.is_regular(q)
         s = 0.0
         if not regular:
@@ -83,9 +81,14 @@ class Configurations:
         if y(q + (0 if not regular else 1e-4 * sense * self.direction(q))) < 0:
             raise NeverReached("the motion does not go this way from the start")
         return first_arrival(
-            lambda s, q: self.direction(q), lambda s, q: g(q, sense), s, q,
-            sense=sense, valid=lambda s, q: y(q), within=within,
-        )  # fmt: skip
+            lambda s, q: self.direction(q),
+            lambda s, q: g(q, sense),
+            s,
+            q,
+            sense=sense,
+            valid=lambda s, q: y(q),
+            within=within,
+        )
 
     def is_regular(self, q: np.ndarray) -> bool:
         """Whether the gaps fix the sought coordinates' rates: no branch point, as its rounded place may seem finite."""

@@ -32,12 +32,13 @@ class Configuration:
         return tuple(name for name, mode in self.modes.items() if not mode.closed)
 
 
-
 def by_the_law(model: Model, configuration: Configuration) -> Configuration:
     """The configuration where what slides on a surface rubs along v/|v|, which has no value where v is 0."""
     surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
-    modes = {name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
-             for name, mode in configuration.modes.items()}  # fmt: skip
+    modes = {
+        name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
+        for name, mode in configuration.modes.items()
+    }
     return replace(configuration, modes=Table(modes))
 
 

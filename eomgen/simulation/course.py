@@ -104,9 +104,12 @@ def at_start(
 
 
 def _closed_or_open(
-    course: Course, t: float, pieces: Mapping[str, int], parameters: Mapping[str, float] | None,
+    course: Course,
+    t: float,
+    pieces: Mapping[str, int],
+    parameters: Mapping[str, float] | None,
     start: Mapping[str, float] | None,
-) -> tuple[dict[str, float], tuple[str, ...]]:  # fmt: skip
+) -> tuple[dict[str, float], tuple[str, ...]]:
     """(coordinates and rates at the start, the contacts open there): none, where the values allow it."""
 
     def values(away: Sequence[str]) -> dict[str, float]:
@@ -143,8 +146,11 @@ def _refuse_overlap(course: Course, t: float, values: Values) -> None:
     for name, (gap, _) in course.loose.gaps(t, values).items():
         if gap < -_length(values):
             what = "is too short" if contacts[name].pulls else "is passed through"
-            raise DerivationError(f"{contacts[name].words} {what} at the start, by {-gap:.3g} m", f"constraints.{name}",
-                                  "change the start values")  # fmt: skip
+            raise DerivationError(
+                f"{contacts[name].words} {what} at the start, by {-gap:.3g} m",
+                f"constraints.{name}",
+                "change the start values",
+            )
 
 
 def _piece_at(course: Course, body: str, t: float, values: Values) -> int:
@@ -158,9 +164,14 @@ def _piece_at(course: Course, body: str, t: float, values: Values) -> int:
 
 
 def _decided(
-    course: Course, t: float, values: Values, pieces: Mapping[str, int], *, before: Configuration,
+    course: Course,
+    t: float,
+    values: Values,
+    pieces: Mapping[str, int],
+    *,
+    before: Configuration,
     ended: frozenset[Configuration],
-) -> Standing:  # fmt: skip
+) -> Standing:
     """Velocities after an impact where there is one, and the configuration that then holds."""
     values, apart, hit = _contact(course, t, values, before) if before.open else (values, frozenset(), False)
     try:
@@ -173,9 +184,7 @@ def _decided(
     return Standing(t, values, standing, hit, _jammed(standing))
 
 
-def _contact(
-    course: Course, t: float, values: Values, before: Configuration
-) -> tuple[Values, frozenset[str], bool]:
+def _contact(course: Course, t: float, values: Values, before: Configuration) -> tuple[Values, frozenset[str], bool]:
     """(values after an impact of what closes, the contacts that are apart, whether velocities jumped)."""
     gaps = course.loose.gaps(t, values)
     touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= _length(values)]

@@ -82,9 +82,10 @@ class Watch:
             self._direct(row)
         self.largest = np.maximum(self.largest, np.nan_to_num(np.abs(g)).max(axis=0))
         found = [
-            root for k in range(g.shape[1])
+            root
+            for k in range(g.shape[1])
             if (root := self._first(k, times, self.signs[k] * g[:, k], dense)) is not None
-        ]  # fmt: skip
+        ]
         if not found:
             return None
         t, index = min(found)
@@ -121,9 +122,7 @@ def _looks(t_old: float, t_new: float) -> np.ndarray:
     return np.concatenate([parts[:1], [t_old + near], parts[1:-1], [t_new - near], parts[-1:]])
 
 
-def _low(
-    value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, closely: bool
-) -> tuple[float, float] | None:
+def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, closely: bool) -> tuple[float, float] | None:
     """(where, how low) between three positive values the middle one of which is the least; None where they are not so.
 
     Unless one looks closely, the parabola through the three says whether it is worth it.

@@ -18,9 +18,11 @@ TRIES = 30  # each twice as long as the one before
 
 
 def begun(
-    t: np.ndarray, x: np.ndarray, rate: Callable[[float, np.ndarray], np.ndarray],
+    t: np.ndarray,
+    x: np.ndarray,
+    rate: Callable[[float, np.ndarray], np.ndarray],
     sliding: Callable[[float, np.ndarray], float],
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """n states, n x states, the first of them a little later where a contact begins to slide.
 
     Args:

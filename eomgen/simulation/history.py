@@ -49,9 +49,15 @@ class Passage:
 
 
 def history(
-    model: Model, p: np.ndarray, start: Mapping[str, float] | None = None, *, until: Condition | None, time: float,
-    parameters: Mapping[str, float] | None = None, how: Stepping = FINE,
-) -> tuple[Passage, ...]:  # fmt: skip
+    model: Model,
+    p: np.ndarray,
+    start: Mapping[str, float] | None = None,
+    *,
+    until: Condition | None,
+    time: float,
+    parameters: Mapping[str, float] | None = None,
+    how: Stepping = FINE,
+) -> tuple[Passage, ...]:
     """The phases from the start to the first time after it at which the condition is 0, or to the end of the time.
 
     Args:
@@ -85,5 +91,4 @@ def _passage(course: Course, stretch: Stretch, until: Condition | None, holds: b
     else:
         kind, owner, value = "time" if run.status == "finished" else "failure", "", None
     values = stage.values(run.end, run.last)
-    return Passage(stage, here.values, values, here.t, run.end, kind, owner, value,
-                   told(course, stretch), follows)  # fmt: skip
+    return Passage(stage, here.values, values, here.t, run.end, kind, owner, value, told(course, stretch), follows)

@@ -172,7 +172,8 @@ def check(start: float, end: float, how: Stepping) -> None:
     if how.method not in METHODS:
         raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join(METHODS)}")
     if how.stabilization not in STABILIZATIONS:
-        raise UsageError(f"unknown way to keep ties closed: '{how.stabilization}'",
-                         mend=f"ways are {', '.join(STABILIZATIONS)}")  # fmt: skip
+        raise UsageError(
+            f"unknown way to keep ties closed: '{how.stabilization}'", mend=f"ways are {', '.join(STABILIZATIONS)}"
+        )
     if how.every is not None and how.every < 1:
         raise UsageError(f"projection at every {how.every} steps makes no sense", mend="give 1 or more")

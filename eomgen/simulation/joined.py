@@ -22,7 +22,7 @@ def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
     tables = [
         np.column_stack([found.get(name, np.zeros(len(stretch.run.t))) for name in (*coordinates, *speeds)])
         for stretch, found in zip(stretches, columns, strict=True)
-    ]  # fmt: skip
+    ]
     energies = [stretch.stage.energies(stretch.run.t, stretch.run.x) for stretch in stretches]
     ends = np.cumsum([0, *(len(stretch.run.t) for stretch in stretches)])
     gap, gap_rate = _open(stretches)
@@ -35,14 +35,16 @@ def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
         drift=_drift(stretches),
         gap=gap,
         gap_rate=gap_rate,
-        phases=tuple(Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.stage)
-                     for s, first, last in zip(stretches, ends[:-1], ends[1:], strict=True)),
+        phases=tuple(
+            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.stage)
+            for s, first, last in zip(stretches, ends[:-1], ends[1:], strict=True)
+        ),
         status=stretches[-1].run.status,
         message=stretches[-1].run.message,
         steps=sum(stretch.run.steps for stretch in stretches),
         evaluations=sum(stretch.run.evaluations for stretch in stretches),
         passages=tuple(passage for stretch in stretches for passage in stretch.run.carried),
-    )  # fmt: skip
+    )
 
 
 def _union(stretches: Sequence[Stretch]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -91,8 +93,9 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
 
     energy = None if full.energy is None else full.energy[kept]
     reactions = {name: column[kept] for name, column in full.reactions.items()}
-    return replace(full, t=full.t[kept], x=full.x[kept], energy=energy, reactions=reactions,
-                   phases=tuple(map(of, full.phases)))  # fmt: skip
+    return replace(
+        full, t=full.t[kept], x=full.x[kept], energy=energy, reactions=reactions, phases=tuple(map(of, full.phases))
+    )
 
 
 def told(course: Course, stretch: Stretch) -> str:

@@ -18,8 +18,12 @@ NEAR = 1e-12  # of the time, within which an instant counts as reached
 
 def knots_of(model: Model) -> tuple[float, ...]:
     """The times of the samples of every motion and input, ascending [s]."""
-    laws = (leaf.value for table in (model.coordinates, model.inputs, model.constraints) for name, part in table.items()
-            for leaf in leaves_of(part, (name,)))  # fmt: skip
+    laws = (
+        leaf.value
+        for table in (model.coordinates, model.inputs, model.constraints)
+        for name, part in table.items()
+        for leaf in leaves_of(part, (name,))
+    )
     sampled = (law.sampled for law in laws if isinstance(law, Expression))
     return tuple(sorted({float(t) for each in sampled if each is not None for t in each.spline.bounds}))
 

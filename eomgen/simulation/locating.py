@@ -134,9 +134,14 @@ class Locating:
 
     @property
     def _way_in_time(self) -> Way:
-        return Way(self._motion, self.t0, self._x0, self._rhs.spheres,
-                   lambda: nearness_of(self.system, self.assembly, self._p),
-                   lambda: projection_of(self.system, self._p, "numpy"))  # fmt: skip
+        return Way(
+            self._motion,
+            self.t0,
+            self._x0,
+            self._rhs.spheres,
+            lambda: nearness_of(self.system, self.assembly, self._p),
+            lambda: projection_of(self.system, self._p, "numpy"),
+        )
 
     def _first(self) -> Arrival:
         """Where the condition first holds; by itself where the motion comes by no singular position before.
@@ -162,8 +167,10 @@ class Locating:
         for block in blocks:
             determinant = self._function(block.determinant)
             if abs(determinant(arrival.s, arrival.x)) < UNDETERMINED * abs(determinant(self.t0, self._x0)):
-                raise RunFailed(f"{block} at that instant ({PLACE})",
-                                mend="leave out `dependent`: then their rates belong to the state")  # fmt: skip
+                raise RunFailed(
+                    f"{block} at that instant ({PLACE})",
+                    mend="leave out `dependent`: then their rates belong to the state",
+                )
 
     def _given_time(self) -> float:
         """The first t, from the start on, at which a condition on t alone holds."""
@@ -244,9 +251,11 @@ class Locating:
         sought = tuple(k for k in held if k != self._leading)
         still = np.zeros(len(symbols.u))
         return Configurations(
-            lambda q: direction(self.t0, np.append(q, still)), lambda q: gaps(self.t0, np.append(q, still)),
-            self._leading, sought,
-        )  # fmt: skip
+            lambda q: direction(self.t0, np.append(q, still)),
+            lambda q: gaps(self.t0, np.append(q, still)),
+            self._leading,
+            sought,
+        )
 
     def _along_configurations(self) -> Numbers:
         """The state where the condition holds on the way that one freedom leaves; the time is not known.
@@ -272,9 +281,12 @@ class Locating:
             return np.append(q, [rate if u is speed else 0.0 for u in symbols.u])
 
         arrival, sense = way.first(
-            lambda q, sense: condition(self.t0, state(q, sense)), y,
-            self._x0[: len(symbols.q)], self._senses(speed), self._near(),
-        )  # fmt: skip
+            lambda q, sense: condition(self.t0, state(q, sense)),
+            y,
+            self._x0[: len(symbols.q)],
+            self._senses(speed),
+            self._near(),
+        )
         at = state(arrival.x, sense)
         speeds = shares(self.t0, at) * at[len(symbols.q) + symbols.u.index(speed)]
         return self._state(math.nan, np.append(arrival.x, speeds))

@@ -67,18 +67,37 @@ class Flow:
     slope: Slope | None = None
 
     def march(
-        self, span: tuple[float, float], x0: np.ndarray, instants: np.ndarray | None, events: Events | None,
+        self,
+        span: tuple[float, float],
+        x0: np.ndarray,
+        instants: np.ndarray | None,
+        events: Events | None,
         lookout: Lookout | None = None,
-    ) -> Run:  # fmt: skip
+    ) -> Run:
         """A run that ends where the lookout says so."""
-        return march(self.f, span, x0, how=self.how, instants=instants, events=events, spheres=self.spheres,
-                     projection=self.projection, slope=self.slope, lookout=lookout)  # fmt: skip
+        return march(
+            self.f,
+            span,
+            x0,
+            how=self.how,
+            instants=instants,
+            events=events,
+            spheres=self.spheres,
+            projection=self.projection,
+            slope=self.slope,
+            lookout=lookout,
+        )
 
 
 def march_across(
-    flow: Flow, span: tuple[float, float], x0: np.ndarray, nearness: Nearness | None, *,
-    instants: np.ndarray | None = None, events: Events | None = None,
-) -> tuple[Run, tuple[Passage, ...]]:  # fmt: skip
+    flow: Flow,
+    span: tuple[float, float],
+    x0: np.ndarray,
+    nearness: Nearness | None,
+    *,
+    instants: np.ndarray | None = None,
+    events: Events | None = None,
+) -> tuple[Run, tuple[Passage, ...]]:
     """`march`, carried across singular positions; where that fails it ends.
 
     Args:
@@ -134,8 +153,19 @@ def _met(events: Events, passage: Passage) -> Crossing | None:
 def _stopped(run: Run, crossing: Crossing) -> Run:
     """A run of one instant, that of an event."""
     message = f"Stopped by an event at t = {crossing.t:.6g} s."
-    return replace(run, t=np.array([crossing.t]), x=crossing.x[None, :], end=crossing.t, last=crossing.x,
-                   status="event", message=message, steps=0, evaluations=0, crossing=crossing, tracks=())  # fmt: skip
+    return replace(
+        run,
+        t=np.array([crossing.t]),
+        x=crossing.x[None, :],
+        end=crossing.t,
+        last=crossing.x,
+        status="event",
+        message=message,
+        steps=0,
+        evaluations=0,
+        crossing=crossing,
+        tracks=(),
+    )
 
 
 def _from(instants: np.ndarray | None, t: float) -> np.ndarray | None:
@@ -231,9 +261,14 @@ def _joined(runs: Sequence[Run], passages: Sequence[Passage], instants: np.ndarr
     if instants is not None:
         kept = np.isin(times, instants) | ((times == last.end) if last.status != "finished" else False)
         times, states = times[kept], states[kept]
-    return replace(last, t=times, x=states, steps=sum(run.steps for run in runs),
-                   evaluations=sum(run.evaluations for run in runs),
-                   tracks=tuple(track for run in runs for track in run.tracks))  # fmt: skip
+    return replace(
+        last,
+        t=times,
+        x=states,
+        steps=sum(run.steps for run in runs),
+        evaluations=sum(run.evaluations for run in runs),
+        tracks=tuple(track for run in runs for track in run.tracks),
+    )
 
 
 def _in_order(t: np.ndarray, x: np.ndarray) -> tuple[Any, Any]:

@@ -46,10 +46,17 @@ class Plan:
 
 
 def run_phases(
-    model: Model, *, time: float | tuple[float, float], p: np.ndarray, parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None, target: str | None = None, how: Stepping | None = None,
-    samples: int | Sequence[float] | None = None, until: Ending | None = None,
-) -> Trajectory:  # fmt: skip
+    model: Model,
+    *,
+    time: float | tuple[float, float],
+    p: np.ndarray,
+    parameters: Mapping[str, float] | None = None,
+    start: Mapping[str, float] | None = None,
+    target: str | None = None,
+    how: Stepping | None = None,
+    samples: int | Sequence[float] | None = None,
+    until: Ending | None = None,
+) -> Trajectory:
     """The motion from the start values, through every change of its contacts.
 
     Args:

@@ -158,10 +158,15 @@ def projection_of(system: System, p: np.ndarray, target: str | None = None) -> P
     speeds = tuple(row.velocity for row in closing)
     function = _compiled((*gaps, *speeds), system, target)
     return Projection(
-        p, len(symbols.q), len(symbols.q) + len(symbols.u), len(gaps), spheres_of(function.program), function,
+        p,
+        len(symbols.q),
+        len(symbols.q) + len(symbols.u),
+        len(gaps),
+        spheres_of(function.program),
+        function,
         _positions(free, gaps, target) if gaps else None,
         _rows(system, system.ties.J, _identity(len(symbols.u)), speeds, target) if closing and symbols.u else None,
-    )  # fmt: skip
+    )
 
 
 def _positions(free: System, gaps: tuple[Scalar, ...], target: str | None) -> Rows:
@@ -175,9 +180,12 @@ def _positions(free: System, gaps: tuple[Scalar, ...], target: str | None) -> Ro
 
 
 def _rows(
-    system: System, J: Sequence[Sequence[Scalar]], N: Sequence[Sequence[Scalar]], gaps: Sequence[Scalar],
+    system: System,
+    J: Sequence[Sequence[Scalar]],
+    N: Sequence[Sequence[Scalar]],
+    gaps: Sequence[Scalar],
     target: str | None,
-) -> Rows:  # fmt: skip
+) -> Rows:
     M = recursive.mass(system.motion, branches_of(system.motion))
     entries = tuple(x for matrix in (M, J, N) for row in matrix for x in row)
     return Rows(_compiled((*entries, *gaps), system, target), len(gaps), len(M))

@@ -28,9 +28,15 @@ STICKS = Mode(sense=0)
 
 
 def settled(
-    stages: Stages, t: float, values: Values, *, pieces: Mapping[str, int], apart: frozenset[str],
-    ended: frozenset[Configuration] = frozenset(), before: Configuration | None = None,
-) -> Configuration | None:  # fmt: skip
+    stages: Stages,
+    t: float,
+    values: Values,
+    *,
+    pieces: Mapping[str, int],
+    apart: frozenset[str],
+    ended: frozenset[Configuration] = frozenset(),
+    before: Configuration | None = None,
+) -> Configuration | None:
     """The configuration from here on; None where no forces agree with any.
 
     Args:
@@ -85,9 +91,14 @@ def _indeterminate(refused: list[DerivationError]) -> Indeterminate | None:
 
 
 def _sliding(
-    stages: Stages, contacts: tuple[Contact, ...], t: float, values: Values, *, pieces: Mapping[str, int],
+    stages: Stages,
+    contacts: tuple[Contact, ...],
+    t: float,
+    values: Values,
+    *,
+    pieces: Mapping[str, int],
     apart: frozenset[str],
-) -> dict[str, int]:  # fmt: skip
+) -> dict[str, int]:
     """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
     if all(contact.mu is None for contact in contacts):
         return {}
@@ -134,8 +145,9 @@ def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int]
     signs = [_signs(stage.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
     return not any(
         force < -FORCE * forces or acceleration < -FORCE * accelerations
-        for pairs in signs for force, acceleration in pairs
-    )  # fmt: skip
+        for pairs in signs
+        for force, acceleration in pairs
+    )
 
 
 def _standing(

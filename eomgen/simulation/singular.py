@@ -24,7 +24,12 @@ Again = Callable[[float, np.ndarray, float], np.ndarray]
 
 
 def ended_where_singular(
-    run: Trajectory, determinants: Determinants, what: Sequence[str], again: Again, *, rtol: float = 1e-9,
+    run: Trajectory,
+    determinants: Determinants,
+    what: Sequence[str],
+    again: Again,
+    *,
+    rtol: float = 1e-9,
     place: str = "a dead centre or a change point",
 ) -> Trajectory:
     """The run, cut where a vanishing determinant led it astray.
@@ -102,5 +107,13 @@ def _cut(run: Trajectory, i: int, instant: float, what: str, place: str) -> Traj
     if drift is not None and not np.isfinite(drift):
         drift = None
     phases = (*run.phases[:-1], replace(run.phases[-1], end=instant, ended_by=message))
-    return replace(run, t=run.t[: i + 1], x=run.x[: i + 1], energy=energy, drift=drift, phases=phases,
-                   status="singular", message=message)  # fmt: skip
+    return replace(
+        run,
+        t=run.t[: i + 1],
+        x=run.x[: i + 1],
+        energy=energy,
+        drift=drift,
+        phases=phases,
+        status="singular",
+        message=message,
+    )

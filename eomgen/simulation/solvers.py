@@ -22,9 +22,15 @@ class NotFinite(ArithmeticError):
 
 
 def solver_of(
-    method: str, f: Rate, span: tuple[float, float], x0: np.ndarray, *, rtol: float, atol: float,
+    method: str,
+    f: Rate,
+    span: tuple[float, float],
+    x0: np.ndarray,
+    *,
+    rtol: float,
+    atol: float,
     slope: Slope | None = None,
-) -> Any:  # fmt: skip
+) -> Any:
     """An integrator at its start.
 
     Args:

@@ -139,9 +139,10 @@ class Stage:
             return found
         (determinants, rows), inner = (found.determinants, found.rows), self.inner
         return replace(
-            found, determinants=None if determinants is None else lambda t, x: determinants(t, inner(x)),
+            found,
+            determinants=None if determinants is None else lambda t, x: determinants(t, inner(x)),
             rows=None if rows is None else replace(rows, rows=lambda t, x: rows.rows(t, inner(x))),
-        )  # fmt: skip
+        )
 
     @cached_property
     def slope(self) -> Slope | None:

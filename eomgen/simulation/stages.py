@@ -151,6 +151,9 @@ def _released(system: System, tie: str) -> System:
     dependent = redundant_rows(system.ties)
     held = [row for row in system.ties.rows if row.tie == tie and row not in dependent]
     if freedoms(after.ties) < freedoms(system.ties) + len(held):
-        raise DerivationError(f"'{tie}' ends, and what it held does not become free", f"constraints.{tie}",
-                              "place the body by coordinates that can leave the contact")  # fmt: skip
+        raise DerivationError(
+            f"'{tie}' ends, and what it held does not become free",
+            f"constraints.{tie}",
+            "place the body by coordinates that can leave the contact",
+        )
     return after

@@ -140,10 +140,18 @@ class _Rows:
 
 
 def march(
-    f: Rate, span: tuple[float, float], x0: np.ndarray, *, how: Stepping, instants: np.ndarray | None = None,
-    events: Events | None = None, spheres: Sequence[Places] = (), projection: Projection | None = None,
-    slope: Slope | None = None, lookout: Lookout | None = None,
-) -> Run:  # fmt: skip
+    f: Rate,
+    span: tuple[float, float],
+    x0: np.ndarray,
+    *,
+    how: Stepping,
+    instants: np.ndarray | None = None,
+    events: Events | None = None,
+    spheres: Sequence[Places] = (),
+    projection: Projection | None = None,
+    slope: Slope | None = None,
+    lookout: Lookout | None = None,
+) -> Run:
     """Step from the first instant of the span to the second, or to an event, or until it goes no further.
 
     Args:

@@ -16,8 +16,9 @@ import numpy as np
 
 from eomgen.errors import RunFailed
 
-Status = Literal["finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact",
-                 "singular"]  # fmt: skip
+Status = Literal[
+    "finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact", "singular"
+]
 
 
 @dataclass(frozen=True)
@@ -131,8 +132,10 @@ class Trajectory:
         if self.energy is not None:
             arrays["energy"] = self.energy
         if self.reactions:
-            arrays |= {"reactions": np.column_stack(list(self.reactions.values())),
-                       "reaction_names": np.array(list(self.reactions), dtype=str)}  # fmt: skip
+            arrays |= {
+                "reactions": np.column_stack(list(self.reactions.values())),
+                "reaction_names": np.array(list(self.reactions), dtype=str),
+            }
         _write(Path(path), lambda file: np.savez_compressed(file, **arrays))
 
     def to_pandas(self) -> Any:
@@ -176,7 +179,7 @@ def _size(x: float) -> str:
 
 
 def _singular_positions(passages: Sequence[tuple[float, float]]) -> str:
-    """"a singular position at t = 0.7 s", or how many, and when the first."""
+    """ "a singular position at t = 0.7 s", or how many, and when the first."""
     first = f"{sum(passages[0]) / 2:.6g} s"
     many = len(passages)
     return f"a singular position at t = {first}" if many == 1 else f"{many} singular positions, first at t = {first}"

@@ -161,8 +161,11 @@ class Watch:
     def _of_open(self, contact: Contact) -> list[Signal]:
         row, scope = rows_of(self.system.motion, contact.name)[0], self.system.scope
         gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
-        return [Signal(contact.name, "gap", gap), Signal(contact.name, "gap'", rate),
-                Signal(contact.name, "gap''", scope.with_accelerations((rate,))[0])]  # fmt: skip
+        return [
+            Signal(contact.name, "gap", gap),
+            Signal(contact.name, "gap'", rate),
+            Signal(contact.name, "gap''", scope.with_accelerations((rate,))[0]),
+        ]
 
     def _of_closed(self, contact: Contact) -> list[Signal]:
         name = contact.name

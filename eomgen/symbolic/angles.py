@@ -21,10 +21,15 @@ _OTHER = {"sin": "cos", "cos": "sin"}
 _SINES: dict[Fraction, Number] = {Fraction(0): 0, Fraction(1, 6): Fraction(1, 2), Fraction(1, 2): 1}  # rational ones
 _SQUARES = {Fraction(1, 4): 2, Fraction(1, 3): 3}  # sin(turn pi) = sqrt(square) / 2
 _INVERSES = {  # function -> {square of its argument: its value in units of pi}
-    "asin": {0: Fraction(0), Fraction(1, 4): Fraction(1, 6), Fraction(1, 2): Fraction(1, 4),
-             Fraction(3, 4): Fraction(1, 3), 1: Fraction(1, 2)},
+    "asin": {
+        0: Fraction(0),
+        Fraction(1, 4): Fraction(1, 6),
+        Fraction(1, 2): Fraction(1, 4),
+        Fraction(3, 4): Fraction(1, 3),
+        1: Fraction(1, 2),
+    },
     "atan": {0: Fraction(0), Fraction(1, 3): Fraction(1, 6), 1: Fraction(1, 4), 3: Fraction(1, 3)},
-}  # fmt: skip
+}
 LARGEST_MULTIPLE = 4  # of an inverse function under a sine or cosine
 
 

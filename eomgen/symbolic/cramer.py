@@ -44,9 +44,12 @@ class Block:
 
 
 def solved(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Sequence[Scalar]],
-    *, vanishes: Callable[[Scalar], bool] = is_zero, shorter: Callable[[Scalar], Scalar] | None = None,
-) -> tuple[tuple[tuple[Scalar, ...], ...], tuple[Block, ...]]:  # fmt: skip
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Sequence[Scalar]],
+    *,
+    vanishes: Callable[[Scalar], bool] = is_zero,
+    shorter: Callable[[Scalar], Scalar] | None = None,
+) -> tuple[tuple[tuple[Scalar, ...], ...], tuple[Block, ...]]:
     """X of A X = right, n x m, and the blocks whose determinants must not vanish.
 
     Args:
@@ -174,9 +177,7 @@ def triangular(lines: Sequence[Line]) -> list[tuple[list[Line], tuple[int, ...]]
     matched = matching([line.entries for line in lines])
     of_unknown = {j: i for i, j in matched.items()}
     needs = [[of_unknown[j] for j in line.entries if of_unknown.get(j, i) != i] for i, line in enumerate(lines)]
-    return [
-        ([lines[i] for i in group], tuple(sorted(matched[i] for i in group))) for group in components(needs)
-    ]
+    return [([lines[i] for i in group], tuple(sorted(matched[i] for i in group))) for group in components(needs)]
 
 
 def matching(rows: Sequence[Iterable[int]]) -> dict[int, int]:

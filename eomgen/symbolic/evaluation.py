@@ -326,7 +326,6 @@ def fifty_digits() -> Arithmetic:
     names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
     functions = {op: real(getattr(mp, op)) for op in names}
 
-
     def number(c: Number) -> Any:
         return mp.mpf(c.numerator) / c.denominator
 

@@ -153,8 +153,12 @@ class Expansion:
 
     def _sign_of_sum(self, f: Terms, whole: Terms) -> int | None:
         """The same of a sum that stands in `whole`, of which no value exists where one of its roots has none."""
-        roots = [self.atoms.opaque[atom].arguments[0] for monomial, _ in whole for atom, _ in monomial
-                 if self.atoms.is_a(atom, "sqrt")]  # fmt: skip
+        roots = [
+            self.atoms.opaque[atom].arguments[0]
+            for monomial, _ in whole
+            for atom, _ in monomial
+            if self.atoms.is_a(atom, "sqrt")
+        ]
         for sign in (1, -1):
             if self._is_never_negative(scaled(f, sign)) or scaled(f, sign) in roots:
                 return sign
@@ -433,9 +437,7 @@ class Expansion:
         return {(((-root, 1),) if root > 1 else (), ()): tidy(sign * c)} if c else {}
 
 
-def expanded(
-    outputs: Iterable[Scalar], limit: int, positive: Collection[Node] = ()
-) -> tuple[Expansion, list[Terms]]:
+def expanded(outputs: Iterable[Scalar], limit: int, positive: Collection[Node] = ()) -> tuple[Expansion, list[Terms]]:
     """The outputs as sums of terms, with the expansion that owns their atoms."""
     graph, outputs = united(list(outputs))
     expansion = Expansion(graph, limit, positive)

@@ -13,9 +13,24 @@ from typing import Any
 from eomgen.symbolic.graph import CONSTANTS, Node, is_zero
 
 NAMES = {
-    "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1,
-    "tanh": 1, "sqrt": 1, "exp": 1, "log": 1, "abs": 1, "sign": 1, "min": 2, "max": 2,
-}  # fmt: skip
+    "sin": 1,
+    "cos": 1,
+    "tan": 1,
+    "asin": 1,
+    "acos": 1,
+    "atan": 1,
+    "atan2": 2,
+    "sinh": 1,
+    "cosh": 1,
+    "tanh": 1,
+    "sqrt": 1,
+    "exp": 1,
+    "log": 1,
+    "abs": 1,
+    "sign": 1,
+    "min": 2,
+    "max": 2,
+}
 """The functions of the model file's grammar and how many arguments each takes (min and max: two or more)."""
 
 

@@ -19,12 +19,23 @@ from eomgen.symbolic.graph import Node, Scalar
 from eomgen.symbolic.splines import sampled_of
 
 _ON_ARRAYS: dict[str, Callable[..., Any]] = {
-    "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": np.true_divide,
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "pow": np.float_power,
-    "min": np.minimum, "max": np.maximum, "select": np.where, "pi": lambda: np.pi,
+    "neg": operator.neg,
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": np.true_divide,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "pow": np.float_power,
+    "min": np.minimum,
+    "max": np.maximum,
+    "select": np.where,
+    "pi": lambda: np.pi,
     "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, float, np.pi), otypes=[float]),
     **{op: getattr(np, op) for op in "sqrt sin cos tan sinh cosh tanh exp log abs sign less less_equal".split()},
-}  # fmt: skip
+}
 ARRAYS = Arithmetic("arrays", float, _ON_ARRAYS, lambda x: np.nan)
 """Floats, or arrays of them: many states at once."""
 

@@ -59,10 +59,17 @@ class _Line:
 
 
 def solved(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int, values: Values,
-    *, simple: Callable[[Scalar], int] | None = None, tolerance: float = 1e-20, last: Sequence[int] = (),
-    sure: int | None = None, tests: Sequence[Mapping[int, Scalar]] = (),
-) -> Solution:  # fmt: skip
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    unknowns: int,
+    values: Values,
+    *,
+    simple: Callable[[Scalar], int] | None = None,
+    tolerance: float = 1e-20,
+    last: Sequence[int] = (),
+    sure: int | None = None,
+    tests: Sequence[Mapping[int, Scalar]] = (),
+) -> Solution:
     """The solution of sparse linear equations, sum over j of rows[i][j] x_j = right[i].
 
     Pivots are plain numbers where there are any, of those the ones that fill in least (Markowitz).
@@ -86,8 +93,13 @@ def solved(
     simple, late = simple or _number_first, frozenset(last)
     order: list[tuple[int, _Line]] = []
     if sure is not None:
-        _eliminate(lines, order, lambda line, j, x: (simple(x) if tested(line, j) else sure + 1, j in late), tolerance,
-                   worst=(sure, True))  # fmt: skip
+        _eliminate(
+            lines,
+            order,
+            lambda line, j, x: (simple(x) if tested(line, j) else sure + 1, j in late),
+            tolerance,
+            worst=(sure, True),
+        )
         _normal(lines, order, values)
     _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), simple(x)), tolerance)
     free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
@@ -96,9 +108,12 @@ def solved(
 
 
 def _lines(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], values: Values, tolerance: float,
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    values: Values,
+    tolerance: float,
     tests: Sequence[Mapping[int, Scalar]],
-) -> list[_Line]:  # fmt: skip
+) -> list[_Line]:
     flat = [entry for row in rows for entry in row.values()]
     found = values(flat)
     shadows, floor = iter(found), tolerance**2 * max(map(abs, found), default=0)  # a row may be rounding alone
@@ -117,9 +132,12 @@ def _number_first(a: Scalar) -> int:
 
 
 def _eliminate(
-    lines: list[_Line], order: list[tuple[int, _Line]], rank: Callable[[_Line, int, Scalar], tuple[int, int]],
-    tolerance: float, worst: tuple[int, int] | None = None,
-) -> None:  # fmt: skip
+    lines: list[_Line],
+    order: list[tuple[int, _Line]],
+    rank: Callable[[_Line, int, Scalar], tuple[int, int]],
+    tolerance: float,
+    worst: tuple[int, int] | None = None,
+) -> None:
     """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
     while (found := _pivot(lines, rank)) is not None:
         line, j = found
@@ -172,8 +190,13 @@ def _tested(group: list[_Line], unknowns: list[int], A: np.ndarray, values: Valu
     flat = iter(values([row.get(j, 0) for row in W for j in unknowns]))
     if not _independent(np.array([[float(next(flat)) for _ in unknowns] for _ in W]).T @ A):
         W = [line.entries for line in group]
-    rows = [{k: _sum(row.get(i, 0) * line.entries.get(j, 0) for row, line in zip(W, group, strict=True))
-             for k, j in enumerate(unknowns)} for i in unknowns]  # fmt: skip
+    rows = [
+        {
+            k: _sum(row.get(i, 0) * line.entries.get(j, 0) for row, line in zip(W, group, strict=True))
+            for k, j in enumerate(unknowns)
+        }
+        for i in unknowns
+    ]
     return rows, [_sum(row[i] * line.right for row, line in zip(W, group, strict=True) if i in row) for i in unknowns]
 
 

@@ -108,9 +108,7 @@ def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> 
     return readable_all((x,), limit, positive)[0]
 
 
-def readable_all(
-    outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collection[Node] = ()
-) -> tuple[Scalar, ...]:
+def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collection[Node] = ()) -> tuple[Scalar, ...]:
     """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
     graph, outputs = united(outputs)
     expansion = Expansion(graph, limit, positive)

@@ -56,9 +56,15 @@ class Scaled:
 
 
 def solved(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int, values: Values,
-    *, sure_symbols: Collection[Node], tests: Sequence[Mapping[int, Scalar]] = (), **how: Any,
-) -> Solution:  # fmt: skip
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    unknowns: int,
+    values: Values,
+    *,
+    sure_symbols: Collection[Node],
+    tests: Sequence[Mapping[int, Scalar]] = (),
+    **how: Any,
+) -> Solution:
     """`linear.solved` of equations that may have common factors in their rows and columns.
 
     Args:
@@ -74,9 +80,11 @@ def solved(
 
 
 def scaled(
-    rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], sure: Collection[Node],
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    sure: Collection[Node],
     tests: Sequence[Mapping[int, Scalar]] = (),
-) -> Scaled:  # fmt: skip
+) -> Scaled:
     """The equations with common factors taken out.
 
     Args:
@@ -160,5 +168,4 @@ def _common(line: list[Monomial], sure: Collection[Node]) -> Powers:
     atoms = {atom for entry in line for atom in entry.powers if set(symbols_of((atom,))) <= set(sure)}
     least = {atom: min(entry.powers.get(atom, 0) for entry in line) for atom in atoms}
     most = {atom: max(entry.powers.get(atom, 0) for entry in line) for atom in atoms}
-    return {atom: least[atom] if least[atom] > 0 else most[atom]
-            for atom in atoms if least[atom] > 0 or most[atom] < 0}  # fmt: skip
+    return {atom: least[atom] if least[atom] > 0 else most[atom] for atom in atoms if least[atom] > 0 or most[atom] < 0}

@@ -34,9 +34,7 @@ VANISHES = 1e-7  # of a residual at such a state
 INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
 
 
-def roots(
-    equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = LIMIT
-) -> tuple[Scalar, ...]:
+def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = LIMIT) -> tuple[Scalar, ...]:
     """The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn.
 
     Args:

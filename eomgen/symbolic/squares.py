@@ -24,8 +24,10 @@ def holds_no_square(f: Any) -> bool:
     degrees = [max(column) for column in zip(*(powers for powers, _, _ in terms), strict=True)]
     rng = Random(1)
     places = [rng.randrange(2, PRIME) for _ in degrees]
-    up, down = ([_powers(x, n) for x, n in zip(numbers, degrees, strict=True)]
-                for numbers in (places, [pow(x, -1, PRIME) for x in places]))  # fmt: skip
+    up, down = (
+        [_powers(x, n) for x, n in zip(numbers, degrees, strict=True)]
+        for numbers in (places, [pow(x, -1, PRIME) for x in places])
+    )
     values = []
     for powers, above, below in terms:
         value = above * pow(below, -1, PRIME) if below != 1 else above

@@ -20,10 +20,21 @@ _REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w
 _DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
 
 _MENDS = {
-    "−": "write -", "–": "write -", "·": "write *", "×": "write *", "÷": "write /", "′": "write '", "’": "write '",
-    "″": "write ''", '"': "write ''", "²": "write ^2", "³": "write ^3", "√": "write sqrt(...)",
-    "[": "use round parentheses", "{": "use round parentheses",
-}  # fmt: skip
+    "−": "write -",
+    "–": "write -",
+    "·": "write *",
+    "×": "write *",
+    "÷": "write /",
+    "′": "write '",
+    "’": "write '",
+    "″": "write ''",
+    '"': "write ''",
+    "²": "write ^2",
+    "³": "write ^3",
+    "√": "write sqrt(...)",
+    "[": "use round parentheses",
+    "{": "use round parentheses",
+}
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,13 @@ from eomgen.symbolic.graph import Graph, Node, Scalar
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {name: (lambda *args, name=name: function(name, *args)) for name in NAMES}
 _RING: dict[str, Callable[..., Any]] = {
-    "neg": operator.neg, "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": over,
+    "neg": operator.neg,
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": over,
     "pow": operator.pow,
-}  # fmt: skip
+}
 
 
 def transplanted(scalars: Sequence[Scalar], graph: Graph, meanings: Mapping[str, Scalar]) -> tuple[Scalar, ...]:

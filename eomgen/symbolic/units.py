@@ -126,9 +126,12 @@ def _table() -> dict[str, Unit]:
     for name, factor in (("Hz", 1), ("kHz", 1000)):
         table[name] = Unit(name, Fraction(factor), time=-1, cycles=1)
     angles: tuple[tuple[str, str | int, int, int], ...] = (
-        ("rad", 1, 0, 0), ("mrad", "0.001", 0, 0), ("deg", "1/180", 1, 0), ("rev", 2, 1, 0),
+        ("rad", 1, 0, 0),
+        ("mrad", "0.001", 0, 0),
+        ("deg", "1/180", 1, 0),
+        ("rev", 2, 1, 0),
         ("rpm", "1/30", 1, -1),
-    )  # fmt: skip
+    )
     for name, size, pi_power, time in angles:
         table[name] = Unit(name, Fraction(size), pi_power, time=time, angle=1)
     return table

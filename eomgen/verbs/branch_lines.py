@@ -42,8 +42,11 @@ def _keys(model: Model, branches: Branches, sided: tuple[str, ...]) -> list[str]
     here, first = branches.here, branches.others[0]
     sign = f"(+) and (-): det d phi/d({listed(here.values)}), which is 0 in a dead centre, where two ways meet"
     lines = [sign] if here.sign else []
-    lines += [f"left and right of '{s.tie}': of the line from the hinge of '{s.first}' to that of '{s.second}'"
-              for s in here.sides if s.tie in sided]  # fmt: skip
+    lines += [
+        f"left and right of '{s.tie}': of the line from the hinge of '{s.first}' to that of '{s.second}'"
+        for s in here.sides
+        if s.tie in sided
+    ]
     near = ", ".join(f"{name} = {{ near = {_number(model, name, x)} }}" for name, x in first.values.items())
     return [f"  {line}" for line in (*lines, f"another way is taken from a start near it: {near}")]
 

@@ -68,23 +68,34 @@ def _held(structure: Structure) -> str:
 def _declared(found: Checked) -> dict[str, Any]:
     model, structure = found.model, found.structure
     return {
-        "name": model.name, "space": model.space, "bodies": list(model.bodies), "coordinates": list(model.coordinates),
-        "driven": found.driven, "dependent": found.dependent, "missing_values": found.missing,
-        "unknowns": list(model.unknowns), "mobility": found.mobility,
-        "indeterminacy": None if structure is None else structure.indeterminacy, "open_at_start": list(found.open),
+        "name": model.name,
+        "space": model.space,
+        "bodies": list(model.bodies),
+        "coordinates": list(model.coordinates),
+        "driven": found.driven,
+        "dependent": found.dependent,
+        "missing_values": found.missing,
+        "unknowns": list(model.unknowns),
+        "mobility": found.mobility,
+        "indeterminacy": None if structure is None else structure.indeterminacy,
+        "open_at_start": list(found.open),
         "not_derived_yet": [{"where": where, "kind": kind} for where, kind in found.unbuilt],
-    }  # fmt: skip
+    }
 
 
 def _counted(found: Checked) -> dict[str, Any]:
     freedom = found.freedom
     return {
-        "degrees_of_freedom": freedom.by_rank, "by_formula": freedom.by_formula, "formula": freedom.formula or None,
-        "not_counted": freedom.not_counted or None, "position_freedoms": found.positions,
-        "closing": list(freedom.closing), "reaction_only": list(freedom.identical),
+        "degrees_of_freedom": freedom.by_rank,
+        "by_formula": freedom.by_formula,
+        "formula": freedom.formula or None,
+        "not_counted": freedom.not_counted or None,
+        "position_freedoms": found.positions,
+        "closing": list(freedom.closing),
+        "reaction_only": list(freedom.identical),
         "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
         "velocity_rows": _velocity_rows(freedom),
-    }  # fmt: skip
+    }
 
 
 def _started(start: LoopStart) -> dict[str, Any]:
@@ -92,15 +103,25 @@ def _started(start: LoopStart) -> dict[str, Any]:
     changes = () if begun is None else begun.changes
     ways = () if branches is None else (branches.here, *branches.others)
     return {
-        "start": None if begun is None else begun.values, "start_refused": start.refused or None,
+        "start": None if begun is None else begun.values,
+        "start_refused": start.refused or None,
         "change_point": begun is not None and begun.fork is not None,
         "start_changed": [{"name": c.name, "from": c.before, "to": c.after, "given": c.given} for c in changes],
-        "branches": [{"values": dict(way.values), "sign": way.sign or None,
-                      "left": {side.tie: side.left for side in way.sides}} for way in ways],
-    }  # fmt: skip
+        "branches": [
+            {"values": dict(way.values), "sign": way.sign or None, "left": {side.tie: side.left for side in way.sides}}
+            for way in ways
+        ],
+    }
 
 
 def _velocity_rows(freedom: Freedom) -> list[dict]:
     rows = () if freedom.integrability is None else freedom.integrability.rows
-    return [{"tie": r.tie, "row": r.number, "integrable": r.integrable,
-             "integral": None if r.integral is None else to_text(r.integral)} for r in rows]  # fmt: skip
+    return [
+        {
+            "tie": r.tie,
+            "row": r.number,
+            "integrable": r.integrable,
+            "integral": None if r.integral is None else to_text(r.integral),
+        }
+        for r in rows
+    ]

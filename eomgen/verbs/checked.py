@@ -87,11 +87,13 @@ def checked(model: Model) -> Checked:
     freedom = freedom_of(model, modes)
     still = not model.coordinates and bool(model.constraints or model.trusses)
     return Checked(
-        model, freedom, tuple(name for name, mode in modes.items() if not mode.closed),
+        model,
+        freedom,
+        tuple(name for name, mode in modes.items() if not mode.closed),
         mobility=mobility_of(model) if still else None,
         structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
         start=_start_of_loops(model, modes, freedom),
-    )  # fmt: skip
+    )
 
 
 def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> LoopStart:

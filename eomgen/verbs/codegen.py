@@ -19,9 +19,16 @@ from eomgen.version import __version__
 
 
 def codegen(
-    model: Model, *, stem: str, origin: str, target: str, directory: str, inverse: bool = False,
-    actuated: tuple[str, ...] = (), baumgarte: tuple[float, float] | None = None,
-) -> Outcome:  # fmt: skip
+    model: Model,
+    *,
+    stem: str,
+    origin: str,
+    target: str,
+    directory: str,
+    inverse: bool = False,
+    actuated: tuple[str, ...] = (),
+    baumgarte: tuple[float, float] | None = None,
+) -> Outcome:
     """The right-hand side and the reactions as files that compile as they are, with test vectors.
 
     Args:
@@ -32,19 +39,33 @@ def codegen(
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
     program, rhs = equations.program, equations.rhs("numpy")
     source = f"{origin} ({model.source})" if model.source else origin
-    description = Description(model.name, f"Made by eomgen {__version__} from {source}.", _remarks(model),
-                              vectors(program, x0=rhs.x0, p0=rhs.p0))  # fmt: skip
+    description = Description(
+        model.name,
+        f"Made by eomgen {__version__} from {source}.",
+        _remarks(model),
+        vectors(program, x0=rhs.x0, p0=rhs.p0),
+    )
     reactions, note = _reactions(equations, description, rhs)
     moved = _inverse(equations, description, rhs, actuated) if inverse or actuated else None
-    paths = [str(path) for path in write_files(stem, program, description, target=target, directory=Path(directory),
-                                               reactions=reactions, inverse=moved)]  # fmt: skip
+    paths = [
+        str(path)
+        for path in write_files(
+            stem, program, description, target=target, directory=Path(directory), reactions=reactions, inverse=moved
+        )
+    ]
     payload = {
-        "name": model.name, "target": target, "files": paths, "operations": program.count.total,
-        "hoisted_operations": program.count.hoisted, "coordinates": list(rhs.coordinates), "speeds": list(rhs.speeds),
-        "parameters": list(rhs.parameters), "inputs": list(rhs.inputs),
+        "name": model.name,
+        "target": target,
+        "files": paths,
+        "operations": program.count.total,
+        "hoisted_operations": program.count.hoisted,
+        "coordinates": list(rhs.coordinates),
+        "speeds": list(rhs.speeds),
+        "parameters": list(rhs.parameters),
+        "inputs": list(rhs.inputs),
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
-    }  # fmt: skip
+    }
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
     return Outcome("".join(f"{path}\n" for path in paths), payload, notes=(note,) if note else ())

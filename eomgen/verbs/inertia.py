@@ -8,9 +8,14 @@ from eomgen.verbs.outcome import Outcome, told
 
 
 def inertia(
-    model: Model, *, format: str = "text", plot: str | None = None, bodies: tuple[str, ...] = (),
-    about: str | None = None, axis: str | None = None,
-) -> Outcome:  # fmt: skip
+    model: Model,
+    *,
+    format: str = "text",
+    plot: str | None = None,
+    bodies: tuple[str, ...] = (),
+    about: str | None = None,
+    axis: str | None = None,
+) -> Outcome:
     """Masses, mass centres, moments and products of inertia, principal axes.
 
     Args:

@@ -12,9 +12,14 @@ from eomgen.verbs.outcome import Outcome, told
 
 
 def kinematics(
-    model: Model, *, format: str = "text", plot: str | None = None, at: str | None = None, given: Sequence[str] = (),
+    model: Model,
+    *,
+    format: str = "text",
+    plot: str | None = None,
+    at: str | None = None,
+    given: Sequence[str] = (),
     relative: Sequence[str] = (),
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     """The motion at one instant.
 
     Args:

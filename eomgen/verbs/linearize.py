@@ -8,9 +8,13 @@ from eomgen.verbs.outcome import Outcome, told
 
 
 def linearize(
-    model: Model, *, format: str = "text", plot: str | None = None, about: str | None = None,
+    model: Model,
+    *,
+    format: str = "text",
+    plot: str | None = None,
+    about: str | None = None,
     coordinates: tuple[str, ...] = (),
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     """M, C, K, modes, stability.
 
     Args:

@@ -33,8 +33,12 @@ class Outcome:
 
     @property
     def json(self) -> str:
-        return json.dumps({"schema_version": SCHEMA_VERSION, **self.payload}, ensure_ascii=False, indent=1,
-                          allow_nan=False) + "\n"  # fmt: skip
+        return (
+            json.dumps(
+                {"schema_version": SCHEMA_VERSION, **self.payload}, ensure_ascii=False, indent=1, allow_nan=False
+            )
+            + "\n"
+        )
 
 
 class Told(Protocol):
@@ -86,8 +90,9 @@ def write_text(path: str, text: str) -> None:
         if target.exists() and not target.is_file():  # a pipe, a terminal: nothing to move into place
             target.write_text(text, encoding="utf-8")
             return
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=target.parent, prefix=".eomgen-",
-                                         delete=False) as file:  # fmt: skip
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", dir=target.parent, prefix=".eomgen-", delete=False
+        ) as file:
             aside = file.name
             file.write(text)
         os.umask(mask := os.umask(0))

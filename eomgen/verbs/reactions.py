@@ -60,11 +60,18 @@ def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     space = null_space(system, equations.graph) if open_ and equations is not None else []
-    payload = {"name": model.name, "reactions": {name: answer.as_dict() for name, answer in found.items()},
-               **({"null_space": space} if space else {})}  # fmt: skip
+    payload = {
+        "name": model.name,
+        "reactions": {name: answer.as_dict() for name, answer in found.items()},
+        **({"null_space": space} if space else {}),
+    }
     notes = () if found else ("nothing reacts: no body is held by joints or ties",)
-    return Outcome(_text(system, asked, found, bool(space)) + _open_text(space), payload,
-                   f"not answered: {listed(failed)}" if failed else broken, notes)  # fmt: skip
+    return Outcome(
+        _text(system, asked, found, bool(space)) + _open_text(space),
+        payload,
+        f"not answered: {listed(failed)}" if failed else broken,
+        notes,
+    )
 
 
 def _function(name: str) -> str:
@@ -97,8 +104,11 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
     except (MissingValues, DerivationError, ModelError) as error:
         return {}, error.what
     rounding = ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
-    return {n: float(x) if abs(x) > rounding else 0.0
-            for n, x in zip(columns.names, values, strict=True) if math.isfinite(x)}, None  # fmt: skip
+    return {
+        n: float(x) if abs(x) > rounding else 0.0
+        for n, x in zip(columns.names, values, strict=True)
+        if math.isfinite(x)
+    }, None
 
 
 # -- at an instant, or from rest -------------------------------------------------------------------

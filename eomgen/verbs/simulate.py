@@ -25,17 +25,32 @@ MOST_TOLD = 20  # phases in the text
 
 
 def simulate(
-    model: Model, *, time: float, given: tuple[str, ...], start: tuple[str, ...], how: Stepping,
-    target: str | None, samples: int | None, until: str | None, output: str | None, plot: str | None,
-) -> Outcome:  # fmt: skip
+    model: Model,
+    *,
+    time: float,
+    given: tuple[str, ...],
+    start: tuple[str, ...],
+    how: Stepping,
+    target: str | None,
+    samples: int | None,
+    until: str | None,
+    output: str | None,
+    plot: str | None,
+) -> Outcome:
     """The motion from the start; trajectory and picture are written where they are asked for."""
     parameters = _parameters(model, given)
     _check_ending(output)
     equations = pipeline.derive(model)
     run = running.run(
-        equations, time=time, parameters=parameters, start=_start(equations, parameters, start), target=target,
-        samples=samples, how=how, until=until,
-    )  # fmt: skip
+        equations,
+        time=time,
+        parameters=parameters,
+        start=_start(equations, parameters, start),
+        target=target,
+        samples=samples,
+        how=how,
+        until=until,
+    )
     files = [path for path in (output, plot) if path]
     if output:
         _write_run(run, output)
@@ -104,14 +119,23 @@ def _run_text(model: Model, run: Trajectory) -> str:
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:
     columns = {name: [_finite(x) for x in column.tolist()] for name, column in run.columns().items()}
     payload = {
-        "name": model.name, "status": run.status, "message": run.message, "time": _finite(run.phases[-1].end),
+        "name": model.name,
+        "status": run.status,
+        "message": run.message,
+        "time": _finite(run.phases[-1].end),
         "start": {name: column[0] for name, column in columns.items() if column},
         "end": {name: column[-1] for name, column in columns.items() if column},
-        "energy_drift": _finite(run.drift), "gap": _finite(run.gap), "gap_rate": _finite(run.gap_rate),
-        "steps": run.steps, "evaluations": run.evaluations, "remark": run.remark, "files": files,
-        "assembled": run.assembled, "passages": [{"start": first, "end": last} for first, last in run.passages],
+        "energy_drift": _finite(run.drift),
+        "gap": _finite(run.gap),
+        "gap_rate": _finite(run.gap_rate),
+        "steps": run.steps,
+        "evaluations": run.evaluations,
+        "remark": run.remark,
+        "files": files,
+        "assembled": run.assembled,
+        "passages": [{"start": first, "end": last} for first, last in run.passages],
         "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],
-    }  # fmt: skip
+    }
     return payload if files else payload | {"trajectory": columns}
 
 

@@ -8,9 +8,13 @@ from eomgen.verbs.outcome import Outcome, told
 
 
 def statics(
-    model: Model, *, format: str = "text", plot: str | None = None, reaction: str | None = None,
+    model: Model,
+    *,
+    format: str = "text",
+    plot: str | None = None,
+    reaction: str | None = None,
     influence: str | None = None,
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     """Reactions, member forces, inner forces of a structure; of a system that is free to move, where it is at rest.
 
     Args:

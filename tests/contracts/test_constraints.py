@@ -19,16 +19,31 @@ from eomgen.symbolic.spatial import ZERO, apply, cross, plus
 PLANE, SPACE = "plane", "space"
 EXAMPLES = {
     "pin": {
-        PLANE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P", "cart.P"]',
-                'points = ["first.P", "second.P", "cart.P"]', 'points = ["first.M", "cart.P"]'],
-        SPACE: ['points = ["first.P"]', 'points = ["first.P", "second.P"]', 'points = ["first.P"], axis = [0, 3, 4]',
-                'points = ["first.P", "second.P"], axis = [0, 3, 4]'],
+        PLANE: [
+            'points = ["first.P"]',
+            'points = ["first.P", "second.P"]',
+            'points = ["first.P", "cart.P"]',
+            'points = ["first.P", "second.P", "cart.P"]',
+            'points = ["first.M", "cart.P"]',
+        ],
+        SPACE: [
+            'points = ["first.P"]',
+            'points = ["first.P", "second.P"]',
+            'points = ["first.P"], axis = [0, 3, 4]',
+            'points = ["first.P", "second.P"], axis = [0, 3, 4]',
+        ],
     },
     "support": {
-        PLANE: ['point = "first.P", normal = [3, 4], at = [1, 2]', 'point = "second.P", normal = [0, 1]',
-                'point = "cart.P", normal = ["l", "-2*l"], at = "G"', 'point = "first.M", normal = [1, 0]'],
-        SPACE: ['point = "first.P", normal = [2, 1, 2], at = [1, 2, 3]',
-                'point = "cart.P", normal = [1, 1, 1], at = "G"'],
+        PLANE: [
+            'point = "first.P", normal = [3, 4], at = [1, 2]',
+            'point = "second.P", normal = [0, 1]',
+            'point = "cart.P", normal = ["l", "-2*l"], at = "G"',
+            'point = "first.M", normal = [1, 0]',
+        ],
+        SPACE: [
+            'point = "first.P", normal = [2, 1, 2], at = [1, 2, 3]',
+            'point = "cart.P", normal = [1, 1, 1], at = "G"',
+        ],
     },
     "clamp": {
         PLANE: ['point = "first.P"', 'points = ["first.P", "second.P"]', 'points = ["G", "first.P", "second.P"]'],
@@ -43,8 +58,11 @@ EXAMPLES = {
         SPACE: ['point = "second.P", on = "first"', 'point = "cart.P", on = "second"', 'point = "G", on = "first"'],
     },
     "link": {
-        PLANE: ['points = ["first.P", "second.P"]', 'points = ["first.P", "G"], length = "l"',
-                'points = ["cart.P", "first.M"]'],
+        PLANE: [
+            'points = ["first.P", "second.P"]',
+            'points = ["first.P", "G"], length = "l"',
+            'points = ["cart.P", "first.M"]',
+        ],
         SPACE: ['points = ["first.P", "second.P"], length = "2*l"', 'points = ["cart.P", "G"]'],
     },
     "rolling": {
@@ -56,7 +74,8 @@ EXAMPLES = {
             'body = "second", circle = { at = "G", radius = 2 }',
             'body = "second", circle = { at = [0, 0], radius = "3*l", inside = true }, slip = true',
             'body = "second", on = "first", circle = { at = [0, 1], radius = "3*l", inside = true }',
-            'body = "second", on = "wheel"', 'body = "wheel", on = "second", radius = "l"',
+            'body = "second", on = "wheel"',
+            'body = "wheel", on = "second", radius = "l"',
         ],
         SPACE: [
             'body = "second", plane = { at = "G", normal = [2, -1, 2] }, radius = 0.3',
@@ -85,7 +104,8 @@ EXAMPLES = {
             'path = ["first.P", { body = "wheel", turn = "cw", slip = true }, "cart.P"], strands = ["up", "down"]',
         ],
         SPACE: [
-            'path = ["first.P", "second.P", "G", "cart.P"]', 'path = ["G", "cart.P"]',
+            'path = ["first.P", "second.P", "G", "cart.P"]',
+            'path = ["G", "cart.P"]',
             'path = ["first.P", "G", "second.P"], strands = [[1, 2, -2], [0, -3, 4]]',
             'path = ["wheel.P", { at = [0, 0, 0], radius = 0.3, turn = "cw" }]',
             'path = [{ body = "wheel", turn = "ccw", radius = "l" }, { at = [0, 1, 0], radius = 0.3, turn = "cw" }]',
@@ -100,16 +120,26 @@ EXAMPLES = {
         SPACE: ['bodies = ["first", "second"], ratio = -2', 'bodies = ["tool", "wheel"], ratio = "l/w"'],
     },
     "equation": {
-        PLANE: ['gap = "a*cos(b) - l"', 'gap = "b - l*sin(w*t)"', "rate = \"a' - 2*b*b'\"",
-                "rate = \"a'*cos(b) - b'*sin(b) - l*t\"",
-                'gap = "x(first.P)^2 + l*y(second.C) - angle(second)*t"', 'gap = "x(first.M, second) - y(cart.P)*d"',
-                'rate = "vx(second.P)*y(first.P) - l*omega(wheel, first) + d"',
-                "rate = \"vy(first.M, second) - a*s'\""],
-        SPACE: ['gap = "a^2 + b^2 - s^2"', 'gap = "z(cart.P) - x(first.P, second)^2*l"', 'gap = "y(second.P)*d - t"',
-                'rate = "vz(second.P, first)*x(cart.P) - omega_y(wheel)"', 'rate = "omega_x(second, first) + vx(G)"'],
+        PLANE: [
+            'gap = "a*cos(b) - l"',
+            'gap = "b - l*sin(w*t)"',
+            "rate = \"a' - 2*b*b'\"",
+            "rate = \"a'*cos(b) - b'*sin(b) - l*t\"",
+            'gap = "x(first.P)^2 + l*y(second.C) - angle(second)*t"',
+            'gap = "x(first.M, second) - y(cart.P)*d"',
+            'rate = "vx(second.P)*y(first.P) - l*omega(wheel, first) + d"',
+            'rate = "vy(first.M, second) - a*s\'"',
+        ],
+        SPACE: [
+            'gap = "a^2 + b^2 - s^2"',
+            'gap = "z(cart.P) - x(first.P, second)^2*l"',
+            'gap = "y(second.P)*d - t"',
+            'rate = "vz(second.P, first)*x(cart.P) - omega_y(wheel)"',
+            'rate = "omega_x(second, first) + vx(G)"',
+        ],
     },
     "motion": {PLANE: ['coordinate = "a", value = "l*sin(w*t)"'], SPACE: ['coordinate = "s", value = "l*w*t^2"']},
-}  # fmt: skip
+}
 CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
 KINDS = {tie.kind: tie for tie in ALL}
 built = pytest.mark.parametrize(("kind", "space", "fields"), CASES, ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES])
@@ -485,8 +515,11 @@ def test_a_pin_of_n_bodies_is_n_minus_1_hinges():
     """2 (n - 1) rows in the plane, the first body in each of them."""
     system = system_with("pin", PLANE, EXAMPLES["pin"][PLANE][3])
     assert [[body for body, _ in row.wrenches] for row in system.ties.rows] == [
-        ["first", "second"], ["first", "second"], ["first", "cart"], ["first", "cart"],
-    ]  # fmt: skip
+        ["first", "second"],
+        ["first", "second"],
+        ["first", "cart"],
+        ["first", "cart"],
+    ]
 
 
 def test_one_point_alone_is_held_where_it_stands_at_the_start():

@@ -27,35 +27,55 @@ SLIDING = 'points = ["upper.R", "lower.M"]'  # M slides in its body
 TWO, GROUND = 'points = ["upper.R", "lower.P"]', 'points = ["G", "lower.P"]'
 EXAMPLES = {
     "gravity": {
-        PLANE: ['acceleration = [0.1, "-g"]', 'acceleration = ["g*sin(w*t)", "-g"]',
-                'acceleration = [0, "-g"], bodies = ["lower"]'],
+        PLANE: [
+            'acceleration = [0.1, "-g"]',
+            'acceleration = ["g*sin(w*t)", "-g"]',
+            'acceleration = [0, "-g"], bodies = ["lower"]',
+        ],
         SPACE: ['acceleration = ["g/3", "g/5", "-g"]', 'acceleration = [0, 0, "-g"], bodies = ["upper"]'],
     },
     "force": {
-        PLANE: ['point = "lower.P", force = ["k*l", "-c*b\'"]', 'point = "lower.P", force = ["tau", 2], axes = "lower"',
-                'point = "lower.P", force = ["k*a", 2], axes = "upper"', 'point = "lower.M", force = ["k", 2]',
-                'point = "lower.W", force = ["k", 2], axes = "lower"'],
-        SPACE: ['point = "lower.P", force = [1, "tau", "k*b"]', 'point = "upper.P", force = [1, 2, 3], axes = "lower"',
-                'point = "lower.M", force = [1, "k", 2]'],
+        PLANE: [
+            'point = "lower.P", force = ["k*l", "-c*b\'"]',
+            'point = "lower.P", force = ["tau", 2], axes = "lower"',
+            'point = "lower.P", force = ["k*a", 2], axes = "upper"',
+            'point = "lower.M", force = ["k", 2]',
+            'point = "lower.W", force = ["k", 2], axes = "lower"',
+        ],
+        SPACE: [
+            'point = "lower.P", force = [1, "tau", "k*b"]',
+            'point = "upper.P", force = [1, 2, 3], axes = "lower"',
+            'point = "lower.M", force = [1, "k", 2]',
+        ],
     },
     "couple": {
         PLANE: ['body = "lower", couple = "k - c*b\'"', 'body = "upper", couple = "tau"'],
         SPACE: ['body = "lower", couple = [1, "tau", "k*b"]', 'body = "lower", couple = [1, 2, 3], axes = "upper"'],
     },
     "distributed": {
-        PLANE: ['body = "lower", between = ["origin", "P"], intensity = [1, "-k"]',
-                'body = "lower", between = ["P", "R"], intensities = [[0, "-k"], [2, "c*a\'"]]'],
+        PLANE: [
+            'body = "lower", between = ["origin", "P"], intensity = [1, "-k"]',
+            'body = "lower", between = ["P", "R"], intensities = [[0, "-k"], [2, "c*a\'"]]',
+        ],
         SPACE: ['body = "upper", between = ["origin", "P"], intensities = [[1, 2, "k"], [0, 0, 0]]'],
     },
     "spring": {
-        PLANE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = "start"',
-                f'{TWO}, stiffness = "k", length = "l", along = [3, 4]', f'{TWO}, stiffness = "k*t", length = "l*t"',
-                f'{SLIDING}, stiffness = "k", length = "l"'],
+        PLANE: [
+            f'{TWO}, stiffness = "k", length = "l"',
+            f'{GROUND}, stiffness = "k", length = "start"',
+            f'{TWO}, stiffness = "k", length = "l", along = [3, 4]',
+            f'{TWO}, stiffness = "k*t", length = "l*t"',
+            f'{SLIDING}, stiffness = "k", length = "l"',
+        ],
         SPACE: [f'{TWO}, stiffness = "k", length = "l"', f'{GROUND}, stiffness = "k", length = 0, along = [1, 2, 2]'],
     },
     "damper": {
-        PLANE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c"', f'{TWO}, damping = "c", along = [3, 4]',
-                f'{SLIDING}, damping = "c"'],
+        PLANE: [
+            f'{TWO}, damping = "c"',
+            f'{GROUND}, damping = "c"',
+            f'{TWO}, damping = "c", along = [3, 4]',
+            f'{SLIDING}, damping = "c"',
+        ],
         SPACE: [f'{TWO}, damping = "c"', f'{GROUND}, damping = "c", along = [1, 2, 2]', f'{SLIDING}, damping = "c"'],
     },
     "torsion_spring": {
@@ -76,13 +96,14 @@ EXAMPLES = {
         PLANE: ['coordinate = "b", value = "tau - c*b\'^3"'],
         SPACE: ['coordinate = "a", value = "k*b"'],
     },
-}  # fmt: skip
+}
 CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
 BUILT = {force.kind for force in ALL if force.works}
 built = pytest.mark.parametrize(
-    ("kind", "space", "fields"), [c for c in CASES if c[0] in BUILT],
+    ("kind", "space", "fields"),
+    [c for c in CASES if c[0] in BUILT],
     ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES if k in BUILT],
-)  # fmt: skip
+)
 
 HEAD = """
 [parameters]
@@ -145,7 +166,7 @@ NO_FORCE = '[forces]\nnone = { kind = "generalized", coordinate = "a", value = "
 
 def system_with(kind: str, space: str, fields: str) -> System:
     """Two bodies that hang on one another, and the force."""
-    return written(HEAD + BODIES[space] + f"{NO_FORCE}F = {{ kind = \"{kind}\", {fields} }}\n", space)
+    return written(HEAD + BODIES[space] + f'{NO_FORCE}F = {{ kind = "{kind}", {fields} }}\n', space)
 
 
 def applied(system: System):
@@ -253,7 +274,9 @@ JOINTS = [
 
 def system_with_joint(space: str, joint: str) -> System:
     inertia, P, axis = ("1", "[1, 2]", "") if space == PLANE else ("[1, 1, 1]", "[1, 2, 3]", "axis = [2, 1, 2], ")
-    return written(HEAD + f"""
+    return written(
+        HEAD
+        + f"""
 [bodies.base]
 mass = "m"
 inertia = {inertia}
@@ -264,7 +287,9 @@ mass = "m*l*w*g"
 inertia = {inertia}
 points = {{ P = {P} }}
 joint = {{ {joint} }}
-{NO_FORCE}""", space)  # fmt: skip
+{NO_FORCE}""",
+        space,
+    )
 
 
 @pytest.mark.parametrize(("space", "joint"), JOINTS)
@@ -436,7 +461,7 @@ def test_a_spring_is_slack_at_its_start_when_its_length_says_so():
     assert at(force, state) == pytest.approx([0, 0, 0], abs=1e-15)
 
 
-@pytest.mark.parametrize("fields", ['along = [3, 4]', 'along = [30, 40]', 'along = ["3*l", "4*l"]'])
+@pytest.mark.parametrize("fields", ["along = [3, 4]", "along = [30, 40]", 'along = ["3*l", "4*l"]'])
 def test_only_the_direction_of_along_counts(fields):
     """n = along / |along|; the stretch is n . (p2 - p1) - l, so V is the same for any length of `along`."""
     system = system_with("spring", PLANE, f'{TWO}, stiffness = "k", length = "l", {fields}')

@@ -171,8 +171,10 @@ def test_the_subspace_is_the_rate_of_the_pose(kind, space, fields):
     flat = scope.time_derivative(tuple(x for row in R for x in row))
     spin = spin_between(R, matrix_of((flat[0:3], flat[3:6], flat[6:9])))
     velocity = apply(transposed(R), scope.rate_of(p))
-    twist = [sum((column[k // 3][k % 3] * s for column, s in zip(link.S, link.s_rate, strict=True)), start=0)
-             for k in range(6)]  # fmt: skip
+    twist = [
+        sum((column[k // 3][k % 3] * s for column, s in zip(link.S, link.s_rate, strict=True)), start=0)
+        for k in range(6)
+    ]
     assert equal(twist, (*spin, *velocity))
 
 

@@ -9,7 +9,9 @@ from eomgen.errors import EomgenError
 
 HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
 
-BEAM = HEAD + """
+BEAM = (
+    HEAD
+    + """
 [parameters]
 P = 10
 [bodies.b]
@@ -22,7 +24,10 @@ kind = "force"
 point = "b.C"
 force = [1, "-P"]
 """
-LEVER = HEAD + """
+)
+LEVER = (
+    HEAD
+    + """
 [unknowns]
 F = "what holds it"
 [bodies.b]
@@ -34,7 +39,10 @@ kind = "force"
 point = "b.B"
 force = LOAD
 """
-TRUSS = HEAD + """
+)
+TRUSS = (
+    HEAD
+    + """
 [trusses.T]
 nodes = { A = [0, 0], B = [2, 0], C = [1, 1] }
 members = ["A-B", "A-C", "B-C"]
@@ -46,7 +54,10 @@ kind = "force"
 point = "T.C"
 force = [0, -1]
 """
-BARROW = HEAD + """
+)
+BARROW = (
+    HEAD
+    + """
 [parameters]
 W = 600
 r = 0.2
@@ -65,7 +76,10 @@ stone = { kind = "support", point = "barrow.axle", normal = [1, 0] }
 W = { kind = "force", point = "barrow.G", force = [0, "-W"] }
 F = { kind = "force", point = "barrow.handle", force = [0, "F"] }
 """
-SPRUNG = HEAD + """
+)
+SPRUNG = (
+    HEAD
+    + """
 [parameters]
 R = 1
 k = 15
@@ -80,8 +94,11 @@ joint = { kind = "revolute", angle = "theta - pi/2" }
 g = { kind = "gravity", acceleration = [0, -9.81] }
 s = { kind = "spring", points = ["arm.end", "top"], stiffness = "k", length = 1 }
 """
+)
 
-HOIST = HEAD + """
+HOIST = (
+    HEAD
+    + """
 [parameters]
 W = 500
 r = 0.2
@@ -106,7 +123,10 @@ path = ["wall", { body = "pulley", turn = "cw" }, "load.center"]
 [forces]
 W = { kind = "force", point = "load.center", force = [SIDE, "-W"] }
 """
-FOUR_BAR = HEAD + """
+)
+FOUR_BAR = (
+    HEAD
+    + """
 [bodies.a]
 points = { A = [0, 0], B = [0, 1] }
 [bodies.c]
@@ -123,28 +143,35 @@ kind = "force"
 point = "a.B"
 force = [0, -3]
 """
+)
 
 SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nintensity = [0, -1]\n'
 
 
-@pytest.mark.parametrize(("text", "asked", "told"), [
-    (BEAM, {"reaction": "nonsense"}, "there is no reaction 'nonsense'"),
-    (BEAM, {"reaction": "nonsense"}, "there are reaction_x(A), reaction_y(A), reaction_n(B)"),
-    (BEAM, {"reaction": ""}, "there is no reaction ''"),
-    (BEAM, {"influence": "bending_moment(b)"}, "a body and a place along it are asked for"),
-    (BEAM + SHORT, {}, "'A' and 'A' are at one place: a load along a line needs a length"),
-    (HEAD, {}, "the model has no body"),
-    (LEVER.replace("LOAD", '[0, "F^2 - 3"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
-    (LEVER.replace("LOAD", '["cos(F)", "sin(F)"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
-    (TRUSS.replace('"T.C"', '"T.K"'), {}, "its nodes are A, B, C"),
-    (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
-    (HOIST.replace("SIDE", "1"), {}, "body 'load' can slide along x"),
-    (LEVER.replace("LOAD", '["F", "-3"]'), {}, "body 'b' can turn about (0, 0)"),
-    (FOUR_BAR, {}, "body 'a' can turn about (0, 0)"),
-    (FOUR_BAR + '[forces.s]\nkind = "spring"\npoints = ["a.B", "d.D"]\nstiffness = 1\nlength = 1\n', {},
-     "a spring holds only what a coordinate moves"),
-    (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "asked", "told"),
+    [
+        (BEAM, {"reaction": "nonsense"}, "there is no reaction 'nonsense'"),
+        (BEAM, {"reaction": "nonsense"}, "there are reaction_x(A), reaction_y(A), reaction_n(B)"),
+        (BEAM, {"reaction": ""}, "there is no reaction ''"),
+        (BEAM, {"influence": "bending_moment(b)"}, "a body and a place along it are asked for"),
+        (BEAM + SHORT, {}, "'A' and 'A' are at one place: a load along a line needs a length"),
+        (HEAD, {}, "the model has no body"),
+        (LEVER.replace("LOAD", '[0, "F^2 - 3"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
+        (LEVER.replace("LOAD", '["cos(F)", "sin(F)"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),
+        (TRUSS.replace('"T.C"', '"T.K"'), {}, "its nodes are A, B, C"),
+        (BEAM.replace('["b.A"]', '["b.A", [0, 0]]'), {}, "give it a name in [points]"),
+        (HOIST.replace("SIDE", "1"), {}, "body 'load' can slide along x"),
+        (LEVER.replace("LOAD", '["F", "-3"]'), {}, "body 'b' can turn about (0, 0)"),
+        (FOUR_BAR, {}, "body 'a' can turn about (0, 0)"),
+        (
+            FOUR_BAR + '[forces.s]\nkind = "spring"\npoints = ["a.B", "d.D"]\nstiffness = 1\nlength = 1\n',
+            {},
+            "a spring holds only what a coordinate moves",
+        ),
+        (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
+    ],
+)
 def test_it_is_said_what_is_wrong(text, asked, told):
     with pytest.raises(EomgenError) as error:
         eomgen.statics(eomgen.loads(text), **asked)
@@ -195,7 +222,9 @@ def test_the_length_of_a_spring_has_a_name_in_the_equations_at_rest():
     assert "r1 = sqrt(" in text and "(root" not in text
 
 
-LADDER = HEAD + """
+LADDER = (
+    HEAD
+    + """
 [parameters]
 m = 10
 mu = MU
@@ -213,6 +242,7 @@ acceleration = [0, -10]
 wall = "reaction_n(wall)"
 floor = "reaction_t(floor)"
 """
+)
 
 
 def test_outputs_of_a_structure_know_that_it_rests_on_friction_or_slides():
@@ -227,7 +257,9 @@ def test_outputs_of_a_structure_know_that_it_rests_on_friction_or_slides():
     assert not held.answered and "contact 'B' would have to pull" in held.message
 
 
-BOOM = HEAD + """
+BOOM = (
+    HEAD
+    + """
 [parameters]
 m = 50
 g = 9.81
@@ -249,6 +281,7 @@ acceleration = [0, "-g"]
 x = "reaction_x(boom)"
 cable = "tension(cable)"
 """
+)
 
 
 def test_what_the_ties_hold_has_no_rate():

@@ -82,7 +82,7 @@ def test_the_good_model_is_good(tmp_path):
 
 MISTAKES = {
     # what: (text, its replacement, culprit under the caret, word of the message)
-    "unknown key": ('center = [0.1, 0]', 'centre = [0.1, 0]', "centre", "did you mean 'center'"),
+    "unknown key": ("center = [0.1, 0]", "centre = [0.1, 0]", "centre", "did you mean 'center'"),
     "unknown kind": ('kind = "gravity"', 'kind = "gravty"', "gravty", "did you mean 'gravity'"),
     "unknown table": ("[inputs]", "[input]", "input", "did you mean 'inputs'"),
     "unknown name": ('angle = "q1"', 'angle = "2*q11"', "q11", "did you mean 'q1'"),
@@ -221,10 +221,13 @@ def test_every_verb_says_the_same_of_a_bad_model(verb, tmp_path):
 @pytest.mark.parametrize(
     "words",
     [
-        ("derive", "-o", "out.tex"), ("derive", "--json", "-o", "out.json"), ("solve", "-o", "out.txt"),
-        ("simulate", "-o", "out.csv", "--plot", "out.png"), ("codegen", "--target", "c", "-o", "out"),
+        ("derive", "-o", "out.tex"),
+        ("derive", "--json", "-o", "out.json"),
+        ("solve", "-o", "out.txt"),
+        ("simulate", "-o", "out.csv", "--plot", "out.png"),
+        ("codegen", "--target", "c", "-o", "out"),
     ],
-)  # fmt: skip
+)
 def test_a_bad_model_leaves_no_file_behind(words, tmp_path, monkeypatch):
     """Nothing is written before it can be written whole; what was there stays."""
     monkeypatch.chdir(tmp_path)
@@ -237,7 +240,7 @@ def test_a_bad_model_leaves_no_file_behind(words, tmp_path, monkeypatch):
 
 def test_missing_values_are_listed_all_at_once_where_numbers_are_needed(tmp_path):
     """derive and codegen do not need them; simulate refuses with exit code 1."""
-    text = GOOD.replace("{ value = 1.5, unit = \"kg\" }", "{}").replace("g = 9.81", "g = {}")
+    text = GOOD.replace('{ value = 1.5, unit = "kg" }', "{}").replace("g = 9.81", "g = {}")
     result = checked(tmp_path, text, "simulate")
     assert result.exit_code == 1
     assert "'m', 'g'" in result.stderr
@@ -283,7 +286,7 @@ def test_a_spring_between_points_that_are_one_is_refused():
 def test_texts_of_a_model_stay_texts_in_emitted_code(tmp_path):
     """Names and remarks that would close a comment or a string run nothing, in Python and in C."""
     model = tmp_path / "evil.toml"
-    model.write_text(r'''
+    model.write_text(r"""
 eomgen = 1
 name = "evil */ int x; /* \"\"\" \nraise SystemExit(9)"
 space = "plane"
@@ -300,7 +303,7 @@ joint = { kind = "revolute", angle = "lambda" }
 [forces.weight]
 kind = "gravity"
 acceleration = [0, "-exec"]
-''')
+""")
     for target in ("numpy", "c"):
         result = CliRunner().invoke(main, ["codegen", str(model), "--target", target, "-o", str(tmp_path)])
         assert result.exit_code == 0, result.stderr

@@ -27,8 +27,15 @@ from eomgen.symbolic.spatial import times
 
 MODELS = Path(__file__).parents[2] / "models"
 DERIVABLE = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))
-SMALL = ("double_pendulum", "elastic_pendulum", "cart_pole", "parallelogram_reactions", "bead_on_turning_hoop",
-         "four_bar", "slider_crank")  # fmt: skip
+SMALL = (
+    "double_pendulum",
+    "elastic_pendulum",
+    "cart_pole",
+    "parallelogram_reactions",
+    "bead_on_turning_hoop",
+    "four_bar",
+    "slider_crank",
+)
 
 
 def derived(name: str) -> Equations:
@@ -253,7 +260,9 @@ RUBBING = {
 x = { start = 0.3, speed = 1 }
 y = 0.4
 a = 0.9
-""" + BAR + """joint = { kind = "planar", x = "x", y = "y + l*sin(a) - 0.4", angle = "a" }
+"""
+    + BAR
+    + """joint = { kind = "planar", x = "x", y = "y + l*sin(a) - 0.4", angle = "a" }
 [constraints.floor]
 kind = "support"
 point = "bar.P"
@@ -269,14 +278,16 @@ mass = "m"
 inertia = "m*l^2"
 points = { P = ["l", 0] }
 joint = { kind = "revolute", angle = "a" }
-""" + BAR + """joint = { kind = "revolute", at = [1.5, 0], angle = "b" }
+"""
+    + BAR
+    + """joint = { kind = "revolute", at = [1.5, 0], angle = "b" }
 [constraints.slot]
 kind = "slider"
 point = "crank.P"
 on = "bar"
 friction = { viscous = "mu" }
 """,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", RUBBING)

@@ -228,9 +228,11 @@ def test_a_block_stays_where_friction_holds_it():
 
 def test_a_block_of_free_coordinates_slides_as_the_placed_one_does():
     """The normal reaction as a multiplier, or from the balance of the bodies: one motion."""
-    free = BLOCK.replace('coordinates.x = { speed = "v0" }', """
-    coordinates = { X = { speed = "v0*cos(alpha)" }, Y = { speed = "v0*sin(alpha)" } }""").replace(
-        '["x*cos(alpha)", "x*sin(alpha)"]', '["X", "Y"]')  # fmt: skip
+    free = BLOCK.replace(
+        'coordinates.x = { speed = "v0" }',
+        """
+    coordinates = { X = { speed = "v0*cos(alpha)" }, Y = { speed = "v0*sin(alpha)" } }""",
+    ).replace('["x*cos(alpha)", "x*sin(alpha)"]', '["X", "Y"]')
     one, other = run(BLOCK, 1.5), run(free, 1.5)
     assert one["x"][-1] == pytest.approx(other["X"][-1] / math.cos(0.5), abs=1e-7)
     assert [p.end for p in one.phases] == pytest.approx([p.end for p in other.phases], abs=1e-9)
@@ -293,9 +295,14 @@ def test_what_drags_a_block_over_a_rough_floor_overcomes_its_friction():
     assert run(text, 1.0).reactions["drive(x)"] == pytest.approx(2 * 1.5 + 0.3 * 2 * G)
 
 
-@pytest.mark.parametrize("coordinates", [
-    'coordinates.x = { speed = "v0" }', 'coordinates = { x = { speed = "v0" }, y = 0 }',
-], ids=["reacts", "closes"])  # fmt: skip
+@pytest.mark.parametrize(
+    "coordinates",
+    [
+        'coordinates.x = { speed = "v0" }',
+        'coordinates = { x = { speed = "v0" }, y = 0 }',
+    ],
+    ids=["reacts", "closes"],
+)
 def test_a_rail_that_pulls_brakes_as_one_that_pushes(coordinates):
     """N = -m g along the normal [0, -1]: x'' = -mu g sign(x') in the equations that `derive` gives, too."""
     text = """

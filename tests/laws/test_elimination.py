@@ -62,7 +62,10 @@ joint = { kind = "revolute", on = "A.end", angle = "d - a" }
 kind = "pin"
 points = ["B.end", "D.B"]
 """
-LADDER = HEAD + rod("bar", 'kind = "planar", point = "center", x = "x", y = "y", angle = "theta"') + """
+LADDER = (
+    HEAD
+    + rod("bar", 'kind = "planar", point = "center", x = "x", y = "y", angle = "theta"')
+    + """
 [coordinates]
 theta = 0.3
 x = { dependent = true, near = 0.1 }
@@ -71,13 +74,23 @@ y = { dependent = true, near = 0.3 }
 wall = { kind = "support", point = "bar.start", normal = [1, 0], at = [0, 0] }
 floor = { kind = "support", point = "bar.end", normal = [0, 1], at = [0, 0] }
 """
-PARALLELOGRAM = HEAD + cranks("a", "b") + COUPLER + """
+)
+PARALLELOGRAM = (
+    HEAD
+    + cranks("a", "b")
+    + COUPLER
+    + """
 [coordinates]
 a = { start = 1.0, speed = -3 }
 b = { dependent = true, near = 1.1 }
 d = { dependent = true, near = 0.05 }
 """
-THREE_CRANKS = HEAD + cranks("a", "b", "c") + COUPLER + """
+)
+THREE_CRANKS = (
+    HEAD
+    + cranks("a", "b", "c")
+    + COUPLER
+    + """
 [coordinates]
 a = 1.0
 b = { dependent = true, near = 1.1 }
@@ -87,8 +100,12 @@ d = { dependent = true, near = 0.05 }
 kind = "pin"
 points = ["C.end", "D.C"]
 """
+)
 ONE_OF_TWO = HEAD + cranks("a", "b") + COUPLER + "[coordinates]\na = 1\nb = { dependent = true, near = 1 }\nd = 0\n"
-GEARS = HEAD + rod("arm", 'kind = "revolute", angle = "b"') + """
+GEARS = (
+    HEAD
+    + rod("arm", 'kind = "revolute", angle = "b"')
+    + """
 [coordinates]
 a = { motion = "sin(w*t)" }
 b = 0.2
@@ -116,7 +133,11 @@ kind = "generalized"
 coordinate = "c"
 value = "-0.1*c'"
 """
-SKATE = HEAD + rod("S", 'kind = "planar", point = "center", x = "x + z", y = "y", angle = "theta"') + """
+)
+SKATE = (
+    HEAD
+    + rod("S", 'kind = "planar", point = "center", x = "x + z", y = "y", angle = "theta"')
+    + """
 [coordinates]
 x = 0.2
 y = { dependent = true, start = 0.4 }
@@ -126,14 +147,20 @@ z = { motion = "t^2" }
 kind = "equation"
 rate = "(x' + z')*sin(theta) - y'*cos(theta)"
 """
+)
 MOVING_WALL = LADDER.replace(
     'wall = { kind = "support", point = "bar.start", normal = [1, 0], at = [0, 0] }',
     'wall = { kind = "equation", gap = "x - l/2*cos(theta) - sin(w*t)" }',
 )
 CASES = {
-    "ladder": LADDER, "parallelogram": PARALLELOGRAM, "three cranks": THREE_CRANKS, "one of two": ONE_OF_TWO,
-    "gears": GEARS, "skate": SKATE, "moving wall": MOVING_WALL,
-}  # fmt: skip
+    "ladder": LADDER,
+    "parallelogram": PARALLELOGRAM,
+    "three cranks": THREE_CRANKS,
+    "one of two": ONE_OF_TWO,
+    "gears": GEARS,
+    "skate": SKATE,
+    "moving wall": MOVING_WALL,
+}
 
 MODELS = Path(__file__).parents[2] / "models"
 cases = pytest.mark.parametrize("name", CASES)

@@ -105,7 +105,10 @@ def test_a_flat_truss_of_two_springs_snaps_through():
     free = found_in(model_of(TRUSS, m=1, a=1, h=0.4, k=1000))
     assert free.complete
     assert [(exact(e)["y"], e.stability.kind) for e in free.found] == [
-        ("h", "stable"), ("0", "unstable"), ("-h", "stable")]  # fmt: skip
+        ("h", "stable"),
+        ("0", "unstable"),
+        ("-h", "stable"),
+    ]
     assert len(found_in(model_of(TRUSS + LOAD, m=1, a=1, h=0.4, k=1000, P=10)).found) == 3
     (below,) = found_in(model_of(TRUSS + LOAD, m=1, a=1, h=0.4, k=1000, P=100)).found
     assert number(below, "y") < -0.4 and below.stability.kind == "stable"
@@ -247,8 +250,10 @@ def four_bar_energy(alpha: float, near: np.ndarray) -> tuple[float, np.ndarray]:
     x = near.copy()
     for _ in range(30):
         beta, gamma = x
-        gap = [a * math.cos(alpha) + b * math.cos(beta) - c * math.cos(gamma) - d,
-               a * math.sin(alpha) + b * math.sin(beta) - c * math.sin(gamma)]  # fmt: skip
+        gap = [
+            a * math.cos(alpha) + b * math.cos(beta) - c * math.cos(gamma) - d,
+            a * math.sin(alpha) + b * math.sin(beta) - c * math.sin(gamma),
+        ]
         J = [[-b * math.sin(beta), c * math.sin(gamma)], [b * math.cos(beta), -c * math.cos(gamma)]]
         x = x - np.linalg.solve(J, gap)
     heights = a / 2 * math.sin(alpha), a * math.sin(alpha) + b / 2 * math.sin(x[0]), c / 2 * math.sin(x[1])
@@ -268,8 +273,18 @@ def test_a_four_bar_rests_where_its_energy_is_stationary():
         assert e.stability.kind == ("stable" if e.stability.K[0][0] > 0 else "unstable")
 
 
-@pytest.mark.parametrize("path", ["four_bar", "slider_crank", "elastic_pendulum", "double_pendulum", "cart_pole",
-                                  "rolling_disc_and_bar", "two_mass_oscillator"])  # fmt: skip
+@pytest.mark.parametrize(
+    "path",
+    [
+        "four_bar",
+        "slider_crank",
+        "elastic_pendulum",
+        "double_pendulum",
+        "cart_pole",
+        "rolling_disc_and_bar",
+        "two_mass_oscillator",
+    ],
+)
 def test_at_rest_the_equations_of_motion_have_no_acceleration(path):
     """u = 0 and a = 0 solve them, each place, dependent coordinates and closing ties included."""
     model = eomgen.load(f"models/{path}.toml")
@@ -389,7 +404,7 @@ def test_a_ladder_on_a_smooth_wall_held_by_a_string():
 
 
 def test_more_unknowns_than_freedoms_are_refused():
-    text = LADDER.replace('[coordinates]', 'T = "another"\n[coordinates]').replace('["-S", 0]', '["-S - T", 0]')
+    text = LADDER.replace("[coordinates]", 'T = "another"\n[coordinates]').replace('["-S", 0]', '["-S - T", 0]')
     with pytest.raises(DerivationError, match="more unknowns than freedoms"):
         holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
 
@@ -442,7 +457,9 @@ joint = { kind = "planar", x = "x", y = "y", angle = "th" }
 
 def test_a_contact_that_would_have_to_pull_is_named():
     box = BOX.replace("y = 0", "y = 0\nx = 0\nth = 0")
-    text = box + """
+    text = (
+        box
+        + """
 [constraints.floor]
 kind = "support"
 point = "b.center"
@@ -454,16 +471,28 @@ turn = { kind = "torsion_spring", body = "b", stiffness = 3 }
 [outputs]
 th = { value = "th", at = "equilibrium" }
 """
+    )
     assert "'floor' would have to pull" in (eomgen.solve(model_of(text + WEIGHT, m=1, g=10))["th"].message or "")
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    (BOX.replace('x = "x"', 'x = "0"').replace('angle = "th"', 'angle = "0"') + WEIGHT, "nothing balances the force"),
-    (BOX.replace("y = 0", "y = 0\nx = 0\nth = 0") + WEIGHT + '[constraints.f]\nkind = "support"\n'
-     'point = "b.center"\nnormal = [0, 1]\nfriction = 0.3\n', "'f' rubs"),
-    (BOX.replace("y = 0", 'y = 0\nx = { motion = "2*t" }').replace('angle = "th"', 'angle = "0"') + WEIGHT,
-     "moves on at a constant rate"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            BOX.replace('x = "x"', 'x = "0"').replace('angle = "th"', 'angle = "0"') + WEIGHT,
+            "nothing balances the force",
+        ),
+        (
+            BOX.replace("y = 0", "y = 0\nx = 0\nth = 0") + WEIGHT + '[constraints.f]\nkind = "support"\n'
+            'point = "b.center"\nnormal = [0, 1]\nfriction = 0.3\n',
+            "'f' rubs",
+        ),
+        (
+            BOX.replace("y = 0", 'y = 0\nx = { motion = "2*t" }').replace('angle = "th"', 'angle = "0"') + WEIGHT,
+            "moves on at a constant rate",
+        ),
+    ],
+)
 def test_what_rests_nowhere_or_anywhere_is_refused(text, words):
     with pytest.raises(DerivationError, match=words):
         found_in(model_of(text, m=1, g=10))

@@ -114,7 +114,8 @@ joint = {{ {joint} }}
 
 SEAT = 'on = "base", at = [0.1, 0, "r"], point = "A", turned = { axis = [0, 1, 0], angle = 0.4 }'
 POINT = 'on = "base.B", turned = [{ axis = [1, 0, 0], angle = "pi/5" }, { angle = 0.1 }]'
-QUATERNION = """
+QUATERNION = (
+    """
 [coordinates]
 e0 = 0.9
 e1 = 0.1
@@ -125,7 +126,9 @@ w1 = { start = 0.3 }
 w2 = { start = -0.2 }
 w3 = { start = 1 }
 [bodies.child]
-""" + TENSOR
+"""
+    + TENSOR
+)
 BY_QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'
 PIECES = '[{ name = "way", line = 0.5, friction = "mu" }, { arc = 1.2, turn = "cw", angle = 1 }]'
 
@@ -167,7 +170,8 @@ joint = {{ kind = "path", at = [0, 1], along = "s", heading = 0.3, pieces = {PIE
 kind = "gravity"
 acceleration = [0, -9.81]
 """,
-    "forces": ARMS_2 + all_forces(
+    "forces": ARMS_2
+    + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', -9.81]\nbodies = ['two']",
         force="kind = 'force'\npoint = 'two.Q'\nforce = ['u', \"-a'\"]\naxes = 'one'",
         couple="kind = 'couple'\nbody = 'two'\ncouple = 'u*a'\npoint = 'two.Q'",
@@ -185,8 +189,9 @@ acceleration = [0, -9.81]
         push="kind = 'generalized'\ncoordinate = 'a'\nvalue = \"u - c*a'\"",
     ),
     "pin": tie("kind = 'pin'\npoints = ['plate.P']", free()),
-    "support": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2]\nat = [0.7, 1]\nfriction = 'mu'",
-                   free(", speed = 1")),
+    "support": tie(
+        "kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2]\nat = [0.7, 1]\nfriction = 'mu'", free(", speed = 1")
+    ),
     "unilateral": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [0, 1]\nunilateral = true", free()),
     "clamp": tie("kind = 'clamp'\npoint = 'plate.P'", free()),
     "welded": tie("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", free() + DRUM),
@@ -195,21 +200,32 @@ acceleration = [0, -9.81]
     "pushing slider": tie("kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nunilateral = true", free() + DRUM),
     "link": tie("kind = 'link'\npoints = ['plate.P', 'drum.M']\nlength = 1.26\nunilateral = true", free() + DRUM),
     "rolling": tie("kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }", free()),
-    "slipping": tie("kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }\nslip = true\n"
-                    "friction = 'mu'\nradius = 0.3\ncenter = 'P'", free(", speed = 1")),
-    "in a circle": tie("kind = 'rolling'\nbody = 'plate'\nunilateral = true\n"
-                       "circle = { at = [0, 1.5], radius = 0.765, inside = true }", free()),
+    "slipping": tie(
+        "kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }\nslip = true\n"
+        "friction = 'mu'\nradius = 0.3\ncenter = 'P'",
+        free(", speed = 1"),
+    ),
+    "in a circle": tie(
+        "kind = 'rolling'\nbody = 'plate'\nunilateral = true\n"
+        "circle = { at = [0, 1.5], radius = 0.765, inside = true }",
+        free(),
+    ),
     "on a body": tie("kind = 'rolling'\nbody = 'plate'\non = 'drum'\nslip = true", free() + DRUM),
     "skate": tie("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.2]", free()),
-    "string": tie("kind = 'string'\npath = ['plate.P', { at = [0.5, 2], radius = 0.1, turn = 'cw', slip = true }, "
-                  "{ body = 'drum', turn = 'cw' }]\nunilateral = true", free() + DRUM),
-    "straight strands": tie("kind = 'string'\npath = ['plate.P', { body = 'drum', turn = 'ccw' }]\nstrands = ['down']",
-                            free().replace("x = { start = 0.4 }", "x = 0.4").replace("d = 0.3", "d = 0") + DRUM),
+    "string": tie(
+        "kind = 'string'\npath = ['plate.P', { at = [0.5, 2], radius = 0.1, turn = 'cw', slip = true }, "
+        "{ body = 'drum', turn = 'cw' }]\nunilateral = true",
+        free() + DRUM,
+    ),
+    "straight strands": tie(
+        "kind = 'string'\npath = ['plate.P', { body = 'drum', turn = 'ccw' }]\nstrands = ['down']",
+        free().replace("x = { start = 0.4 }", "x = 0.4").replace("d = 0.3", "d = 0") + DRUM,
+    ),
     "gear": tie("kind = 'gear'\nbodies = ['plate', 'drum']\nratio = -3.5", free() + DRUM),
     "equation": tie("kind = 'equation'\ngap = 'y(plate.P, drum) - x(plate.P)^2 - 0.7'", free() + DRUM),
     "rate": tie("kind = 'equation'\nrate = \"x' - r*d' - 0.3*omega(plate)\"", free()),
     "motion": tie("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", free(", speed = 1")),
-}  # fmt: skip
+}
 DRUM_3 = """
 [coordinates.e]
 start = 0.1
@@ -222,34 +238,54 @@ joint = { kind = "revolute", axis = [1, 2, 2], angle = "e" }
 FLOOR = "plane = { at = [0, 0, 0], normal = [0, 0.1, 1] }"
 SPACE = {
     "fixed": jointed(f'kind = "fixed", {SEAT}, axis = [1, 2, 2], angle = 0.3'),
-    "revolute": jointed(f'kind = "revolute", {SEAT}, axis = [1, -2, 2], angle = "a", torque = "2 - a\'", {EFFORTS}',
-                        "a"),
-    "prismatic": jointed(f'kind = "prismatic", {SEAT}, axis = [1, -2, 2], displacement = "a", angle = 0.4, '
-                         f'force = "t", {EFFORTS}', "a"),
-    "cylindrical": jointed(f'kind = "cylindrical", {SEAT}, axis = [1, -2, "l"], displacement = "a", angle = "b", '
-                           'force = "-c*a\'", torque = "t"', "a", "b"),
-    "screw": jointed(f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {EFFORTS}',
-                     "a"),
+    "revolute": jointed(
+        f'kind = "revolute", {SEAT}, axis = [1, -2, 2], angle = "a", torque = "2 - a\'", {EFFORTS}', "a"
+    ),
+    "prismatic": jointed(
+        f'kind = "prismatic", {SEAT}, axis = [1, -2, 2], displacement = "a", angle = 0.4, force = "t", {EFFORTS}', "a"
+    ),
+    "cylindrical": jointed(
+        f'kind = "cylindrical", {SEAT}, axis = [1, -2, "l"], displacement = "a", angle = "b", '
+        'force = "-c*a\'", torque = "t"',
+        "a",
+        "b",
+    ),
+    "screw": jointed(
+        f'kind = "screw", {SEAT}, axis = [1, -2, 2], angle = "a", pitch = 0.15, torque = "t", {EFFORTS}', "a"
+    ),
     "universal": jointed(f'kind = "universal", {SEAT}, axes = [[1, 0, 0.2], [0, 1, 0]], angles = ["a", "b"]', "a", "b"),
     "planar": jointed(f'kind = "planar", {SEAT}, x = "a", y = "b", angle = "d"', "a", "b", "d"),
     "spherical": jointed(f'kind = "spherical", {SEAT}, orientation = "zxz", angles = ["a", "b", "d"]', "a", "b", "d"),
     "path": jointed(f'kind = "path", {SEAT}, along = "a", heading = 0.3, pieces = {PIECES}', "a"),
-    "placed": jointed('kind = "placed", on = "base", at = ["a", 0, "b"], turned = { angle = 1 }, axis = [0, 1, 1], '
-                      'angle = "b"', "a", "b"),
-    "free": jointed(f'kind = "free", {SEAT}, position = ["a", "b", "d"], orientation = "xyz", angles = ["f", "h", "j"]',
-                    "a", "b", "d", "f", "h", "j"),
-    "placed by angles": jointed('kind = "placed", on = "base", at = ["a", 0, "b"], orientation = "yxz", '
-                                'angles = ["b", "a", "2*b"]', "a", "b"),
+    "placed": jointed(
+        'kind = "placed", on = "base", at = ["a", 0, "b"], turned = { angle = 1 }, axis = [0, 1, 1], angle = "b"',
+        "a",
+        "b",
+    ),
+    "free": jointed(
+        f'kind = "free", {SEAT}, position = ["a", "b", "d"], orientation = "xyz", angles = ["f", "h", "j"]',
+        "a",
+        "b",
+        "d",
+        "f",
+        "h",
+        "j",
+    ),
+    "placed by angles": jointed(
+        'kind = "placed", on = "base", at = ["a", 0, "b"], orientation = "yxz", angles = ["b", "a", "2*b"]', "a", "b"
+    ),
     "placed by a quaternion": QUATERNION + f'joint = {{ kind = "placed", at = ["t", 0, 1], {BY_QUATERNION} }}\n',
     "spherical by a quaternion": QUATERNION + f'joint = {{ kind = "spherical", {BY_QUATERNION} }}\n',
     "free by a quaternion": QUATERNION.replace("[speeds]", "x = 1\ny = 0\nz = { speed = 1 }\n[speeds]")
-                            + f'joint = {{ kind = "free", position = ["x", "y", "z"], {BY_QUATERNION} }}\n',
+    + f'joint = {{ kind = "free", position = ["x", "y", "z"], {BY_QUATERNION} }}\n',
     "pin": tie("kind = 'pin'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
     "hinge": tie("kind = 'pin'\npoints = ['plate.P']\naxis = [1, 1, 0]", loose()),
     "support": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2, 2]\nfriction = 'mu'", loose(", speed = 1")),
     "clamp": tie("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
     "guide": tie("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 1, 0.3]", loose()),
-    "slider": tie("kind = 'slider'\npoint = 'plate.P'\non = 'rail'\nfriction = 'mu'", """
+    "slider": tie(
+        "kind = 'slider'\npoint = 'plate.P'\non = 'rail'\nfriction = 'mu'",
+        """
 [coordinates]
 s = { start = 0.4, speed = 1 }
 w = { motion = "t" }
@@ -261,35 +297,53 @@ joint = { kind = "revolute", angle = "w" }
 shape = { kind = "particle", mass = "m" }
 points = { P = [0, 0, 0] }
 joint = { kind = "placed", on = "rail", at = ["s", 0, 0] }
-"""),
+""",
+    ),
     "link": tie("kind = 'link'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
     "ball": tie(f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\n{FLOOR}", loose()),
-    "slipping ball on a body": tie("kind = 'rolling'\nbody = 'plate'\nradius = 0.1\non = 'drum'\nslip = true\n"
-                                   "friction = 'mu'\nplane = { at = [0, 0, 0.1], normal = [0, 0, 1] }",
-                                   loose(", speed = 1") + DRUM_3),
-    "ball in a pipe": tie("kind = 'rolling'\nbody = 'plate'\nradius = 0.1\n"
-                          "circle = { at = [0, 0, 0.1], radius = 0.7, axis = [1, 0, 0], inside = true }", loose()),
-    "tyre": tie(f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\ntube = 0.05\naxis = [0, 1, 0]\ncenter = 'P'\n{FLOOR}",
-                loose()),
-    "wheel in a bowl": tie("kind = 'rolling'\nbody = 'plate'\nradius = 0.1\naxis = [0, 0, 1]\n"
-                           "circle = { at = [0, 0, 0.1], radius = 0.7, inside = true }", loose()),
+    "slipping ball on a body": tie(
+        "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\non = 'drum'\nslip = true\n"
+        "friction = 'mu'\nplane = { at = [0, 0, 0.1], normal = [0, 0, 1] }",
+        loose(", speed = 1") + DRUM_3,
+    ),
+    "ball in a pipe": tie(
+        "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\n"
+        "circle = { at = [0, 0, 0.1], radius = 0.7, axis = [1, 0, 0], inside = true }",
+        loose(),
+    ),
+    "tyre": tie(
+        f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\ntube = 0.05\naxis = [0, 1, 0]\ncenter = 'P'\n{FLOOR}", loose()
+    ),
+    "wheel in a bowl": tie(
+        "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\naxis = [0, 0, 1]\n"
+        "circle = { at = [0, 0, 0.1], radius = 0.7, inside = true }",
+        loose(),
+    ),
     "ellipsoid": tie(f"kind = 'rolling'\nbody = 'plate'\nellipsoid = [0.2, 0.3, 0.4]\n{FLOOR}", loose()),
     "skate": tie("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.3, 0.2]\nnormal = [0, 1, 3]", loose()),
-    "string": tie("kind = 'string'\npath = ['plate.P', 'drum.M', "
-                  "{ at = [2, 0, 0], radius = 0.1, turn = 'cw', axis = [0, 1, 0] }]", loose() + DRUM_3.replace(
-                      "axis = [1, 2, 2]", "axis = [0, 1, 0]")),
-    "gear": tie("kind = 'gear'\nbodies = ['drum', 'wheel']\nratio = -3", DRUM_3 + """
+    "string": tie(
+        "kind = 'string'\npath = ['plate.P', 'drum.M', "
+        "{ at = [2, 0, 0], radius = 0.1, turn = 'cw', axis = [0, 1, 0] }]",
+        loose() + DRUM_3.replace("axis = [1, 2, 2]", "axis = [0, 1, 0]"),
+    ),
+    "gear": tie(
+        "kind = 'gear'\nbodies = ['drum', 'wheel']\nratio = -3",
+        DRUM_3
+        + """
 [coordinates.f]
 [bodies.wheel]
 mass = 1
 inertia = [1, 1, 1]
 joint = { kind = "revolute", at = [1, 0, 0], angle = "f" }
-"""),
+""",
+    ),
     "equation": tie("kind = 'equation'\ngap = 'z(plate.P, drum) - x(plate.P)^2 - 0.3'", loose() + DRUM_3),
-    "rate": tie("kind = 'equation'\nrate = 'vx(plate.P) - 0.2*omega_z(plate) - 0.1*vy(plate.Q, drum)'",
-                loose() + DRUM_3),
+    "rate": tie(
+        "kind = 'equation'\nrate = 'vx(plate.P) - 0.2*omega_z(plate) - 0.1*vy(plate.Q, drum)'", loose() + DRUM_3
+    ),
     "motion": tie("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", loose(", speed = 1")),
-    "forces": ARMS_3 + all_forces(
+    "forces": ARMS_3
+    + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', 0, -9.81]\nbodies = ['two']",
         force="kind = 'force'\npoint = 'two.Q'\nforce = ['u', \"-a'\", 1]\naxes = 'one'",
         couple="kind = 'couple'\nbody = 'two'\ncouple = ['u*a', 0, 1]\naxes = 'one'",
@@ -298,10 +352,14 @@ joint = { kind = "revolute", at = [1, 0, 0], angle = "f" }
         damper="kind = 'damper'\npoints = ['two.Q', 'one.start']\ndamping = 'c'",
         pull="kind = 'between'\npoints = ['two.Q', 'one.start']\npull = \"k/r^2 - c*r'\"",
     ),
-}  # fmt: skip
+}
 SEQUENCES = ("xyx", "xyz", "xzx", "xzy", "yxy", "yxz", "yzx", "yzy", "zxy", "zxz", "zyx", "zyz")
-SPACE |= {f"spherical {axes}": jointed(f'kind = "spherical", {POINT}, orientation = "{axes}", angles = ["a", "b", "d"]',
-                                       "a", "b", "d") for axes in SEQUENCES}  # fmt: skip
+SPACE |= {
+    f"spherical {axes}": jointed(
+        f'kind = "spherical", {POINT}, orientation = "{axes}", angles = ["a", "b", "d"]', "a", "b", "d"
+    )
+    for axes in SEQUENCES
+}
 SAMPLES = {f"plane {name}": HEAD.format("plane") + text for name, text in PLANE.items()}
 SAMPLES |= {f"space {name}": HEAD.format("space") + text for name, text in SPACE.items()}
 

@@ -336,16 +336,16 @@ KINDS = {
     "plane motion": '{ kind = "placed", at = ["q", "q^2", 1], angle = "q" }',
     "helical motion": '{ kind = "placed", at = [1, 2, "h*q"], angle = "q" }',
     "rotation about a fixed axis and sliding along it": '{ kind = "placed", at = [1, 2, "s"], angle = "q" }',
-    "rotation about a fixed point":
-        '{ kind = "placed", at = [0, 1, 0], point = "tip", orientation = "zxz", angles = ["q", "p", 0] }',
+    "rotation about a fixed point": '{ kind = "placed", at = [0, 1, 0], point = "tip", orientation = "zxz", '
+    'angles = ["q", "p", 0] }',
     "general motion": '{ kind = "placed", at = ["s", 1, "q"], orientation = "zxz", angles = ["q", "p", 0] }',
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_kinds_of_motion_in_space_are_told_apart(kind):
     """By omega, its direction, omega.v, and the rate of the axis."""
-    use = "outputs = { a = \"q + p + s + z\" }\n"
+    use = 'outputs = { a = "q + p + s + z" }\n'
     text = f"{BODIES}{use}[bodies.body]\npoints = {{ tip = [0, 0.2, 0.1] }}\njoint = {KINDS[kind]}\n"
     kinds, _ = kinds_of(text)
     assert kinds.of("body").name == kind
@@ -353,7 +353,7 @@ def test_kinds_of_motion_in_space_are_told_apart(kind):
 
 def test_a_screw_has_its_axis_and_its_pitch():
     """The axis through (1, 2), advancing h per radian."""
-    kinds, _ = kinds_of(f"{BODIES}outputs = {{ a = \"p + s + z\" }}\nbodies.nut.joint = {KINDS['helical motion']}\n")
+    kinds, _ = kinds_of(f'{BODIES}outputs = {{ a = "p + s + z" }}\nbodies.nut.joint = {KINDS["helical motion"]}\n')
     kind = kinds.of("nut")
     assert [to_text(x) for x in (*kind.at, *kind.axis, kind.pitch)] == ["1", "2", "0", "0", "0", "1", "h"]
 
@@ -362,7 +362,7 @@ def test_a_fixed_point_is_found_and_named():
     """The tip of the top."""
     joint = KINDS["rotation about a fixed point"]
     points = "points = { tip = [0, 0.2, 0.1] }"
-    kinds, _ = kinds_of(f"{BODIES}outputs = {{ a = \"s + z\" }}\n[bodies.top]\n{points}\njoint = {joint}\n")
+    kinds, _ = kinds_of(f'{BODIES}outputs = {{ a = "s + z" }}\n[bodies.top]\n{points}\njoint = {joint}\n')
     kind = kinds.of("top")
     assert kind.point == "top.tip"
     assert [to_text(x) for x in kind.at] == ["0", "1", "0"]
@@ -382,8 +382,10 @@ constraints.B = { kind = "pin", points = ["coupler.B", "rocker.B"] }
 """
     kinds, _ = kinds_of(text)
     assert [kinds.of(body).name for body in ("crank", "coupler", "rocker")] == [
-        "rotation about a fixed axis", "circular translation", "rotation about a fixed axis",
-    ]  # fmt: skip
+        "rotation about a fixed axis",
+        "circular translation",
+        "rotation about a fixed axis",
+    ]
     assert to_text(kinds.of("coupler").way.radius) == "r"
 
 

@@ -33,19 +33,30 @@ D = "drive(psi)"
 """
 RAIL = 'constraints.rail = { kind = "slider", point = "bead.center", on = "rod", LAW }\n'
 BEADS = {
-    "identical": ("rail", RAIL + """
+    "identical": (
+        "rail",
+        RAIL
+        + """
         coordinates = { psi = { motion = "W*t" }, r = { start = 0.4, speed = 0.2 } }
         bodies.bead.shape = { kind = "particle", mass = "m" }
-        bodies.bead.joint = { kind = "placed", at = ["r*cos(psi)", "r*sin(psi)", 0] }"""),
-    "closing": ("rail", RAIL + """
+        bodies.bead.joint = { kind = "placed", at = ["r*cos(psi)", "r*sin(psi)", 0] }""",
+    ),
+    "closing": (
+        "rail",
+        RAIL
+        + """
         coordinates = { psi = { motion = "W*t" }, x = { start = 0.4, speed = 0.2 }, y = { speed = 1.2 }, z = 0 }
         bodies.bead.shape = { kind = "particle", mass = "m" }
-        bodies.bead.joint = { kind = "placed", at = ["x", "y", "z"] }"""),
-    "path": ("bead", """
+        bodies.bead.joint = { kind = "placed", at = ["x", "y", "z"] }""",
+    ),
+    "path": (
+        "bead",
+        """
         coordinates = { psi = { motion = "W*t" }, r = { start = 0.4, speed = 0.2 } }
         bodies.bead.shape = { kind = "particle", mass = "m" }
-        bodies.bead.joint = { kind = "path", on = "rod", along = "r", pieces = [{ line = 9, LAW }] }"""),
-}  # fmt: skip
+        bodies.bead.joint = { kind = "path", on = "rod", along = "r", pieces = [{ line = 9, LAW }] }""",
+    ),
+}
 
 
 def bead(kind: str, law: str) -> eomgen.Model:
@@ -76,7 +87,9 @@ def test_viscous_friction_grows_with_the_resultant_too():
     assert found["F"].value == pytest.approx(-0.7 * found["N"].value * 0.2, rel=1e-12)
 
 
-CIRCLE = HEAD + """
+CIRCLE = (
+    HEAD
+    + """
 parameters = { m = 0.2, mu = 0.15, g = 9.81, R = 0.7, v0 = 3 }
 coordinates.s = { speed = "v0" }
 bodies.bead.shape = { kind = "particle", mass = "m" }
@@ -85,6 +98,7 @@ kind = "path"
 along = "s"
 pieces = [{ arc = "R", turn = "ccw", angle = "6*pi", friction = "mu" }]
 """
+)
 
 
 def test_a_bead_on_a_level_circle_of_wire_comes_to_rest():
@@ -100,7 +114,9 @@ def test_a_bead_on_a_level_circle_of_wire_comes_to_rest():
     assert run["reaction_t(bead)"][moving][:-1] == pytest.approx(-mu * 0.2 * np.hypot(G, v**2 / R)[:-1], rel=1e-7)
 
 
-SLOPE = HEAD + """
+SLOPE = (
+    HEAD
+    + """
 parameters = { m = 0.2, mu = MU, g = 9.81, a = 0.4 }
 coordinates = { x = { speed = "2*cos(a)" }, y = 0, z = { speed = "2*sin(a)" } }
 points.O = [0, 0, 0]
@@ -109,6 +125,7 @@ bodies.bead.shape = { kind = "particle", mass = "m" }
 bodies.bead.joint = { kind = "placed", at = ["x", "y", "z"] }
 constraints.rail = { kind = "slider", point = "bead.center", on = "wire", friction = "mu" }
 """
+)
 
 
 @pytest.mark.parametrize("mu", [0.6, 0.2])
@@ -126,7 +143,9 @@ def test_a_bead_thrown_up_a_wire_stays_or_slides_back(mu):
 
 # -- contacts that press one another ----------------------------------------------------------------
 
-DRAWER = HEAD + """
+DRAWER = (
+    HEAD
+    + """
 parameters = { m = 2, mu = 0.35, g = 9.81, b = 0.3, P = 60, c = 0.25, h = 0.1 }
 bodies.bar = { points = { A = [0, 0, 0], B = [1, 0, 0] }, line = ["A", "B"], joint = { kind = "fixed" } }
 constraints.one = { kind = "slider", point = "plate.one", on = "bar", friction = "mu" }
@@ -138,13 +157,16 @@ inertia = [0.02, 0.03, 0.04, 0.001, -0.002, 0.003]
 points = { one = ["-b", 0.01, "h"], two = ["b", 0.01, "h"], grip = [0.1, "c", 0.02] }
 joint = { kind = "free", position = ["x", "y", "z"], orientation = "xyz", angles = ["q", "e", "f"] }
 [coordinates]
-"""  # fmt: skip
+"""
+)
 FREE = "x = { speed = 0.5 }\nq = 0\n"
 DRAWERS = {
     "closing": FREE + "y = -0.01\nz = -0.1\ne = 0\nf = 0",
-    "dependent": FREE + "\n".join(f"{k} = {{ dependent = true, start = {v} }}"
-                                  for k, v in {"y": -0.01, "z": -0.1, "e": 0, "f": 0}.items()),
-}  # fmt: skip
+    "dependent": FREE
+    + "\n".join(
+        f"{k} = {{ dependent = true, start = {v} }}" for k, v in {"y": -0.01, "z": -0.1, "e": 0, "f": 0}.items()
+    ),
+}
 
 
 def drawer_by_newton() -> dict[str, float]:
@@ -191,7 +213,9 @@ def test_eyes_that_jam_have_no_acceleration():
 
 # -- on surfaces ------------------------------------------------------------------------------------
 
-PUCK = HEAD + """
+PUCK = (
+    HEAD
+    + """
 parameters = { m = 2, mu = MU, g = 9.81, a = 0.3 }
 coordinates = { s = SPEED, y = 0 }
 bodies.puck.shape = { kind = "particle", mass = "m" }
@@ -200,6 +224,7 @@ outputs.stop = { value = "s", at = "s' = 0" }
 outputs.a_s = "s''"
 constraints.slope = { kind = "support", point = "puck.center", normal = ["-sin(a)", 0, "cos(a)"], friction = "mu" }
 """
+)
 
 
 @pytest.mark.parametrize("mu", [0.5, 0.1])
@@ -219,7 +244,9 @@ def test_code_has_a_value_where_nothing_slides_yet_on_a_surface():
     assert "friction has no direction there" in eomgen.solve(model)["a_s"].message
 
 
-REST = HEAD + """
+REST = (
+    HEAD
+    + """
 parameters = { m = 2, mu = MU, g = 9.81, a = 0.3, P = 3 }
 outputs.N = "reaction_n(hold)"
 forces.side = { kind = "force", point = "block.center", force = [0, "P", 0] }
@@ -234,6 +261,7 @@ joint = { kind = "placed", at = ["cos(a)", 0, "sin(a)"] }
 friction = "mu"
 point = "block.center"
 """
+)
 SIN, COS = 2 * G * math.sin(0.3), 2 * G * math.cos(0.3)
 HOLDS = {
     "surface": ('kind = "support"\nnormal = ["-sin(a)", 0, "cos(a)"]\n', COS, math.hypot(SIN, 3) / COS),
@@ -245,7 +273,9 @@ HOLDS = {
 def test_a_block_rests_as_long_as_the_resultants_allow(kind):
     """On a surface sqrt(F_t^2 + F_s^2) <= mu N, on a line |F| <= mu sqrt(N_1^2 + N_2^2)."""
     contact, N, needed = HOLDS[kind]
-    rests, slides = (eomgen.solve(eomgen.loads(REST.replace("MU", str(mu)) + contact))["N"]
-                     for mu in (1.001 * needed, 0.999 * needed))  # fmt: skip
+    rests, slides = (
+        eomgen.solve(eomgen.loads(REST.replace("MU", str(mu)) + contact))["N"]
+        for mu in (1.001 * needed, 0.999 * needed)
+    )
     assert rests.value == pytest.approx(N, rel=1e-12)
     assert slides.value is None and "would need more friction" in slides.message

@@ -125,7 +125,10 @@ def test_a_car_with_a_trailer_rests_at_any_angle_once_its_steering_spring_is_sla
     found = resting(model)
     (place,) = found["equilibria"]
     assert {name: place["coordinates"][name]["exact"] for name in ("th", "de", "ga")} == {
-        "th": "3/10", "de": "0", "ga": "1/5"}  # fmt: skip
+        "th": "3/10",
+        "de": "0",
+        "ga": "1/5",
+    }
     assert found["chosen"] == ["th", "ga"] and place["stability"]["kind"] == "stable"
     assert still(model, place) < 1e-12
 
@@ -247,8 +250,15 @@ def test_a_tie_that_drives_has_the_columns_of_a_driven_coordinate(text):
     for name, column in runs[0].reactions.items():
         assert runs[1][name] == pytest.approx(column, rel=1e-6, abs=1e-6, nan_ok=True), name
     run = runs[1]
-    work = np.concatenate([[0], np.cumsum(np.diff(run.t) / 2 * (run["drive(th)"] * run["th'"])[:-1]
-                                          + np.diff(run.t) / 2 * (run["drive(th)"] * run["th'"])[1:])])  # fmt: skip
+    work = np.concatenate(
+        [
+            [0],
+            np.cumsum(
+                np.diff(run.t) / 2 * (run["drive(th)"] * run["th'"])[:-1]
+                + np.diff(run.t) / 2 * (run["drive(th)"] * run["th'"])[1:]
+            ),
+        ]
+    )
     assert run.energy - run.energy[0] == pytest.approx(work, abs=1e-4) and np.ptp(run.energy) > 1
 
 
@@ -402,9 +412,11 @@ acceleration = [0, 0, -9.81]
 def test_a_body_on_a_ball_joint_rests_only_below_and_above(sequence):
     """m g x r = 0: not where the angles lock, however their three forces vanish there."""
     found = resting(eomgen.loads(BALL_JOINT.format(sequence=sequence)))
-    turns = {"x": lambda w: [[1, 0, 0], [0, math.cos(w), -math.sin(w)], [0, math.sin(w), math.cos(w)]],
-             "y": lambda w: [[math.cos(w), 0, math.sin(w)], [0, 1, 0], [-math.sin(w), 0, math.cos(w)]],
-             "z": lambda w: [[math.cos(w), -math.sin(w), 0], [math.sin(w), math.cos(w), 0], [0, 0, 1]]}  # fmt: skip
+    turns = {
+        "x": lambda w: [[1, 0, 0], [0, math.cos(w), -math.sin(w)], [0, math.sin(w), math.cos(w)]],
+        "y": lambda w: [[math.cos(w), 0, math.sin(w)], [0, 1, 0], [-math.sin(w), 0, math.cos(w)]],
+        "z": lambda w: [[math.cos(w), -math.sin(w), 0], [math.sin(w), math.cos(w), 0], [0, 0, 1]],
+    }
     heights = []
     for place in found["equilibria"]:
         R = np.eye(3)

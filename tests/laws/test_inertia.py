@@ -34,8 +34,6 @@ def number(x: float) -> str:
 # -- composites against the integral over their area ------------------------------------------------
 
 
-
-
 def random_plate(rng: Random) -> list[dict]:
     """A rectangle with a triangle beside it and a round hole well inside, all turned and shifted."""
     a, b = rng.uniform(1, 2), rng.uniform(1, 2)
@@ -47,10 +45,15 @@ def random_plate(rng: Random) -> list[dict]:
 
     return [
         {"kind": "rectangle", "width": number(a), "height": number(b), "at": placed(0, 0), "angle": number(turn)},
-        {"kind": "triangle", "width": number(a / 3), "height": number(b / 2), "at": placed(a / 2, -b / 4),
-         "angle": number(turn)},
+        {
+            "kind": "triangle",
+            "width": number(a / 3),
+            "height": number(b / 2),
+            "at": placed(a / 2, -b / 4),
+            "angle": number(turn),
+        },
         {"kind": "disc", "radius": number(min(a, b) / 5), "at": placed(a / 9, b / 8), "angle": "0", "hole": True},
-    ]  # fmt: skip
+    ]
 
 
 def grid_moments(pieces: list[dict], m: float, points: int = 900) -> np.ndarray:
@@ -73,9 +76,14 @@ def grid_moments(pieces: list[dict], m: float, points: int = 900) -> np.ndarray:
 
 
 OUTPUTS = {
-    "x": "x(b.center)", "y": "y(b.center)", "J_x": "inertia_axis(O, x)", "J_y": "inertia_axis(O, y)",
-    "J_xy": "inertia_product(O, x, y)", "J_O": "inertia_point(O)", "P_x": "inertia_plane(O, x)",
-}  # fmt: skip
+    "x": "x(b.center)",
+    "y": "y(b.center)",
+    "J_x": "inertia_axis(O, x)",
+    "J_y": "inertia_axis(O, y)",
+    "J_xy": "inertia_product(O, x, y)",
+    "J_O": "inertia_point(O)",
+    "P_x": "inertia_plane(O, x)",
+}
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -110,22 +118,49 @@ def test_a_plate_with_a_notch_is_its_triangles_together(turn):
 def test_a_hole_can_be_cut_again_out_of_what_it_was_cut_from():
     """A plate less a piece, and that piece: the plate. An annulus is a disc less a disc; a tube a bar less a bar."""
     pairs = [
-        ("plane", [{"kind": "disc", "radius": 2}, {"kind": "disc", "radius": 1, "hole": True}],
-         {"kind": "annulus", "radius": 2, "inner": 1}),
-        ("space", [{"kind": "cylinder", "radius": 2, "length": 3},
-                   {"kind": "cylinder", "radius": 1, "length": 3, "hole": True}],
-         {"kind": "tube", "radius": 2, "inner": 1, "length": 3}),
-        ("space", [{"kind": "sphere", "radius": 2}, {"kind": "sphere", "radius": 1, "hole": True}],
-         {"kind": "hollow_sphere", "radius": 2, "inner": 1}),
-        ("space", [{"kind": "hemisphere", "radius": 2},
-                   {"kind": "hemisphere", "radius": 2, "axis": [1, 0, 0], "angle": "pi"}],
-         {"kind": "sphere", "radius": 2}),
-        ("plane", [{"kind": "sector", "radius": 2, "opening": "pi/3", "angle": "pi/6"},
-                   {"kind": "sector", "radius": 2, "opening": "5*pi/3", "angle": "7*pi/6"}],
-         {"kind": "disc", "radius": 2}),
-        ("plane", [{"kind": "arc", "radius": 2, "opening": "pi", "angle": "pi/2"},
-                   {"kind": "arc", "radius": 2, "opening": "pi", "angle": "-pi/2"}], {"kind": "ring", "radius": 2}),
-    ]  # fmt: skip
+        (
+            "plane",
+            [{"kind": "disc", "radius": 2}, {"kind": "disc", "radius": 1, "hole": True}],
+            {"kind": "annulus", "radius": 2, "inner": 1},
+        ),
+        (
+            "space",
+            [
+                {"kind": "cylinder", "radius": 2, "length": 3},
+                {"kind": "cylinder", "radius": 1, "length": 3, "hole": True},
+            ],
+            {"kind": "tube", "radius": 2, "inner": 1, "length": 3},
+        ),
+        (
+            "space",
+            [{"kind": "sphere", "radius": 2}, {"kind": "sphere", "radius": 1, "hole": True}],
+            {"kind": "hollow_sphere", "radius": 2, "inner": 1},
+        ),
+        (
+            "space",
+            [
+                {"kind": "hemisphere", "radius": 2},
+                {"kind": "hemisphere", "radius": 2, "axis": [1, 0, 0], "angle": "pi"},
+            ],
+            {"kind": "sphere", "radius": 2},
+        ),
+        (
+            "plane",
+            [
+                {"kind": "sector", "radius": 2, "opening": "pi/3", "angle": "pi/6"},
+                {"kind": "sector", "radius": 2, "opening": "5*pi/3", "angle": "7*pi/6"},
+            ],
+            {"kind": "disc", "radius": 2},
+        ),
+        (
+            "plane",
+            [
+                {"kind": "arc", "radius": 2, "opening": "pi", "angle": "pi/2"},
+                {"kind": "arc", "radius": 2, "opening": "pi", "angle": "-pi/2"},
+            ],
+            {"kind": "ring", "radius": 2},
+        ),
+    ]
     for space, parts, shape in pairs:
         outputs = {f"{i}{j}": f"inertia_tensor(O, {i}, {j})" for i in "xyz" for j in "xyz"}
         common = {"space": space, "points": {"O": [1, 2] if space == "plane" else [1, 2, 3]}, "outputs": outputs}
@@ -140,10 +175,17 @@ def test_a_piece_may_be_turned_any_way_in_space():
     for way in (diagonal, about_one):
         parts = [{"kind": "rod", "length": "sqrt(3)", **way}]
         found = answers(
-            space="space", bodies={"b": {"mass": 12, "parts": parts}}, points={"O": [0, 0, 0], "Q": [1, 1, 1]},
-            outputs={"along": "inertia_axis(O, Q)", "x": "x(b.center)", "y": "y(b.center)", "z": "z(b.center)",
-                     "across": "principal_moment(b.center, 3)"},
-        )  # fmt: skip
+            space="space",
+            bodies={"b": {"mass": 12, "parts": parts}},
+            points={"O": [0, 0, 0], "Q": [1, 1, 1]},
+            outputs={
+                "along": "inertia_axis(O, Q)",
+                "x": "x(b.center)",
+                "y": "y(b.center)",
+                "z": "z(b.center)",
+                "across": "principal_moment(b.center, 3)",
+            },
+        )
         expected = {"along": 0, "x": 0.5, "y": 0.5, "z": 0.5, "across": 3}
         assert found == pytest.approx(expected, abs=1e-12)
 
@@ -183,17 +225,24 @@ def assembled(seed: int) -> System:
         joint = {"kind": "fixed", "at": some(), "axis": some(), "angle": number(rng.uniform(-3, 3))}
         return joint if on is None else {**joint, "on": on}
 
-    return system_of(eomgen.Model(
-        space="space", points={"P": some(), "O": [0, 0, 0]},
-        bodies={
-            "box": {"shape": {"kind": "box", "mass": 2, "size": [1, 2, 3]}, "joint": hung(None)},
-            "cone": {"shape": {"kind": "cone", "mass": 1, "radius": 1, "height": 2}, "joint": hung("box")},
-            "made": {"mass": 3, "joint": hung("cone"), "parts": [
-                {"kind": "rod", "length": 2, "mass": 1, "axis": some(), "angle": number(rng.uniform(-3, 3))},
-                {"kind": "sphere", "radius": 1, "at": some()},
-            ]},
-        },
-    ))  # fmt: skip
+    return system_of(
+        eomgen.Model(
+            space="space",
+            points={"P": some(), "O": [0, 0, 0]},
+            bodies={
+                "box": {"shape": {"kind": "box", "mass": 2, "size": [1, 2, 3]}, "joint": hung(None)},
+                "cone": {"shape": {"kind": "cone", "mass": 1, "radius": 1, "height": 2}, "joint": hung("box")},
+                "made": {
+                    "mass": 3,
+                    "joint": hung("cone"),
+                    "parts": [
+                        {"kind": "rod", "length": 2, "mass": 1, "axis": some(), "angle": number(rng.uniform(-3, 3))},
+                        {"kind": "sphere", "radius": 1, "at": some()},
+                    ],
+                },
+            },
+        )
+    )
 
 
 def matrix(I) -> np.ndarray:
@@ -234,17 +283,28 @@ def test_principal_axes_are_the_rows_of_a_rotation_that_makes_the_tensor_diagona
     assert math.prod(moments) == pytest.approx(np.linalg.det(matrix(I)))
 
 
-CUBE = {"space": "space", "parameters": {"m": {}, "a": {}},
-        "bodies": {"c": {"shape": {"kind": "box", "mass": "m", "size": ["a", "a", "a"]}}},
-        "points": {"corner": ["-a/2", "-a/2", "-a/2"], "along": ["a/2", "-a/2", "-a/2"],
-                   "far": ["a/2", "a/2", "a/2"]}}  # fmt: skip
-PLATE = {"space": "plane", "parameters": {"m": {}, "a": {}, "b": {}},
-         "bodies": {"p": {"shape": {"kind": "rectangle", "mass": "m", "width": "a", "height": "b"}}},
-         "points": {"corner": ["-a/2", "-b/2"]}}  # fmt: skip
+CUBE = {
+    "space": "space",
+    "parameters": {"m": {}, "a": {}},
+    "bodies": {"c": {"shape": {"kind": "box", "mass": "m", "size": ["a", "a", "a"]}}},
+    "points": {"corner": ["-a/2", "-a/2", "-a/2"], "along": ["a/2", "-a/2", "-a/2"], "far": ["a/2", "a/2", "a/2"]},
+}
+PLATE = {
+    "space": "plane",
+    "parameters": {"m": {}, "a": {}, "b": {}},
+    "bodies": {"p": {"shape": {"kind": "rectangle", "mass": "m", "width": "a", "height": "b"}}},
+    "points": {"corner": ["-a/2", "-b/2"]},
+}
 PLACES = (("p", "m", ["a", "a", 0]), ("q", "2*m", [0, "a", "a"]), ("r", "m", ["a", 0, "a"]))
-PARTICLES = {"space": "space", "parameters": {"m": {}, "a": {}}, "points": {"O": [0, 0, 0]},
-             "bodies": {name: {"shape": {"kind": "particle", "mass": mass}, "joint": {"kind": "fixed", "at": at}}
-                        for name, mass, at in PLACES}}  # fmt: skip
+PARTICLES = {
+    "space": "space",
+    "parameters": {"m": {}, "a": {}},
+    "points": {"O": [0, 0, 0]},
+    "bodies": {
+        name: {"shape": {"kind": "particle", "mass": mass}, "joint": {"kind": "fixed", "at": at}}
+        for name, mass, at in PLACES
+    },
+}
 EXACT_AXES = [(CUBE, "corner"), (PLATE, "corner"), (PARTICLES, "O")]
 
 
@@ -266,25 +326,44 @@ def test_closed_axes_are_orthonormal_right_handed_and_principal(tables, point):
 
 def test_a_cube_about_an_edge_its_diagonal_and_its_corner():
     """2/3 m a^2, 1/6 m a^2 through the centre whatever the axis; about the corner 1/6, 11/12, 11/12."""
-    outputs = {"edge": "inertia_axis(corner, along)", "diagonal": "inertia_axis(corner, far)",
-               "any": "inertia_axis(c.center, y)", "product": "inertia_product(corner, x, y)",
-               "tensor": "inertia_tensor(corner, x, y)",
-               **{f"J{k}": f"principal_moment(corner, {k})" for k in (1, 2, 3)}}  # fmt: skip
+    outputs = {
+        "edge": "inertia_axis(corner, along)",
+        "diagonal": "inertia_axis(corner, far)",
+        "any": "inertia_axis(c.center, y)",
+        "product": "inertia_product(corner, x, y)",
+        "tensor": "inertia_tensor(corner, x, y)",
+        **{f"J{k}": f"principal_moment(corner, {k})" for k in (1, 2, 3)},
+    }
     assert exact(**CUBE, outputs=outputs) == {
-        "edge": "2/3*m*a^2", "diagonal": "1/6*m*a^2", "any": "1/6*m*a^2", "product": "1/4*m*a^2",
-        "tensor": "-1/4*m*a^2", "J1": "1/6*m*a^2", "J2": "11/12*m*a^2", "J3": "11/12*m*a^2",
-    }  # fmt: skip
+        "edge": "2/3*m*a^2",
+        "diagonal": "1/6*m*a^2",
+        "any": "1/6*m*a^2",
+        "product": "1/4*m*a^2",
+        "tensor": "-1/4*m*a^2",
+        "J1": "1/6*m*a^2",
+        "J2": "11/12*m*a^2",
+        "J3": "11/12*m*a^2",
+    }
 
 
 def test_discrete_masses_have_the_tensor_of_their_sum_and_its_surds():
     """I of m at (a,a,0), 2m at (0,a,a), m at (a,0,a): the principal moments (9 -+ sqrt(17)) m a^2/2 and 7 m a^2."""
-    outputs = {"xx": "inertia_tensor(O, x, x)", "xy": "inertia_tensor(O, x, y)", "J1": "principal_moment(O, 1)",
-               "J2": "principal_moment(O, 2)", "J3": "principal_moment(O, 3)",
-               "only": "inertia_point(O, q)"}  # fmt: skip
+    outputs = {
+        "xx": "inertia_tensor(O, x, x)",
+        "xy": "inertia_tensor(O, x, y)",
+        "J1": "principal_moment(O, 1)",
+        "J2": "principal_moment(O, 2)",
+        "J3": "principal_moment(O, 3)",
+        "only": "inertia_point(O, q)",
+    }
     assert exact(**PARTICLES, outputs=outputs) == {
-        "xx": "6*m*a^2", "xy": "-m*a^2", "J1": "1/2*m*a^2*(9 - sqrt(17))", "J2": "1/2*m*a^2*(9 + sqrt(17))",
-        "J3": "7*m*a^2", "only": "4*m*a^2",
-    }  # fmt: skip
+        "xx": "6*m*a^2",
+        "xy": "-m*a^2",
+        "J1": "1/2*m*a^2*(9 - sqrt(17))",
+        "J2": "1/2*m*a^2*(9 + sqrt(17))",
+        "J3": "7*m*a^2",
+        "only": "4*m*a^2",
+    }
 
 
 def test_the_perpendicular_axes_of_a_plate_and_the_sums_over_planes():
@@ -311,27 +390,48 @@ def test_a_plate_of_unknown_sides_has_its_moments_in_order():
 def test_angular_momentum_is_the_tensor_times_the_angular_velocity_about_a_fixed_point():
     """L_O = I_O w and T = w.I w / 2 of a body that turns about O; about any P, L_P = L_C + m (C - P) x v_C."""
     outputs = {
-        "L": "angular_momentum_z(O)", "Iw": "inertia_axis(O, z)*omega(b)", "T": "kinetic_energy()",
-        "half": "inertia_axis(O, z)*omega(b)^2/2", "P": "angular_momentum_z(P)",
+        "L": "angular_momentum_z(O)",
+        "Iw": "inertia_axis(O, z)*omega(b)",
+        "T": "kinetic_energy()",
+        "half": "inertia_axis(O, z)*omega(b)^2/2",
+        "P": "angular_momentum_z(P)",
         "moved": "angular_momentum_z(b.center) + 3*((x(b.center) - 2)*vy(b.center) - (y(b.center) - 1)*vx(b.center))",
-    }  # fmt: skip
+    }
     found = answers(
-        space="plane", coordinates={"q": {"start": 0.7, "speed": 1.3}}, points={"O": [0, 0], "P": [2, 1]},
-        bodies={"b": {"parts": [{"kind": "rod", "length": 2, "mass": 1},
-                                {"kind": "disc", "radius": 1, "mass": 2, "at": [3, 0]}],
-                      "joint": {"kind": "revolute", "angle": "q"}}}, outputs=outputs,
-    )  # fmt: skip
+        space="plane",
+        coordinates={"q": {"start": 0.7, "speed": 1.3}},
+        points={"O": [0, 0], "P": [2, 1]},
+        bodies={
+            "b": {
+                "parts": [
+                    {"kind": "rod", "length": 2, "mass": 1},
+                    {"kind": "disc", "radius": 1, "mass": 2, "at": [3, 0]},
+                ],
+                "joint": {"kind": "revolute", "angle": "q"},
+            }
+        },
+        outputs=outputs,
+    )
     assert found["L"] == pytest.approx(found["Iw"]) and found["T"] == pytest.approx(found["half"])
     assert found["P"] == pytest.approx(found["moved"])
 
 
 def test_the_angular_momentum_of_particles_is_that_of_their_tensor():
     """Turned as one about the z axis: L = I (0, 0, w)."""
-    bodies = {name: {**body, "joint": {"kind": "fixed", "on": "hub", "at": body["joint"]["at"]}}
-              for name, body in PARTICLES["bodies"].items()}  # fmt: skip
+    bodies = {
+        name: {**body, "joint": {"kind": "fixed", "on": "hub", "at": body["joint"]["at"]}}
+        for name, body in PARTICLES["bodies"].items()
+    }
     hub = {"hub": {"joint": {"kind": "revolute", "angle": "q"}}}
-    system = system_of(eomgen.Model(space="space", parameters=PARTICLES["parameters"], points=PARTICLES["points"],
-                                    coordinates={"q": {"speed": 1}}, bodies={**hub, **bodies}))  # fmt: skip
+    system = system_of(
+        eomgen.Model(
+            space="space",
+            parameters=PARTICLES["parameters"],
+            points=PARTICLES["points"],
+            coordinates={"q": {"speed": 1}},
+            bodies={**hub, **bodies},
+        )
+    )
     motion, symbols = system.motion, system.scope.symbols
     O = motion.position(motion.place("O"))
     L, I = angular_momentum(motion, O, list(motion.index)), tensor_about(motion, O, list(motion.index))
@@ -345,11 +445,17 @@ def test_the_angular_momentum_of_particles_is_that_of_their_tensor():
 
 def test_a_body_of_parts_swings_like_the_same_body_by_its_numbers():
     """A physical pendulum: I_O q'' = -m g h sin q, from parts and from m, C and I."""
-    parts = [{"kind": "rod", "length": "l", "mass": "m"},
-             {"kind": "disc", "radius": "l/4", "mass": "4*m", "at": ["l", 0]},
-             {"kind": "disc", "radius": "l/8", "mass": "m", "at": ["l", 0], "hole": True}]  # fmt: skip
-    common = {"space": "plane", "parameters": {"m": {}, "l": {}, "g": {}}, "coordinates": {"q": 0.1},
-              "forces": {"weight": {"kind": "gravity", "acceleration": [0, "-g"]}}}  # fmt: skip
+    parts = [
+        {"kind": "rod", "length": "l", "mass": "m"},
+        {"kind": "disc", "radius": "l/4", "mass": "4*m", "at": ["l", 0]},
+        {"kind": "disc", "radius": "l/8", "mass": "m", "at": ["l", 0], "hole": True},
+    ]
+    common = {
+        "space": "plane",
+        "parameters": {"m": {}, "l": {}, "g": {}},
+        "coordinates": {"q": 0.1},
+        "forces": {"weight": {"kind": "gravity", "acceleration": [0, "-g"]}},
+    }
     joint = {"kind": "revolute", "angle": "q - pi/2"}
     made = eomgen.derive(eomgen.Model(**common, bodies={"b": {"parts": parts, "joint": joint}}))
     I = "1/3*m*l^2 + 4*m*(l^2/32 + l^2) - m*(l^2/128 + l^2) - 4*m*(7/8*l)^2"
@@ -362,13 +468,20 @@ def test_a_body_of_parts_swings_like_the_same_body_by_its_numbers():
 # -- the report -------------------------------------------------------------------------------------
 
 CH13 = {
-    "space": "plane", "parameters": {"a": "0.2"}, "points": {"O": [0, 0], "D": ["6*a", "-12*a"]},
-    "bodies": {"plate": {"mass": 87, "parts": [
-        {"kind": "rectangle", "width": "6*a", "height": "12*a", "at": ["3*a", "-6*a"]},
-        {"kind": "triangle", "width": "12*a", "height": "3*a", "at": ["6*a", 0], "angle": "-pi/2"},
-        {"kind": "disc", "radius": "a", "at": ["3*a", "-3*a"], "hole": True},
-    ]}},
-}  # fmt: skip
+    "space": "plane",
+    "parameters": {"a": "0.2"},
+    "points": {"O": [0, 0], "D": ["6*a", "-12*a"]},
+    "bodies": {
+        "plate": {
+            "mass": 87,
+            "parts": [
+                {"kind": "rectangle", "width": "6*a", "height": "12*a", "at": ["3*a", "-6*a"]},
+                {"kind": "triangle", "width": "12*a", "height": "3*a", "at": ["6*a", 0], "angle": "-pi/2"},
+                {"kind": "disc", "radius": "a", "at": ["3*a", "-3*a"], "hole": True},
+            ],
+        }
+    },
+}
 
 
 def test_the_report_gives_what_the_outputs_give_in_both_conventions():
@@ -396,7 +509,7 @@ def test_impossible_bodies_are_told_with_their_culprit():
         ({"parts": [plate]}, "part 1 of body 'b' has no 'mass'"),
         ({"shape": {"kind": "annulus", "mass": 1, "radius": 1, "inner": 2}}, "'inner' is not smaller than 'radius'"),
         ({"shape": {"kind": "polygon", "mass": 1, "vertices": [[0, 0], [1, 1], [1, 0], [0, 1]]}}, "edges cross"),
-    ]  # fmt: skip
+    ]
     for body, words in wrong:
         with pytest.raises(eomgen.ModelError) as error:
             eomgen.Model(space="plane", bodies={"b": body})
@@ -432,11 +545,19 @@ def test_moving_bodies_together_have_their_numbers_at_the_start():
     """J_O of two hinged rods at q1, q2 at the start: m l^2/3 + m (l^2/12 + d.d), d to the second mass centre."""
     q1, q2 = 0.3, 1.1
     rod = {"kind": "rod", "mass": "m", "length": "l"}
-    found = eomgen.inertia(eomgen.Model(
-        space="plane", parameters={"m": 2, "l": 3}, coordinates={"q1": q1, "q2": q2}, points={"O": [0, 0]},
-        bodies={"a": {"shape": rod, "joint": {"kind": "revolute", "angle": "q1"}},
-                "b": {"shape": rod, "joint": {"kind": "revolute", "on": "a.end", "angle": "q2"}}},
-    ), about="O")  # fmt: skip
+    found = eomgen.inertia(
+        eomgen.Model(
+            space="plane",
+            parameters={"m": 2, "l": 3},
+            coordinates={"q1": q1, "q2": q2},
+            points={"O": [0, 0]},
+            bodies={
+                "a": {"shape": rod, "joint": {"kind": "revolute", "angle": "q1"}},
+                "b": {"shape": rod, "joint": {"kind": "revolute", "on": "a.end", "angle": "q2"}},
+            },
+        ),
+        about="O",
+    )
     x, y = (3 * f(q1) + 1.5 * f(q1 + q2) for f in (math.cos, math.sin))
     assert found["J_P(O)"].value == pytest.approx(2 * 9 / 3 + 2 * (9 / 12 + x * x + y * y))
     assert "Numbers at the start: q1 = 0.3, q2 = 1.1." in str(found)
@@ -445,10 +566,15 @@ def test_moving_bodies_together_have_their_numbers_at_the_start():
 def test_a_mass_without_inertia_leaves_the_other_bodies_their_moments():
     """A cart that only slides needs no inertia: m and the mass centre are known, of both too; a moment of it is not."""
     model = eomgen.Model(
-        space="plane", parameters={}, coordinates={"x": 0}, points={"O": [0, 0]},
-        bodies={"cart": {"mass": 3, "joint": {"kind": "prismatic", "axis": [1, 0], "displacement": "x"}},
-                "disc": {"shape": {"kind": "disc", "mass": 1, "radius": 2}, "joint": {"kind": "fixed", "at": [4, 0]}}},
-    )  # fmt: skip
+        space="plane",
+        parameters={},
+        coordinates={"x": 0},
+        points={"O": [0, 0]},
+        bodies={
+            "cart": {"mass": 3, "joint": {"kind": "prismatic", "axis": [1, 0], "displacement": "x"}},
+            "disc": {"shape": {"kind": "disc", "mass": 1, "radius": 2}, "joint": {"kind": "fixed", "at": [4, 0]}},
+        },
+    )
     found = eomgen.inertia(model)
     assert (found["I_zz(disc)"].exact, found["m"].exact) == ("2", "4")
     assert found["x_C"].value == pytest.approx(1)
@@ -463,8 +589,10 @@ def test_parts_turned_by_many_angles_stay_quick_and_right():
 
     tr(I_O)/2 = sum m (r.r + (a^2 + b^2 + c^2)/12) does not depend on how they are turned.
     """
-    parts = [{"kind": "box", "size": [1, 2, 3], "mass": 1, "at": [k, 0, 1], "axis": [1, k, 2], "angle": f"{k + 1}/7"}
-             for k in range(8)]  # fmt: skip
+    parts = [
+        {"kind": "box", "size": [1, 2, 3], "mass": 1, "at": [k, 0, 1], "axis": [1, k, 2], "angle": f"{k + 1}/7"}
+        for k in range(8)
+    ]
     bodies, outputs = {"b": {"parts": parts}}, {"J": "inertia_point(O)", "J_1": "principal_moment(O, 1)"}
     found = eomgen.solve(eomgen.Model(space="space", points={"O": [0, 0, 0]}, bodies=bodies, outputs=outputs))
     values = {name: answer.value for name, answer in found.items()}
@@ -475,5 +603,6 @@ def test_parts_turned_by_many_angles_stay_quick_and_right():
 def test_a_misspelt_key_of_a_piece_is_offered_the_nearest():
     """The keys of a piece and those of its shape stand in one table."""
     with pytest.raises(eomgen.ModelError, match=r"(?s)unknown key 'att'.*did you mean 'at'"):
-        eomgen.loads('eomgen = 1\nspace = "plane"\n[bodies.b]\nmass = 1\n'
-                     'parts = [{ kind = "disc", radius = 1, att = [0, 1] }]')  # fmt: skip
+        eomgen.loads(
+            'eomgen = 1\nspace = "plane"\n[bodies.b]\nmass = 1\nparts = [{ kind = "disc", radius = 1, att = [0, 1] }]'
+        )

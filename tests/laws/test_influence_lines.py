@@ -16,7 +16,9 @@ from eomgen.symbolic.text import to_text
 
 HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
 
-GERBER = HEAD + """
+GERBER = (
+    HEAD
+    + """
 [bodies.I]
 points = { A = [0, 0], B = [4, 0], C = [10, 0] }
 [bodies.II]
@@ -30,8 +32,11 @@ C = { kind = "pin", points = ["I.C", "II.C"] }
 D = { kind = "pin", points = ["II.D", "III.D"] }
 E = { kind = "clamp", point = "III.E" }
 """
+)
 
-FRAME = HEAD + """
+FRAME = (
+    HEAD
+    + """
 [bodies.I]
 points = { A = [0, 0], K = [0, 4], C = [4, 5] }
 [bodies.II]
@@ -41,8 +46,11 @@ A = { kind = "pin", points = ["I.A"] }
 B = { kind = "pin", points = ["II.B"] }
 C = { kind = "pin", points = ["I.C", "II.C"] }
 """
+)
 
-TRUSS = HEAD + """
+TRUSS = (
+    HEAD
+    + """
 [trusses.T]
 nodes = { b0 = [0, 0], b1 = [3, 0], b2 = [6, 0], b3 = [9, 0], t1 = [3, 4], t2 = [6, 3] }
 members = ["b0-b1", "b1-b2", "b2-b3", "t1-t2", "b0-t1", "b1-t1", "b1-t2", "b2-t2", "b3-t2"]
@@ -50,6 +58,7 @@ members = ["b0-b1", "b1-b2", "b2-b3", "t1-t2", "b0-t1", "b1-t1", "b1-t2", "b2-t2
 A = { kind = "pin", points = ["T.b0"] }
 B = { kind = "support", point = "T.b3", normal = [0, 1] }
 """
+)
 
 
 def line(text: str, asked: str) -> InfluenceLine:
@@ -72,12 +81,32 @@ def by_balance(text: str, asked: str, body: str, place: tuple[str, str]) -> floa
 
 
 GERBER_ASKED = [
-    "reaction_n(A)", "reaction_n(B)", "reaction_y(E)", "reaction_couple(E)", "reaction_y(C)", "bending_moment(I, 2)",
-    "shear_force(I, 2)", "bending_moment(I, 7)", "shear_force(I, 7)", "bending_moment(II, 2)", "shear_force(III, 1)",
-    "bending_moment(III, 4)", "shear_force(I, 4, before)", "shear_force(I, 4, after)",
-]  # fmt: skip
-FRAME_ASKED = ["reaction_x(A)", "reaction_y(B)", "reaction_x(C)", "bending_moment(I, 4)", "shear_force(I, 1)",
-               "axial_force(I, 1)", "axial_force(II, 3)", "bending_moment(II, 5)", "shear_force(II, 5)"]  # fmt: skip
+    "reaction_n(A)",
+    "reaction_n(B)",
+    "reaction_y(E)",
+    "reaction_couple(E)",
+    "reaction_y(C)",
+    "bending_moment(I, 2)",
+    "shear_force(I, 2)",
+    "bending_moment(I, 7)",
+    "shear_force(I, 7)",
+    "bending_moment(II, 2)",
+    "shear_force(III, 1)",
+    "bending_moment(III, 4)",
+    "shear_force(I, 4, before)",
+    "shear_force(I, 4, after)",
+]
+FRAME_ASKED = [
+    "reaction_x(A)",
+    "reaction_y(B)",
+    "reaction_x(C)",
+    "bending_moment(I, 4)",
+    "shear_force(I, 1)",
+    "axial_force(I, 1)",
+    "axial_force(II, 3)",
+    "bending_moment(II, 5)",
+    "shear_force(II, 5)",
+]
 
 
 @pytest.mark.parametrize(("text", "asked"), [*((GERBER, a) for a in GERBER_ASKED), *((FRAME, a) for a in FRAME_ASKED)])
@@ -106,8 +135,9 @@ def test_of_a_member_it_runs_from_node_to_node(member):
 def test_the_shear_force_jumps_by_one_at_its_section():
     """The two lines beside the section are parallel and 1 apart."""
     before, after = (span for span in line(GERBER, "shear_force(I, 3/2)").spans if span.name == "I")
-    (v0, v1, w0, w1, x0, x, x1) = numbers(before.at_start, before.at_end, after.at_start, after.at_end,
-                                          before.start[0], before.end[0], after.end[0])  # fmt: skip
+    (v0, v1, w0, w1, x0, x, x1) = numbers(
+        before.at_start, before.at_end, after.at_start, after.at_end, before.start[0], before.end[0], after.end[0]
+    )
     assert w0 - v1 == pytest.approx(1) and (v1 - v0) / (x - x0) == pytest.approx((w1 - w0) / (x1 - x))
 
 

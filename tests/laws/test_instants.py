@@ -43,22 +43,28 @@ v = 6.1
 """
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
 PARTICLE = 'shape = { kind = "particle", mass = "m" }\n'
-BAR = """
+BAR = (
+    """
 [coordinates]
 theta = { start = "START", speed = "SPEED" }
 [bodies.bar]
 shape = { kind = "rod", mass = "m", length = "l" }
 joint = { kind = "revolute", at = [0, 0], angle = "theta - pi/2" }
-""" + WEIGHT
-THROW = """
+"""
+    + WEIGHT
+)
+THROW = (
+    """
 [coordinates]
 x = { start = 0, speed = "v*cos(pi/3)" }
 y = { start = "l", speed = "v*sin(pi/3)" }
 [bodies.ball]
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "placed", at = ["x", "y"] }
-""" + WEIGHT
-DRAG = "[forces.drag]\nkind = \"force\"\npoint = \"ball.center\"\nforce = [\"-c*m*x'\", \"-c*m*y'\"]\n"
+"""
+    + WEIGHT
+)
+DRAG = '[forces.drag]\nkind = "force"\npoint = "ball.center"\nforce = ["-c*m*x\'", "-c*m*y\'"]\n'
 ORBIT = """
 [coordinates]
 r = { start = "l", speed = 0 }
@@ -73,7 +79,8 @@ kind = "between"
 points = ["O", "ball.center"]
 pull = "2*m*l*v^2/(3*r^2)"
 """
-STANDING_BAR = """
+STANDING_BAR = (
+    """
 [coordinates]
 x = { start = 0.4 }
 theta = 0
@@ -84,7 +91,9 @@ joint = { kind = "placed", point = "center", at = ["x", "l*cos(theta)"], angle =
 kind = "support"
 point = "bar.start"
 normal = [0, 1]
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 BLOCK = """
 [coordinates]
 x = { start = 0, speed = "v" }
@@ -92,7 +101,8 @@ x = { start = 0, speed = "v" }
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "prismatic", axis = [1, 0], displacement = "x", FORCES }
 """
-CRANK = """
+CRANK = (
+    """
 [coordinates]
 theta = 0
 phi = { dependent = true, near = 0.2 }
@@ -109,8 +119,11 @@ joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
 [constraints.pin]
 kind = "pin"
 points = ["AB.end", "B.center"]
-""" + WEIGHT
-PARALLELOGRAM = """
+"""
+    + WEIGHT
+)
+PARALLELOGRAM = (
+    """
 [coordinates]
 theta = 0
 phi = { dependent = true, near = 0 }
@@ -127,8 +140,12 @@ joint = { kind = "revolute", at = ["3*l", 0], angle = "-psi" }
 [constraints.B]
 kind = "pin"
 points = ["AB.end", "CB.end"]
-""" + WEIGHT
-ATWOOD = HEAD + """
+"""
+    + WEIGHT
+)
+ATWOOD = (
+    HEAD
+    + """
 [coordinates]
 s = 0
 [bodies.P]
@@ -137,7 +154,9 @@ joint = { kind = "placed", at = [0, "-s"] }
 [bodies.Q]
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "placed", at = [1, "s"] }
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
 
 def bar(start: str, speed: str = "0") -> str:
@@ -176,70 +195,119 @@ def is_exactly(each: Situation, found: Any, expected: str) -> bool:
 # (model, condition) -> what is known of the instant, in the parameters; and how it is found
 KNOWN: dict[str, tuple[str, str, dict[str, str], str]] = {
     "bar from the horizontal": (
-        bar("pi/2"), "theta", {"theta": "0", "theta'": "-sqrt(3*g/l)"}, "energy theorem",
+        bar("pi/2"),
+        "theta",
+        {"theta": "0", "theta'": "-sqrt(3*g/l)"},
+        "energy theorem",
     ),
     "bar at an angle": (
-        bar("pi/2"), "cos(theta) - 2/3", {"theta": "acos(2/3)", "theta'": "-sqrt(2*g/l)"}, "energy theorem",
+        bar("pi/2"),
+        "cos(theta) - 2/3",
+        {"theta": "acos(2/3)", "theta'": "-sqrt(2*g/l)"},
+        "energy theorem",
     ),
     "bar turns back": (
-        bar("0", "sqrt(g/l)"), "theta'", {"theta": "acos(2/3)", "theta'": "0"}, "energy theorem",
+        bar("0", "sqrt(g/l)"),
+        "theta'",
+        {"theta": "acos(2/3)", "theta'": "0"},
+        "energy theorem",
     ),
     "bar comes back": (
-        bar("pi/3"), "theta + pi/3", {"theta": "-pi/3", "theta'": "0"}, "energy theorem",
+        bar("pi/3"),
+        "theta + pi/3",
+        {"theta": "-pi/3", "theta'": "0"},
+        "energy theorem",
     ),
     "bar on its head": (
-        bar("pi"), "theta - 3*pi/2", {"theta": "3*pi/2", "theta'": "sqrt(3*g/l)"}, "energy theorem",
+        bar("pi"),
+        "theta - 3*pi/2",
+        {"theta": "3*pi/2", "theta'": "sqrt(3*g/l)"},
+        "energy theorem",
     ),
     "bar after a full turn": (
-        bar("0", "4*sqrt(g/l)"), "theta - 5*pi/2", {"theta'": "sqrt(13*g/l)"}, "energy theorem",
+        bar("0", "4*sqrt(g/l)"),
+        "theta - 5*pi/2",
+        {"theta'": "sqrt(13*g/l)"},
+        "energy theorem",
     ),
     "joint pulls no more": (
-        bar("0", "3*sqrt(g/l)"), "3*g*cos(theta)/l + theta'^2 - 13/2*g/l", {"theta": "acos(1/12)"}, "energy theorem",
+        bar("0", "3*sqrt(g/l)"),
+        "3*g*cos(theta)/l + theta'^2 - 13/2*g/l",
+        {"theta": "acos(1/12)"},
+        "energy theorem",
     ),
     "standing bar": (
-        HEAD + STANDING_BAR, "theta - pi/2",
-        {"x": "0.4", "x'": "0", "theta'": "sqrt(3*g/(2*l))"}, "energy theorem",
+        HEAD + STANDING_BAR,
+        "theta - pi/2",
+        {"x": "0.4", "x'": "0", "theta'": "sqrt(3*g/(2*l))"},
+        "energy theorem",
     ),
     "throw, highest point": (
-        HEAD + THROW, "y'", {"t": "sqrt(3)/2*v/g", "y": "l + 3*v^2/(8*g)", "x": "sqrt(3)/4*v^2/g"}, "law of motion",
+        HEAD + THROW,
+        "y'",
+        {"t": "sqrt(3)/2*v/g", "y": "l + 3*v^2/(8*g)", "x": "sqrt(3)/4*v^2/g"},
+        "law of motion",
     ),
     "throw, ground": (
-        HEAD + THROW, "y", {"t": "(sqrt(3)/2*v + sqrt(3/4*v^2 + 2*g*l))/g", "y'": "-sqrt(3/4*v^2 + 2*g*l)"},
+        HEAD + THROW,
+        "y",
+        {"t": "(sqrt(3)/2*v + sqrt(3/4*v^2 + 2*g*l))/g", "y'": "-sqrt(3/4*v^2 + 2*g*l)"},
         "law of motion",
     ),
     "throw with drag, highest point": (
-        HEAD + THROW + DRAG, "y'", {"t": "log(1 + c*v*sqrt(3)/(2*g))/c", "x'": "v/2/(1 + c*v*sqrt(3)/(2*g))"},
+        HEAD + THROW + DRAG,
+        "y'",
+        {"t": "log(1 + c*v*sqrt(3)/(2*g))/c", "x'": "v/2/(1 + c*v*sqrt(3)/(2*g))"},
         "law of motion",
     ),
     "orbit, far end": (
-        HEAD + ORBIT, "r'", {"r": "3*l", "r'": "0", "phi'": "v/(9*l)"}, "energy theorem",
+        HEAD + ORBIT,
+        "r'",
+        {"r": "3*l", "r'": "0", "phi'": "v/(9*l)"},
+        "energy theorem",
     ),
     "orbit, on the way": (
-        HEAD + ORBIT, "r - 2*l", {"r'": "v/(2*sqrt(3))", "phi'": "v/(4*l)"}, "energy theorem",
+        HEAD + ORBIT,
+        "r - 2*l",
+        {"r'": "v/(2*sqrt(3))", "phi'": "v/(4*l)"},
+        "energy theorem",
     ),
     "Atwood's machine": (ATWOOD, "s - l", {"t": "sqrt(6*l/g)", "s'": "sqrt(2*g*l/3)"}, "law of motion"),
     "given time": (ATWOOD, "t - 3", {"s": "3*g/2", "s'": "g"}, "law of motion"),
     "spring turns back": (
-        HEAD + BLOCK.replace("FORCES", 'stiffness = "k"'), "x'", {"t": "pi/2*sqrt(m/k)", "x": "v*sqrt(m/k)"},
+        HEAD + BLOCK.replace("FORCES", 'stiffness = "k"'),
+        "x'",
+        {"t": "pi/2*sqrt(m/k)", "x": "v*sqrt(m/k)"},
         "law of motion",
     ),
     "spring, second zero": (
-        HEAD + BLOCK.replace("FORCES", 'stiffness = "k"'), "x", {"t": "pi*sqrt(m/k)", "x'": "-v"}, "law of motion",
+        HEAD + BLOCK.replace("FORCES", 'stiffness = "k"'),
+        "x",
+        {"t": "pi*sqrt(m/k)", "x'": "-v"},
+        "law of motion",
     ),
     "quadratic drag": (
-        HEAD + BLOCK.replace("FORCES", "force = \"-c*x'^2 - F\""), "x'", {"x": "m/(2*c)*log(1 + c*v^2/F)"},
+        HEAD + BLOCK.replace("FORCES", 'force = "-c*x\'^2 - F"'),
+        "x'",
+        {"x": "m/(2*c)*log(1 + c*v^2/F)"},
         "energy theorem",
     ),
     "slider-crank": (
-        HEAD + CRANK.replace("theta = 0", 'theta = "pi/6"').replace('near = "4*l"', 'near = "3.5*l"')
+        HEAD
+        + CRANK.replace("theta = 0", 'theta = "pi/6"')
+        .replace('near = "4*l"', 'near = "3.5*l"')
         .replace("near = 0.2", "near = 0.5"),
-        "theta - pi/3", {"phi": "pi/3", "x": "2*l"}, "energy theorem",
+        "theta - pi/3",
+        {"phi": "pi/3", "x": "2*l"},
+        "energy theorem",
     ),
     "parallelogram, all hinges in line": (
-        HEAD + PARALLELOGRAM, "theta - pi/2",
-        {"phi": "0", "psi": "pi/2", "theta'": "sqrt(7*g/(6*l))"}, "energy theorem",
+        HEAD + PARALLELOGRAM,
+        "theta - pi/2",
+        {"phi": "0", "psi": "pi/2", "theta'": "sqrt(7*g/(6*l))"},
+        "energy theorem",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", KNOWN)
@@ -276,8 +344,10 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     for integral in energy_integral(each.system, each.assembly):
         known = {u: 0 for u in symbols.u if first[u.name] == 0}  # where all hinges are in line, T needs u = 0
         (begin,) = substituted((integral.expression,), known)
-        at = [values | {node: state[node] for node in nodes}
-              for state in ({node: first[node.name] for node in nodes}, instant.numbers)]  # fmt: skip
+        at = [
+            values | {node: state[node] for node in nodes}
+            for state in ({node: first[node.name] for node in nodes}, instant.numbers)
+        ]
         energies = [evaluate((x,), state, FLOAT)[0] for x, state in zip((begin, integral.expression), at, strict=True)]
         assert energies[1] == pytest.approx(energies[0], rel=1e-9, abs=1e-9)
     t = instant.numbers[symbols.t]

@@ -37,15 +37,21 @@ v = 2.1
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
 PARTICLE = 'shape = { kind = "particle", mass = "m" }\n'
 
-PENDULUM = HEAD + """
+PENDULUM = (
+    HEAD
+    + """
 [coordinates]
 theta = { start = 0.4, speed = 1.5 }
 [bodies.bar]
 shape = { kind = "rod", mass = "m", length = "l" }
 joint = { kind = "revolute", at = [0, 0], angle = "theta - pi/2" }
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-FALLING_BAR = HEAD + """
+FALLING_BAR = (
+    HEAD
+    + """
 [coordinates]
 x = { start = 0, speed = "v" }
 theta = { start = 0.3, speed = 0.2 }
@@ -56,9 +62,13 @@ joint = { kind = "placed", point = "center", at = ["x", "l*cos(theta)"], angle =
 kind = "support"
 point = "bar.start"
 normal = [0, 1]
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-ORBIT = HEAD + """
+ORBIT = (
+    HEAD
+    + """
 [coordinates]
 r = { start = "l", speed = 0.3 }
 phi = { start = 0, speed = 2.9 }
@@ -72,8 +82,11 @@ kind = "between"
 points = ["O", "ball.center"]
 pull = "k/r^2"
 """
+)
 
-LADDER_OF_THREE = HEAD + """
+LADDER_OF_THREE = (
+    HEAD
+    + """
 [coordinates]
 x = { start = "2*l*sin(0.3)" }
 y = { start = "2*l*cos(0.3)" }
@@ -88,9 +101,13 @@ joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
 [constraints.top]
 kind = "pin"
 points = ["bar.end", "slide.origin"]
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-PUSHED = HEAD + """
+PUSHED = (
+    HEAD
+    + """
 [coordinates]
 theta = { start = 0.4, speed = 0.5 }
 [bodies.bar]
@@ -100,11 +117,15 @@ joint = { kind = "revolute", at = [0, 0], angle = "theta", torque = "c" }
 kind = "force"
 point = "bar.end"
 force = ["F", "2*F"]
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
 FOLLOWER = PUSHED.replace('["F", "2*F"]', '["-F*sin(theta)", "F*cos(theta)"]').replace(', torque = "c"', "")
 
-INCLINE = HEAD + """
+INCLINE = (
+    HEAD
+    + """
 [coordinates]
 x = { start = 0, speed = "v" }
 [bodies.block]
@@ -115,9 +136,13 @@ kind = "support"
 point = "block.center"
 normal = ["-sin(pi/6)", "cos(pi/6)"]
 friction = "mu"
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-ROUGH_RING = HEAD + """
+ROUGH_RING = (
+    HEAD
+    + """
 [coordinates]
 theta = { start = 0.2, speed = 6 }
 [bodies.bead]
@@ -128,9 +153,13 @@ along = "theta"
 at = [0, 0]
 heading = 0
 pieces = [{ arc = 1, turn = "ccw", angle = 3, friction = "mu" }]
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-CART = HEAD + """
+CART = (
+    HEAD
+    + """
 [coordinates]
 x = { start = 0, speed = 1 }
 theta = { start = 0.1, speed = -2 }
@@ -140,9 +169,13 @@ joint = { kind = "placed", at = ["x", 0] }
 [bodies.bob]
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "placed", at = ["x + l*sin(theta)", "-l*cos(theta)"] }
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-ROPE = HEAD + """
+ROPE = (
+    HEAD
+    + """
 [coordinates]
 y = { start = 0, speed = "-v" }
 z = { start = 0, speed = "v" }
@@ -155,15 +188,21 @@ joint = { kind = "placed", at = [1, "z"] }
 [constraints.rope]
 kind = "equation"
 gap = "y + z"
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
-DROPPED = HEAD + """
+DROPPED = (
+    HEAD
+    + """
 [coordinates]
 y = "l"
 [bodies.ball]
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "placed", at = [0, "y"] }
-""" + WEIGHT
+"""
+    + WEIGHT
+)
 
 ONE_WAY = {  # name -> (model, how far along the motion is followed: no speed changes its sign there)
     "pendulum": (PENDULUM, 0.1),
@@ -241,8 +280,11 @@ def test_the_integrals_of_a_system_are_found(name, expected):
 
 def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
     """m x' - (F/w)(1 - cos(w t)) is constant where F sin(w t) acts."""
-    text = HEAD + '[coordinates]\nx = { start = 0, speed = "v" }\n[bodies.b]\n' + PARTICLE + (
-        'joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F*sin(c*t)" }\n'
+    text = (
+        HEAD
+        + '[coordinates]\nx = { start = 0, speed = "v" }\n[bodies.b]\n'
+        + PARTICLE
+        + ('joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F*sin(c*t)" }\n')
     )
     each = situation(text)
     (integral,) = first_integrals(each.system, each.assembly)
@@ -282,13 +324,16 @@ def test_an_energy_with_an_unknown_start_is_refused():
 
 # -- laws of motion ----------------------------------------------------------------------------------
 
-BLOCK = HEAD + """
+BLOCK = (
+    HEAD
+    + """
 [coordinates]
 x = { start = "l", speed = "v" }
 [bodies.block]
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "prismatic", axis = [1, 0], displacement = "x", FORCES }
 """
+)
 FORCES = {
     "nothing": "angle = 0",
     "constant force": 'force = "F"',
@@ -321,7 +366,9 @@ stiffness = "k"
 length = "l"
 along = [1, 0]
 """
-PUCK = HEAD + """
+PUCK = (
+    HEAD
+    + """
 [coordinates]
 x = { start = "l", speed = "v" }
 y = { start = 0.1, speed = -1 }
@@ -333,23 +380,26 @@ kind = "force"
 point = "puck.center"
 force = [FORCES]
 """
+)
 PUSHES = {
-    "puck on a turntable": "\"m*(c^2*x + 2*c*y')\", \"m*(c^2*y - 2*c*x')\"",
-    "puck on a turntable that leans": "\"m*(c^2*x + 2*c*y') + F\", \"m*(c^2*y - 2*c*x')\"",
-    "pendulum of Foucault": "\"-k*x + 2*c*y'\", \"-k*y - 2*c*x'\"",
-    "charge in crossed fields": "\"F + c*y'\", \"-c*x'\"",
-    "spring and gyroscopic force": "\"-k*x + c*y'\", \"-2*k*y - c*x'\"",
-    "a pair without a root of its own": "\"m*(x - y)\", \"m*(x - y) + F\"",
+    "puck on a turntable": '"m*(c^2*x + 2*c*y\')", "m*(c^2*y - 2*c*x\')"',
+    "puck on a turntable that leans": '"m*(c^2*x + 2*c*y\') + F", "m*(c^2*y - 2*c*x\')"',
+    "pendulum of Foucault": '"-k*x + 2*c*y\'", "-k*y - 2*c*x\'"',
+    "charge in crossed fields": '"F + c*y\'", "-c*x\'"',
+    "spring and gyroscopic force": '"-k*x + c*y\'", "-2*k*y - c*x\'"',
+    "a pair without a root of its own": '"m*(x - y)", "m*(x - y) + F"',
 }
 LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()} | {
     "two masses and a spring": HEAD + TWO_MASSES.replace("FORCES", "angle = 0"),
     "two masses, one to the ground": HEAD + TWO_MASSES.replace("FORCES", 'stiffness = "3*k"'),
     **{name: PUCK.replace("FORCES", force) for name, force in PUSHES.items()},
     "throw with linear drag": HEAD
-    + '[coordinates]\nx = { start = 0, speed = "v" }\ny = { start = "l", speed = "2*v" }\n[bodies.ball]\n' + PARTICLE
+    + '[coordinates]\nx = { start = 0, speed = "v" }\ny = { start = "l", speed = "2*v" }\n[bodies.ball]\n'
+    + PARTICLE
     + 'joint = { kind = "placed", at = ["x", "y"] }\n[forces.drag]\nkind = "force"\npoint = "ball.center"\n'
-    + "force = [\"-c*x'\", \"-c*y'\"]\n" + WEIGHT,
-}  # fmt: skip
+    + 'force = ["-c*x\'", "-c*y\'"]\n'
+    + WEIGHT,
+}
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -392,7 +442,9 @@ def test_friction_by_its_law_has_no_law_of_motion_before_its_sense_is_chosen():
 
 def test_dependent_coordinates_follow_by_integration():
     """A rolling disc's angle is -x/R where x is known as a function of time."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
 [coordinates]
 x = { start = 0, speed = "v" }
 phi = { dependent = true, start = 0.2 }
@@ -408,6 +460,7 @@ kind = "force"
 point = "disc.center"
 force = ["F", 0]
 """
+    )
     each = situation(text)
     symbols = each.system.symbols
     start = exact_start(each) | {q: each.system.scope.value(each.model.coordinates[q.name].start) for q in symbols.q}

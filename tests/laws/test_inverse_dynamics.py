@@ -25,8 +25,7 @@ from eomgen.model.table import Table
 
 MODELS = Path(__file__).parent.parent.parent / "models"
 TREES = (
-    "arm3 arm7 cart_pole chain20 double_pendulum elastic_pendulum gyrostat quadrotor simple_pendulum "
-    "spherical_pendulum"
+    "arm3 arm7 cart_pole chain20 double_pendulum elastic_pendulum gyrostat quadrotor simple_pendulum spherical_pendulum"
 )
 
 
@@ -90,10 +89,13 @@ def agrees_with_projection(model: eomgen.Model) -> None:
     equations = eomgen.derive(model)
     inverse = equations.inverse_dynamics()
     system, assembly = equations.system, projection.assemble(equations.system)
-    needed = (sum((m * a for m, a in zip(row, system.symbols.a, strict=True)), start=-Q)
-              for row, Q in zip(assembly.M, assembly.forcing, strict=True))  # fmt: skip
-    other = compiled(program_of(tuple(needed), system.symbols, inputs=system.inputs,
-                                accelerations=system.symbols.a), "numpy")  # fmt: skip
+    needed = (
+        sum((m * a for m, a in zip(row, system.symbols.a, strict=True)), start=-Q)
+        for row, Q in zip(assembly.M, assembly.forcing, strict=True)
+    )
+    other = compiled(
+        program_of(tuple(needed), system.symbols, inputs=system.inputs, accelerations=system.symbols.a), "numpy"
+    )
     function = inverse.function("numpy")
     for vector in vectors(inverse.program):
         tau = function(vector.t, vector.x, vector.a, vector.p, vector.inputs or ())
@@ -172,8 +174,9 @@ LOOPS = {
 }
 
 
-@pytest.mark.parametrize("target", ["numpy", pytest.param("c", marks=pytest.mark.skipif(
-    compiler() is None, reason="no C compiler"))])  # fmt: skip
+@pytest.mark.parametrize(
+    "target", ["numpy", pytest.param("c", marks=pytest.mark.skipif(compiler() is None, reason="no C compiler"))]
+)
 @pytest.mark.parametrize("name", LOOPS)
 def test_torques_come_back_from_the_accelerations_that_they_give(name, target):
     """tau -> a = rhs(tau) -> inverse(a) = tau, where ties close and follow from one another."""
@@ -217,11 +220,14 @@ def test_the_torque_in_a_joint_is_asked_by_its_body():
     assert joints.function()(0, x, a, p) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize(("text", "driven", "name"), [
-    ((MODELS / "four_bar.toml").read_text(), "alpha", "eliminated"),
-    (FOUR_BAR, "alpha", "multipliers"),
-    ((MODELS / "slider_crank.toml").read_text(), "theta", "slider-crank"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "driven", "name"),
+    [
+        ((MODELS / "four_bar.toml").read_text(), "alpha", "eliminated"),
+        (FOUR_BAR, "alpha", "multipliers"),
+        ((MODELS / "slider_crank.toml").read_text(), "theta", "slider-crank"),
+    ],
+)
 def test_the_work_of_a_drive_in_a_loop_is_the_energy_that_it_brings(text, driven, name):
     """int drive dq = change of T + V, less the work of the gas on the piston; inverse dynamics gives the same drive."""
     free = eomgen.loads(text)
@@ -264,17 +270,23 @@ acceleration = [0, -9.81]
 """
 
 
-@pytest.mark.parametrize(("text", "actuated", "what"), [
-    (FOUR_BAR, [], "ties close loops, and nothing says which coordinates are actuated"),
-    (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: how the actuators share"),
-    (FOUR_BAR, ["alpha", "alpha"], "how the actuators share"),
-    (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
-    ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would be moved by nothing"),
-    ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would be moved by nothing"),
-    (RUBBING, [], "Coulomb friction"),
-    (RUBBING.replace("{ start = 0, speed = 1 }", '{ motion = "t" }').replace("friction = 0.3", ""), [],
-     "nothing is free to move"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "actuated", "what"),
+    [
+        (FOUR_BAR, [], "ties close loops, and nothing says which coordinates are actuated"),
+        (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: how the actuators share"),
+        (FOUR_BAR, ["alpha", "alpha"], "how the actuators share"),
+        (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
+        ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would be moved by nothing"),
+        ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would be moved by nothing"),
+        (RUBBING, [], "Coulomb friction"),
+        (
+            RUBBING.replace("{ start = 0, speed = 1 }", '{ motion = "t" }').replace("friction = 0.3", ""),
+            [],
+            "nothing is free to move",
+        ),
+    ],
+)
 def test_what_has_no_single_answer_is_refused(text, actuated, what):
     with pytest.raises((UsageError, DerivationError), match=what):
         eomgen.derive(eomgen.loads(text)).inverse_dynamics(actuated)
@@ -284,17 +296,20 @@ def test_what_has_no_single_answer_is_refused(text, actuated, what):
 
 
 @pytest.mark.skipif(compiler() is None, reason="no C compiler")
-@pytest.mark.parametrize(("name", "options"), [("arm7", ["--inverse"]), ("cart_pole", ["--inverse"]),
-                                               ("four_bar", ["--actuated", "alpha"])])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "options"), [("arm7", ["--inverse"]), ("cart_pole", ["--inverse"]), ("four_bar", ["--actuated", "alpha"])]
+)
 def test_emitted_inverse_dynamics_compiles_as_it_is_and_agrees(tmp_path, name, options):
     """Every warning an error; the files' own vectors, held against the recursion in 50 digits; numpy alike."""
     for target in ("c", "numpy"):
-        done = CliRunner().invoke(main, ["codegen", str(MODELS / f"{name}.toml"), "--target", target, "-o",
-                                         str(tmp_path), *options])  # fmt: skip
+        done = CliRunner().invoke(
+            main, ["codegen", str(MODELS / f"{name}.toml"), "--target", target, "-o", str(tmp_path), *options]
+        )
         assert done.exit_code == 0, done.output
     cc = ["cc", "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"]
-    subprocess.run([*cc, "-DEOMGEN_SELFTEST", "-o", str(tmp_path / "a"), str(tmp_path / f"{name}_inverse.c"), "-lm"],
-                   check=True)  # fmt: skip
+    subprocess.run(
+        [*cc, "-DEOMGEN_SELFTEST", "-o", str(tmp_path / "a"), str(tmp_path / f"{name}_inverse.c"), "-lm"], check=True
+    )
     subprocess.run([str(tmp_path / "a")], check=True)
     both = [str(tmp_path / f"{name}_{kind}.c") for kind in ("rhs", "reactions", "inverse")]
     subprocess.run([*cc, "-shared", "-fPIC", "-o", str(tmp_path / "all.so"), *both, "-lm"], check=True)

@@ -61,9 +61,18 @@ u5 = "q5''"
 
 def test_a_disc_by_body_fixed_speeds_has_the_numbers_of_sympys_test():
     """Source: sympy 1.14, physics/mechanics/tests/test_kane5.py, first numeric test."""
-    expected = (0.126603940595934, 0.215942571601660, 1.28736069604936, 0.319764288376543, 0.0989146857254898,
-                -0.925848952664489, -0.0181350656532944, 2.91695398184589, -0.00992793421754526,
-                0.0412861634829171)  # fmt: skip
+    expected = (
+        0.126603940595934,
+        0.215942571601660,
+        1.28736069604936,
+        0.319764288376543,
+        0.0989146857254898,
+        -0.925848952664489,
+        -0.0181350656532944,
+        2.91695398184589,
+        -0.00992793421754526,
+        0.0412861634829171,
+    )
     found = [answer.value for answer in eomgen.solve(eomgen.loads(DISC)).values()]
     assert found == pytest.approx(expected, rel=1e-12)
 
@@ -212,8 +221,12 @@ def test_a_snakeboard_whose_board_follows_moves_as_by_lagrange_with_multipliers(
     def ties(q: np.ndarray) -> np.ndarray:
         left = [(-math.sin(q[2] + q[k]), math.cos(q[2] + q[k])) for k in (3, 4)]
         sides = (length / 2, -length / 2)
-        return np.array([[x, y, side * (y * math.cos(q[2]) - x * math.sin(q[2])), 0, 0]
-                         for (x, y), side in zip(left, sides, strict=True)])  # fmt: skip
+        return np.array(
+            [
+                [x, y, side * (y * math.cos(q[2]) - x * math.sin(q[2])), 0, 0]
+                for (x, y), side in zip(left, sides, strict=True)
+            ]
+        )
 
     q = np.array([0.1, -0.2, q3, q4, q5])
     J, spins = ties(q), np.array([2 * 0.9 / length, 0.3, -0.7])
@@ -392,11 +405,18 @@ outputs = { a = "multiplier(a)", b = "multiplier(b)", c = "multiplier(c)" }
     assert answers["a"].message == "statically indeterminate: multiplier(a) shares its force with 'b'"
 
 
-@pytest.mark.parametrize(("space", "joint", "count", "formula"), [
-    ("plane", 'kind = "planar", x = "x", y = "y", angle = 0', 2, "2*1 (particles)"),
-    ("space", 'kind = "free", position = ["x", "y", 0], orientation = "xyz", angles = [0, 0, 0]', 2,
-     "3*1 (particles) - 1 (joints)"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("space", "joint", "count", "formula"),
+    [
+        ("plane", 'kind = "planar", x = "x", y = "y", angle = 0', 2, "2*1 (particles)"),
+        (
+            "space",
+            'kind = "free", position = ["x", "y", 0], orientation = "xyz", angles = [0, 0, 0]',
+            2,
+            "3*1 (particles) - 1 (joints)",
+        ),
+    ],
+)
 def test_constants_in_a_joint_are_no_freedoms_of_the_count(space, joint, count, formula):
     """A point that its joint cannot turn is a particle; z = 0 takes one component."""
     text = f"""eomgen = 1

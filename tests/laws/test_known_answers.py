@@ -81,9 +81,7 @@ def test_the_equations_of_motion_are_the_textbooks(name):
     path, known = KNOWN[name]
     graph = derived(path).graph
     ours = residuals(graph)
-    book = [
-        in_graph(factor, graph.symbols) * in_graph(text, graph.symbols) for text, factor in known.equations
-    ]
+    book = [in_graph(factor, graph.symbols) * in_graph(text, graph.symbols) for text, factor in known.equations]
     assert len(ours) == len(book)
     verdict = equal_at_random_states(zip(ours, book, strict=True))
     assert verdict.equal, f"equation {verdict.culprit + 1} of {name} differs"

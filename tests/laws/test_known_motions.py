@@ -140,6 +140,6 @@ def test_a_bead_leaves_the_bottom_of_a_fast_hoop():
 
 def test_a_cart_takes_the_force_of_its_input():
     """With the pole massless in effect (m = 1e-12) a cart pushed by F = 2 N moves x = F t^2/(2 M)."""
-    text = (MODELS / "cart_pole.toml").read_text().replace('F = { value = 0,', 'F = { value = 2,')
+    text = (MODELS / "cart_pole.toml").read_text().replace("F = { value = 0,", "F = { value = 2,")
     trajectory = eomgen.simulate(eomgen.loads(text), time=1.0, parameters={"m": 1e-12})
     assert trajectory.x[:, 0] == pytest.approx(trajectory.t**2, abs=1e-8)

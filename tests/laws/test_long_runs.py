@@ -170,8 +170,9 @@ def test_a_state_is_put_back_by_the_least_change(text):
     found, left = projection.closed(0.0, x, 1e-12)
     assert left < 1e-12 and np.max(np.abs(found - x)) < 0.5
     values = dict(zip(equations.coordinates, found[:3], strict=True))
-    M, J = (np.array(A.subs({s: values[s.name] for s in A.free_symbols}), dtype=float)
-            for A in (equations.M, equations.J))  # fmt: skip
+    M, J = (
+        np.array(A.subs({s: values[s.name] for s in A.free_symbols}), dtype=float) for A in (equations.M, equations.J)
+    )
     free = np.linalg.svd(J)[2][2]  # the one direction that the loop leaves
     assert J @ free == pytest.approx(0, abs=1e-9) and free @ M @ (found - x)[3:] == pytest.approx(0, abs=1e-10)
 

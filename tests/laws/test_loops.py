@@ -31,8 +31,7 @@ def bennett() -> Chain:
     J = (0.02, 0.02, 0.02)
     signs = [np.sign(n @ e) for n, e in zip(axes[:3], ((0, 0, 1), (0, 0, 1), (0, 0, 1)), strict=True)]
     links = [
-        Link(hinge, sign * n, d / 2, 2.0, J)
-        for hinge, sign, n, d in zip(hinges, signs, axes[:3], along, strict=True)
+        Link(hinge, sign * n, d / 2, 2.0, J) for hinge, sign, n, d in zip(hinges, signs, axes[:3], along, strict=True)
     ]
     return Chain(links, Closing(D - C, axes[3]), (0, 0, -9.81))
 
@@ -198,8 +197,15 @@ def run_verb(capsys):
 def test_n_four_bars_pass_their_change_points_as_one_pendulum():
     """T = 3 m L^2 a'^2 / 2, V = 7/2 m g L sin a: 3 L a'' = -7/2 g cos a, through every position in line."""
     run = eomgen.simulate(model("n_four_bar"), time=6, samples=601)
-    oracle = solve_ivp(lambda t, x: [x[1], -7 / 6 * 9.81 * math.cos(x[0])], (0, 6), [math.pi / 2, -1], method="DOP853",
-                       rtol=1e-12, atol=1e-12, t_eval=run.t)  # fmt: skip
+    oracle = solve_ivp(
+        lambda t, x: [x[1], -7 / 6 * 9.81 * math.cos(x[0])],
+        (0, 6),
+        [math.pi / 2, -1],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+        t_eval=run.t,
+    )
     assert run.ok and len(run.passages) == 6 and run.drift < 1e-7
     for q in ("a0", "a1", "a2"):
         assert run[q] == pytest.approx(oracle.y[0], abs=1e-6)
@@ -272,6 +278,7 @@ length = 0.8
 @pytest.mark.parametrize("guess", [-2, -1, 0.3, 1, 2.5, 8])
 def test_a_loop_closes_at_the_place_nearest_to_the_guess(guess):
     """of two ways and all whole turns of them, wherever Newton's method leaps"""
+
     def found(near: float) -> float:
         model = eomgen.loads(RSSR.replace("near = 1", f"near = {near}"))
         return start_of_motion(eomgen.derive(model).system).values["b"]

@@ -76,9 +76,7 @@ def test_inertia_terms_do_the_work_of_the_changing_mass_matrix(equations):
 def test_forcing_is_Q_minus_c(equations):
     """forcing = Q - c"""
     graph = equations.graph
-    assert equal_at_random_states(
-        (f, Q - c) for f, Q, c in zip(graph.forcing, graph.Q, graph.c, strict=True)
-    ).equal  # fmt: skip
+    assert equal_at_random_states((f, Q - c) for f, Q, c in zip(graph.forcing, graph.Q, graph.c, strict=True)).equal
 
 
 def test_the_emitted_code_gives_the_accelerations_of_the_symbols(equations):

@@ -20,7 +20,7 @@ from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.velocities import state_of
 
 SEEDS = range(3)
-BODIES = '[bodies.I]\npoints = { O = [0, 0], A = [0, 2] }\n'
+BODIES = "[bodies.I]\npoints = { O = [0, 0], A = [0, 2] }\n"
 
 
 def solved(text: str) -> dict[str, eomgen.Answer]:
@@ -75,9 +75,15 @@ def test_linkages_move_as_their_ties_allow(kind, seed):
 def test_velocities_and_accelerations_are_the_differences_of_assembled_places():
     """Of a four-bar at crank angles -h, 0, h with 50 digits: v = (p_+ - p_-)/2h, a = (p_+ - 2p_0 + p_-)/h^2."""
     linkage = four_bar(Random(5))
-    O, A, B, C = ((mpmath.mpf(x.numerator) / x.denominator, mpmath.mpf(y.numerator) / y.denominator)
-                  for x, y in (linkage.bodies["I"]["O"], linkage.bodies["I"]["A"], linkage.bodies["III"]["B"],
-                               linkage.bodies["III"]["C"]))  # fmt: skip
+    O, A, B, C = (
+        (mpmath.mpf(x.numerator) / x.denominator, mpmath.mpf(y.numerator) / y.denominator)
+        for x, y in (
+            linkage.bodies["I"]["O"],
+            linkage.bodies["I"]["A"],
+            linkage.bodies["III"]["B"],
+            linkage.bodies["III"]["C"],
+        )
+    )
 
     def end_at(turn):
         """B after the crank has turned, at its distances from A and C."""
@@ -85,8 +91,9 @@ def test_velocities_and_accelerations_are_the_differences_of_assembled_places():
         c, s = mpmath.cos(turn), mpmath.sin(turn)
         ax, ay = O[0] + c * x - s * y, O[1] + s * x + c * y
         square = [(B[0] - p[0]) ** 2 + (B[1] - p[1]) ** 2 for p in (A, C)]
-        return mpmath.findroot(lambda x, y: [(x - ax) ** 2 + (y - ay) ** 2 - square[0],
-                                             (x - C[0]) ** 2 + (y - C[1]) ** 2 - square[1]], B)  # fmt: skip
+        return mpmath.findroot(
+            lambda x, y: [(x - ax) ** 2 + (y - ay) ** 2 - square[0], (x - C[0]) ** 2 + (y - C[1]) ** 2 - square[1]], B
+        )
 
     with mpmath.workdps(50):
         h = mpmath.mpf(10) ** -12
@@ -122,9 +129,13 @@ def test_three_bodies_have_their_centres_in_one_line(kind, seed):
     _, mechanism = mechanism_in(kind(Random(seed)).text())
     for i, j, k in combinations(mechanism.blocks, 3):
         a, b, c = (mechanism.centers[pair].point for pair in ((i, j), (j, k), (i, k)))
-        assert mechanism.is_zero([
-            a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-        ])  # fmt: skip
+        assert mechanism.is_zero(
+            [
+                a[0] * (b[1] * c[2] - b[2] * c[1])
+                - a[1] * (b[0] * c[2] - b[2] * c[0])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+            ]
+        )
 
 
 @pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
@@ -157,12 +168,12 @@ def test_a_parallelogram_has_centres_at_infinity():
 def test_a_slider_crank_at_its_dead_centre():
     """Crank and rod in line: the slider stands still, the rod turns about its own end."""
     text = HEAD + (
-        '[bodies.I]\npoints = { O = [0, 0], A = [2, 0] }\n[bodies.II]\npoints = { A = [2, 0], B = [7, 0] }\n'
+        "[bodies.I]\npoints = { O = [0, 0], A = [2, 0] }\n[bodies.II]\npoints = { A = [2, 0], B = [7, 0] }\n"
         '[bodies.III]\npoints = { B = [7, 0], C = [8, 0] }\n[constraints]\nO = { kind = "pin", points = ["I.O"] }\n'
         'A = { kind = "pin", points = ["I.A", "II.A"] }\nB = { kind = "pin", points = ["II.B", "III.B"] }\n'
         'G = { kind = "guide", point = "III.B", along = [1, 0] }\n[given]\nvelocity = "omega(I) = 3"\n'
         'acceleration = "epsilon(I) = 0"\n'
-    )  # fmt: skip
+    )
     _, mechanism = mechanism_in(text)
     assert mechanism.blocks["0"] == ("III",)
     assert mechanism.centers["0", "II"].point == (7, 0, 1)
@@ -173,11 +184,15 @@ def test_a_slider_crank_at_its_dead_centre():
 
 def test_bodies_that_move_as_one_are_one_block():
     """A bar welded to the crank by a clamp turns with it; a tripod of ties holds a third body still."""
-    text = HEAD + BODIES + (
-        "[bodies.II]\npoints = { A = [0, 2], B = [3, 2] }\n[bodies.III]\npoints = { C = [5, 0], D = [6, 1] }\n"
-        '[constraints]\nO = { kind = "pin", points = ["I.O"] }\nW = { kind = "clamp", points = ["I.A", "II.A"] }\n'
-        'C = { kind = "clamp", point = "III.C" }\n'
-    )  # fmt: skip
+    text = (
+        HEAD
+        + BODIES
+        + (
+            "[bodies.II]\npoints = { A = [0, 2], B = [3, 2] }\n[bodies.III]\npoints = { C = [5, 0], D = [6, 1] }\n"
+            '[constraints]\nO = { kind = "pin", points = ["I.O"] }\nW = { kind = "clamp", points = ["I.A", "II.A"] }\n'
+            'C = { kind = "clamp", point = "III.C" }\n'
+        )
+    )
     _, mechanism = mechanism_in(text)
     assert mechanism.blocks == {"0": ("III",), "I": ("I", "II")}
 
@@ -192,14 +207,14 @@ def test_symbols_stay_symbols():
         'A = { kind = "pin", points = ["I.A", "II.A"] }\nB = { kind = "pin", points = ["II.B", "III.B"] }\n'
         'C = { kind = "pin", points = ["III.C"] }\n[given]\nvelocity = "omega(I) = w"\n'
         '[outputs]\nw3 = "omega(III)"\nw2 = "omega(II)"\nv = "speed(II.B)"\n'
-    )  # fmt: skip
+    )
     found = solved(text)
     assert (found["w2"].exact, found["w3"].exact, found["v"].exact) == ("0", "a*w/b", "a*abs(w)")
 
 
 # -- what is given ----------------------------------------------------------------------------------------
 
-PLATE = HEAD + '[bodies.plate]\npoints = { A = [0, 0], B = [3, 0], C = [3, 2] }\n'
+PLATE = HEAD + "[bodies.plate]\npoints = { A = [0, 0], B = [3, 0], C = [3, 2] }\n"
 
 
 def test_a_field_is_recovered_from_partial_data_with_unknown_magnitudes():
@@ -210,7 +225,7 @@ def test_a_field_is_recovered_from_partial_data_with_unknown_magnitudes():
         'velocity = ["vx(plate.A) = v", "vy(plate.A) = 0", "vx(plate.C) = 0", "vy(plate.C) = v"]\n'
         'acceleration = ["ax(plate.B) = 0", "ay(plate.B) = k", "ax(plate.C) = -k", "ay(plate.C) = 0"]\n'
         '[outputs]\nw = "omega(plate)"\ne = "epsilon(plate)"\nk = "k"\n'
-    )  # fmt: skip
+    )
     found = {name: answer.exact for name, answer in solved(text).items()}
     assert found == {"w": "v/l", "e": "v^2/l^2", "k": "v^2/l"}
 
@@ -224,8 +239,10 @@ def test_a_field_in_space_is_recovered_from_three_points(seed):
     velocity = {name: v + np.cross(w, r) for name, r in place.items()}
     acceleration = {name: a + np.cross(e, r) + np.cross(w, np.cross(w, r)) for name, r in place.items()}
     components = [("A", 0), ("A", 1), ("A", 2), ("B", 1), ("B", 2), ("C", 2)]
-    lists = [", ".join(f'"{letter}{"xyz"[k]}(body.{p}) = {table[p][k]}"' for p, k in components)
-             for letter, table in (("v", velocity), ("a", acceleration))]  # fmt: skip
+    lists = [
+        ", ".join(f'"{letter}{"xyz"[k]}(body.{p}) = {table[p][k]}"' for p, k in components)
+        for letter, table in (("v", velocity), ("a", acceleration))
+    ]
     points = ", ".join(f"{name} = {r.astype(int).tolist()}" for name, r in place.items())
     text = (
         f'eomgen = 1\nspace = "space"\n[bodies.body]\npoints = {{ {points} }}\n'
@@ -248,7 +265,7 @@ def test_a_rod_between_two_balls_in_space_may_spin_and_its_ends_move_all_the_sam
         'Y = { kind = "support", point = "rod.B", normal = [0, 1, 0] }\n'
         'Z = { kind = "support", point = "rod.B", normal = [0, 0, 1] }\n'
         '[given]\nvelocity = "omega_z(crank) = 3"\n[outputs]\nv = "vx(rod.B)"\nw = "omega_x(rod)"\n'
-    )  # fmt: skip
+    )
     found = solved(text)
     assert found["v"].exact == "-6"  # the parts of both velocities along the rod agree
     assert "2 freedoms, 1 rate given" in (found["w"].message or "")
@@ -262,25 +279,33 @@ def test_a_rod_between_two_balls_in_space_may_spin_and_its_ends_move_all_the_sam
         ('"ax(plate.A) = 1"', "'ax(plate.A) = 1' holds an acceleration"),
         ('"vx(plate.A) = 1"', "3 freedoms, 1 rate given"),
     ],
-)  # fmt: skip
+)
 def test_what_is_given_too_much_too_little_or_wrongly_is_named(equations, words):
     assert words in message(PLATE + f'[given]\nvelocity = [{equations}]\n[outputs]\nw = "omega(plate)"\n')
 
 
 def test_a_given_velocity_that_the_ties_forbid_names_them():
-    text = HEAD + BODIES + (
-        '[constraints]\nO = { kind = "pin", points = ["I.O"] }\n'
-        '[given]\nvelocity = "vy(I.A) = 1"\n[outputs]\nw = "omega(I)"\n'
-    )  # fmt: skip
+    text = (
+        HEAD
+        + BODIES
+        + (
+            '[constraints]\nO = { kind = "pin", points = ["I.O"] }\n'
+            '[given]\nvelocity = "vy(I.A) = 1"\n[outputs]\nw = "omega(I)"\n'
+        )
+    )
     assert "'vy(I.A) = 1' contradicts the tie 'O'" in message(text)
 
 
 def test_points_that_do_not_meet_are_an_error():
-    text = HEAD + BODIES + (
-        "[bodies.II]\npoints = { A = [0, 3], B = [5, 0] }\n"
-        '[constraints]\nA = { kind = "pin", points = ["I.A", "II.A"] }\n'
-        '[outputs]\nw = "omega(I)/omega(II)"\n'
-    )  # fmt: skip
+    text = (
+        HEAD
+        + BODIES
+        + (
+            "[bodies.II]\npoints = { A = [0, 3], B = [5, 0] }\n"
+            '[constraints]\nA = { kind = "pin", points = ["I.A", "II.A"] }\n'
+            '[outputs]\nw = "omega(I)/omega(II)"\n'
+        )
+    )
     assert "'A' does not close at the start: it is open by" in message(text)
 
 
@@ -352,7 +377,7 @@ def test_an_instant_of_a_motion_has_its_centres(tmp_path):
         'shape = { kind = "disc", mass = 1, radius = "r" }\n'
         'joint = { kind = "planar", x = "x", y = "r", angle = "-x/r" }\n'
         '[constraints.floor]\nkind = "rolling"\nbody = "wheel"\nline = { at = [0, 0], normal = [0, 1] }\n'
-    )  # fmt: skip
+    )
     found = eomgen.kinematics(eomgen.loads(text), at="t = 3").as_dict()
     (center,) = found["centers"]
     assert [x["exact"] for x in center["place"]] == ["9", "0"] and "'floor' holds the point" in center["found"]

@@ -328,8 +328,12 @@ def engine() -> Found:
 
 
 SHORT = [
-    (GENEVA, geneva), (WHEEL_IN_RING, wheel_in_ring), (ROD_IN_BOWL, rod_in_bowl), (BED, bed), (ENGINE, engine),
-]  # fmt: skip
+    (GENEVA, geneva),
+    (WHEEL_IN_RING, wheel_in_ring),
+    (ROD_IN_BOWL, rod_in_bowl),
+    (BED, bed),
+    (ENGINE, engine),
+]
 
 
 @pytest.mark.parametrize(("text", "book"), SHORT, ids=[book.__name__ for _, book in SHORT])
@@ -372,7 +376,9 @@ def test_a_rod_between_collars_on_skew_rods():
 
 def test_a_spool_is_wound_along_by_its_own_thread():
     """Pulled below its centre by v: it rolls after the hand, faster than it: R v/(R - r), R being its flange."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
     parameters = { R = 0.3, r = 0.2, v = 0.6 }
     coordinates = { x = { dependent = true }, phi = { dependent = true }, s = { start = 2, rate = "v" } }
     [bodies.spool]
@@ -391,10 +397,13 @@ def test_a_spool_is_wound_along_by_its_own_thread():
     omega = "omega(spool)"
     c_y = "rotation_center_y(spool)"
     """
+    )
     answers = eomgen.solve(eomgen.loads(text))
     assert {name: answer.exact for name, answer in answers.items()} == {
-        "v": "R*v/(R - r)", "omega": "v/(r - R)", "c_y": "0",
-    }  # fmt: skip
+        "v": "R*v/(R - r)",
+        "omega": "v/(r - R)",
+        "c_y": "0",
+    }
 
 
 def test_velocities_need_no_mass_and_accelerations_say_that_they_do():
@@ -404,12 +413,14 @@ def test_velocities_need_no_mass_and_accelerations_say_that_they_do():
     assert answers["ratio"].exact == "-r*cos(theta)/(l*cos(phi))"
     assert answers["a"].exact is None and "'theta' moves no mass" in answers["a"].message
     with pytest.raises(eomgen.ModelError, match="moves no mass"):
-        eomgen.solve(eomgen.loads(text + '[outputs]\na = "x\'\'"\n'))
+        eomgen.solve(eomgen.loads(text + "[outputs]\na = \"x''\"\n"))
 
 
 def test_parallel_cranks_hand_on_the_angle_itself():
     """A coupler between equal parallel cranks translates: exactly, with every length and angle a symbol."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
     parameters = { r = 0.3, l = 0.8, w = 2, t1 = 0.4, a0 = 0.6 }
     coordinates = { a = { start = "a0", rate = "w" }, b = { dependent = true }, c = { dependent = true, near = 1 } }
     bodies.crank = { points = { E = ["r", 0] }, joint = { kind = "revolute", angle = "a" } }
@@ -421,15 +432,21 @@ def test_parallel_cranks_hand_on_the_angle_itself():
     outputs.v_x = { value = "vx(bar.F)", at = "t = t1" }
     outputs.a = { value = "acceleration(bar.F)", at = "t = t1" }
     """
+    )
     answers = eomgen.solve(eomgen.loads(text))
     assert {name: answer.exact for name, answer in answers.items()} == {
-        "turn": "0", "c": "a0 + w*t1", "v_x": "-r*w*sin(a0 + w*t1)", "a": "r*w^2",
-    }  # fmt: skip
+        "turn": "0",
+        "c": "a0 + w*t1",
+        "v_x": "-r*w*sin(a0 + w*t1)",
+        "a": "r*w^2",
+    }
 
 
 def test_a_four_bar_linkage_is_placed_in_closed_form():
     """Each angle by the loop without the other, so that neither formula holds the other's; against a float solve."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
     parameters = { a = 0.4, b = 1.0, c = 0.8, d = 1.1, w = 2, t1 = 0.3 }
     [coordinates]
     alpha = { start = 1.0, rate = "w" }
@@ -446,6 +463,7 @@ def test_a_four_bar_linkage_is_placed_in_closed_form():
     gamma = { value = "gamma", at = "t = t1" }
     omega = { value = "omega(rocker)", at = "t = t1" }
     """
+    )
     with mpmath.workdps(DIGITS):
         a, b, c, d = numbers("0.4 1 0.8 1.1")
 

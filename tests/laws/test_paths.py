@@ -35,7 +35,8 @@ def test_a_path_goes_on_without_corner_and_with_unit_speed():
         assert np.linalg.norm(after - here) == pytest.approx(1e-6, rel=1e-6)
         assert (after - here) @ (here - before) == pytest.approx(1e-12, rel=1e-5)
     assert position(joint, ends[1])[:2] == pytest.approx(  # down 30 degrees, then to the left until it goes up
-        [5 * cos(pi / 6) + R * (sin(pi / 2) + sin(pi / 6)), -5 * sin(pi / 6) + R * cos(pi / 6)])  # fmt: skip
+        [5 * cos(pi / 6) + R * (sin(pi / 2) + sin(pi / 6)), -5 * sin(pi / 6) + R * cos(pi / 6)]
+    )
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])

@@ -18,7 +18,9 @@ PLANE = 'eomgen = 1\nname = "peer"\nspace = "plane"\n'
 
 # -- Modelica, Mechanics.MultiBody.Examples.Rotational3DEffects.GearConstraint ------------------------------
 
-GEARBOX = SPACE + """
+GEARBOX = (
+    SPACE
+    + """
 [parameters]
 J1 = 0.3
 J2 = 4
@@ -46,6 +48,7 @@ cut = "reaction_couple(g)"
 other = "reaction_couple_x(g.c2)"
 vague = "reaction_couple(c2)"
 """
+)
 
 
 def test_the_couple_of_a_gear_in_space_is_along_its_axle():
@@ -64,7 +67,9 @@ def test_a_couple_in_space_is_asked_by_its_components():
 
 # -- Drake: the strandbeest ---------------------------------------------------------------------------------
 
-LEG = PLANE + """
+LEG = (
+    PLANE
+    + """
 [parameters]
 al = "acos((41.5^2 + 40.1^2 - 55.8^2)/(2*41.5*40.1))"
 be = "acos((36.7^2 + 49^2 - 65.7^2)/(2*36.7*49))"
@@ -102,13 +107,15 @@ top = { kind = "pin", points = ["J.end", "B.top"] }
 low = { kind = "pin", points = ["K.end", "C.end"] }
 knee = { kind = "pin", points = ["F.end", "G.left"] }
 """
+)
 
 
 def angles_of_leg(q: np.ndarray, th: float) -> np.ndarray:
     """Newton's method on the three loops, in complex numbers."""
     al = math.acos((41.5**2 + 40.1**2 - 55.8**2) / (2 * 41.5 * 40.1))
-    lengths = np.array([[50, 0, 0], [0, 61.9, 0], [-41.5, 0, 40.1 * np.exp(1j * al)], [0, -39.3, -39.3],
-                        [0, 0, 39.4], [0, 0, -36.7]]).T  # fmt: skip
+    lengths = np.array(
+        [[50, 0, 0], [0, 61.9, 0], [-41.5, 0, 40.1 * np.exp(1j * al)], [0, -39.3, -39.3], [0, 0, 39.4], [0, 0, -36.7]]
+    ).T
     offset = 15 * np.exp(1j * th) + 38 + 7.8j
     for _ in range(20):
         gaps, slopes = lengths @ np.exp(1j * q) + [offset, offset, 0], lengths * 1j * np.exp(1j * q)
@@ -146,13 +153,20 @@ center = [0.2, 0, 0]
 inertia = [0.4, 1, 1]
 points = { b = [0.4, 0.1, 0] }
 """
-BY_JOINT = SPACE + PULLED + """
+BY_JOINT = (
+    SPACE
+    + PULLED
+    + """
 joint = { kind = "universal", axes = [[0, 0, 1], [1, 0, 0]], angles = ["c", "d"] }
 [coordinates]
 c = { start = 0, speed = 0.7 }
 d = { start = 0, speed = 0.5 }
 """
-BY_CROSS = SPACE + PULLED + """
+)
+BY_CROSS = (
+    SPACE
+    + PULLED
+    + """
 joint = { kind = "free", position = ["x", "y", "z"], orientation = "xyz", angles = ["d", "f", "h"] }
 [coordinates]
 c = { start = 0, speed = 0.7 }
@@ -169,6 +183,7 @@ kind = "pin"
 points = ["B.origin", "cross.origin"]
 axis = [1, 0, 0]
 """
+)
 
 
 def test_a_cross_without_mass_ties_as_a_universal_joint_holds():
@@ -191,18 +206,22 @@ r, l = mp.mpf("0.05"), mp.mpf("0.175")
 
 def engine() -> str:
     """Six slider-cranks on one shaft; x is up, cylinder i leans by INCLINED, its pin is at OFFSET on the shaft."""
-    text = [PLANE, '[coordinates]\nphi = { start = 0, speed = 10 }']
+    text = [PLANE, "[coordinates]\nphi = { start = 0, speed = 10 }"]
     text += [f"{q}{i} = {{ dependent = true, near = {near} }}" for i in range(6) for q, near in (("b", 0), ("s", 0.2))]
     pins = (f'p{i} = ["0.05*cos({a}*pi/180)", "0.05*sin({a}*pi/180)"]' for i, a in enumerate(OFFSET))
-    text += [f"[bodies.crank]\nmass = 1\ninertia = 1\npoints = {{ {', '.join(pins)} }}",
-             'joint = { kind = "revolute", angle = "phi", torque = "-100*(phi\'/200)^2" }']  # fmt: skip
+    text += [
+        f"[bodies.crank]\nmass = 1\ninertia = 1\npoints = {{ {', '.join(pins)} }}",
+        'joint = { kind = "revolute", angle = "phi", torque = "-100*(phi\'/200)^2" }',
+    ]
     for i, c in enumerate(INCLINED):
-        text += [f'[bodies.rod{i}]\nmass = 1\ncenter = [0.0875, 0]\ninertia = 0.006\npoints = {{ end = [0.175, 0] }}',
-                 f'joint = {{ kind = "revolute", on = "crank.p{i}", angle = "b{i} + {c}*pi/180 - phi" }}',
-                 f'[bodies.piston{i}]\nmass = 6\ncenter = [0.05, 0]\ninertia = 0.0088\n[bodies.piston{i}.joint]',
-                 f'kind = "prismatic"\naxis = ["cos({c}*pi/180)", "sin({c}*pi/180)"]\ndisplacement = "s{i}"',
-                 f'force = "-4000*(s{i} - 0.1)"\n[constraints.pin{i}]\nkind = "pin"',
-                 f'points = ["rod{i}.end", "piston{i}.origin"]']  # fmt: skip
+        text += [
+            f"[bodies.rod{i}]\nmass = 1\ncenter = [0.0875, 0]\ninertia = 0.006\npoints = {{ end = [0.175, 0] }}",
+            f'joint = {{ kind = "revolute", on = "crank.p{i}", angle = "b{i} + {c}*pi/180 - phi" }}',
+            f"[bodies.piston{i}]\nmass = 6\ncenter = [0.05, 0]\ninertia = 0.0088\n[bodies.piston{i}.joint]",
+            f'kind = "prismatic"\naxis = ["cos({c}*pi/180)", "sin({c}*pi/180)"]\ndisplacement = "s{i}"',
+            f'force = "-4000*(s{i} - 0.1)"\n[constraints.pin{i}]\nkind = "pin"',
+            f'points = ["rod{i}.end", "piston{i}.origin"]',
+        ]
     return "\n".join([*text, '[forces.w]\nkind = "gravity"\nacceleration = [-9.81, 0]\n'])
 
 
@@ -243,22 +262,31 @@ def scissors(stages: int) -> str:
     """Crossed rods of length 1 on one another, pushed together by a roller; a table on top, all of it pinned."""
     text = [PLANE, "[coordinates]\ns = { start = 0.8 }\nh = { near = 1.5 }\ne = { near = 0.8 }"]
     text += [f"a{i} = {{ near = 0.6 }}\nb{i} = {{ near = 2.5 }}" for i in range(stages)]
-    for name, mass, more in (("roller", 0.1, 'axis = [1, 0]\ndisplacement = "s"'),
-                             ("table", 10, 'axis = [0, 1]\ndisplacement = "h"'),
-                             ("top", 0.1, 'on = "table"\naxis = [1, 0]\ndisplacement = "e"')):  # fmt: skip
+    for name, mass, more in (
+        ("roller", 0.1, 'axis = [1, 0]\ndisplacement = "s"'),
+        ("table", 10, 'axis = [0, 1]\ndisplacement = "h"'),
+        ("top", 0.1, 'on = "table"\naxis = [1, 0]\ndisplacement = "e"'),
+    ):
         text += [f'[bodies.{name}]\nmass = {mass}\ninertia = 1\n[bodies.{name}.joint]\nkind = "prismatic"\n{more}']
     for i in range(stages):
         first = (f'on = "B{i - 1}.end", angle = "a{i} - b{i - 1}"', f'on = "A{i - 1}.end", angle = "b{i} - a{i - 1}"')
         seats = first if i else ('angle = "a0"', 'on = "roller.origin", angle = "b0"')
         for rod, seat in zip("AB", seats, strict=True):
-            text += [f'[bodies.{rod}{i}]\nshape = {{ kind = "rod", mass = 2, length = 1 }}',
-                     f'joint = {{ kind = "revolute", {seat} }}']  # fmt: skip
+            text += [
+                f'[bodies.{rod}{i}]\nshape = {{ kind = "rod", mass = 2, length = 1 }}',
+                f'joint = {{ kind = "revolute", {seat} }}',
+            ]
     last = stages - 1
-    text += ["[constraints]", f'l = {{ kind = "pin", points = ["B{last}.end", "table.origin"] }}',
-             f'r = {{ kind = "pin", points = ["A{last}.end", "top.origin"] }}']  # fmt: skip
+    text += [
+        "[constraints]",
+        f'l = {{ kind = "pin", points = ["B{last}.end", "table.origin"] }}',
+        f'r = {{ kind = "pin", points = ["A{last}.end", "top.origin"] }}',
+    ]
     text += [f'm{i} = {{ kind = "pin", points = ["A{i}.center", "B{i}.center"] }}' for i in range(stages)]
-    text += ['[forces.w]\nkind = "gravity"\nacceleration = [0, -9.81]',
-             '[forces.push]\nkind = "force"\npoint = "roller.origin"\nforce = [-200, 0]\n']  # fmt: skip
+    text += [
+        '[forces.w]\nkind = "gravity"\nacceleration = [0, -9.81]',
+        '[forces.push]\nkind = "force"\npoint = "roller.origin"\nforce = [-200, 0]\n',
+    ]
     return "\n".join(text)
 
 
@@ -301,7 +329,9 @@ axis = [0, 1, 0]
 radius = 0.1
 plane = {{ at = [0, 0, 0], normal = [0, 0, 1] }}
 """
-WHEEL_SET = SPACE + """
+WHEEL_SET = (
+    SPACE
+    + """
 [coordinates]
 x = 0.1
 y = 0.1
@@ -318,7 +348,10 @@ joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxy", angles
 [forces.w]
 kind = "gravity"
 acceleration = [0, 0, -9.81]
-""" + WHEEL.format("left", 0.25, "2*sin(2*pi*t)") + WHEEL.format("right", -0.25, "2*cos(2*pi*t)")
+"""
+    + WHEEL.format("left", 0.25, "2*sin(2*pi*t)")
+    + WHEEL.format("right", -0.25, "2*cos(2*pi*t)")
+)
 
 
 def wheel_set(t: float, state: np.ndarray) -> list[float]:
@@ -340,7 +373,9 @@ def test_two_wheels_on_an_axle_are_driven_by_their_torques():
 
 # -- Modelica, Examples.Elementary.LineForceWithTwoMasses ---------------------------------------------------
 
-BOX = SPACE + """
+BOX = (
+    SPACE
+    + """
 [coordinates]
 phi = 0
 [points]
@@ -355,7 +390,10 @@ joint = { kind = "revolute", at = [0, 0.3, 0], angle = "phi" }
 kind = "gravity"
 acceleration = [0, -9.81, 0]
 """
-STRUT = BOX.replace("phi = 0", "phi = 0\na = { near = -1.1 }\nb = { near = 0 }\ns = { near = 1.3 }") + """
+)
+STRUT = (
+    BOX.replace("phi = 0", "phi = 0\na = { near = -1.1 }\nb = { near = 0 }\ns = { near = 1.3 }")
+    + """
 [bodies.lower]
 mass = 1
 center = [0.2, 0, 0]
@@ -370,8 +408,11 @@ joint = { kind = "prismatic", on = "lower", axis = [1, 0, 0], displacement = "s"
 kind = "pin"
 points = ["upper.origin", "box.end"]
 """
+)
 LENGTH = "sqrt((0.7*cos(phi))^2 + (1.2 + 0.7*sin(phi))^2)"
-PARTICLES = BOX + f"""
+PARTICLES = (
+    BOX
+    + f"""
 [bodies.m1]
 shape = {{ kind = "particle", mass = 1 }}
 [bodies.m1.joint]
@@ -387,6 +428,7 @@ kind = "damper"
 points = ["A", "box.end"]
 damping = 3
 """
+)
 
 
 def test_a_strut_with_two_masses_is_one_of_joints_or_of_places():
@@ -397,7 +439,9 @@ def test_a_strut_with_two_masses_is_one_of_joints_or_of_places():
 
 def test_no_angle_of_another_way_to_close_is_rounding():
     """What stays 0 while another loop turns over is said to be 0."""
-    text = PLANE + """
+    text = (
+        PLANE
+        + """
 [coordinates]
 a1 = { dependent = true }
 b1 = { dependent = true }
@@ -427,6 +471,7 @@ joint = { kind = "revolute", at = [1, 0], angle = "b2" }
 P1 = { kind = "pin", points = ["c1.end", "r1.end"] }
 P2 = { kind = "pin", points = ["c2.end", "r2.end"] }
 """
+    )
     branches = branches_of_loops(system_of(eomgen.loads(text)), {"q": 0, "a1": 0, "b1": 0, "a2": 0, "b2": 0})
     assert branches is not None
     small = [x for way in branches.others for x in way.values.values() if abs(x) < 1e-6]

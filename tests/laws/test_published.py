@@ -15,13 +15,34 @@ TEST_SET = "Mazzia & Magherini, Test Set for Initial Value Problem Solvers, rele
 
 ANGLES = ("beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon")
 ANDREWS = (  # t = 0.03 s: angles, their rates, accelerations; of TEST_SET, problem andrews, by PSIDE at 1e-14
-    (15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948, 0.5244099658805304,
-     0.5347301163226948, 1.048080741042263),
-    (1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385, 0.5735699284790808,
-     -19.29337464421385, 0.3231791658026955),
-    (-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213, 16743.62929479361,
-     -566749.3645176222, 9826.520791458422),
-)  # fmt: skip
+    (
+        15.81077119629904,
+        -15.75637105984298,
+        0.04082224013073101,
+        -0.5347301163226948,
+        0.5244099658805304,
+        0.5347301163226948,
+        1.048080741042263,
+    ),
+    (
+        1139.920302151208,
+        -1424.379294994111,
+        11.03291221937134,
+        19.29337464421385,
+        0.5735699284790808,
+        -19.29337464421385,
+        0.3231791658026955,
+    ),
+    (
+        -24631.76316945196,
+        51850.37701610329,
+        324102.5686413781,
+        566749.3645176213,
+        16743.62929479361,
+        -566749.3645176222,
+        9826.520791458422,
+    ),
+)
 HINGE_E = {  # its forces, of the multipliers there, on the bodies 3, 4 and 6
     "K3": (199.1753333731910, -29.75531228015052),
     "K4": (23.06654119098399, 31.45271365475927),
@@ -62,10 +83,19 @@ def test_the_car_axis_ends_where_the_test_set_says():
     model = eomgen.load(MODELS / "car_axis.toml")
     run = eomgen.simulate(model, time=3, rtol=1e-11, atol=1e-12)
     names = ("x_l", "y_l", "x_r", "y_r")
-    assert [run[name][-1] for name in (*names, *(f"{name}'" for name in names))] == pytest.approx((
-        0.0493455784275402809, 0.496989460230171153, 1.04174252488542151, 0.373911027265361256,
-        -0.0770583684040972357, 0.00744686658723778553, 0.0175568157537232222,
-        0.770341043779251976), abs=1e-8)  # fmt: skip
+    assert [run[name][-1] for name in (*names, *(f"{name}'" for name in names))] == pytest.approx(
+        (
+            0.0493455784275402809,
+            0.496989460230171153,
+            1.04174252488542151,
+            0.373911027265361256,
+            -0.0770583684040972357,
+            0.00744686658723778553,
+            0.0175568157537232222,
+            0.770341043779251976,
+        ),
+        abs=1e-8,
+    )
     found = eomgen.solve(model)
     assert found["lam1"].value == pytest.approx(-0.00473688659084893324, rel=1e-7)
     assert found["lam2"].value == pytest.approx(-0.00110468033125734368, rel=1e-7)
@@ -73,8 +103,12 @@ def test_the_car_axis_ends_where_the_test_set_says():
 
 def fekete() -> list[tuple[float, float, float]]:
     """The places of twenty particles on the unit sphere at the start."""
-    rings = ((3, np.pi / 13, 3 * np.pi / 8), (7, np.pi / 29, np.pi / 8), (6, np.pi / 7, -2 * np.pi / 15),
-             (4, np.pi / 17, -3 * np.pi / 10))  # fmt: skip
+    rings = (
+        (3, np.pi / 13, 3 * np.pi / 8),
+        (7, np.pi / 29, np.pi / 8),
+        (6, np.pi / 7, -2 * np.pi / 15),
+        (4, np.pi / 17, -3 * np.pi / 10),
+    )
     angles = [(2 * np.pi * (k - (n == 4)) / n + turned, up) for n, turned, up in rings for k in range(1, n + 1)]
     return [(np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)) for a, b in angles]
 
@@ -108,10 +142,12 @@ def test_particles_on_a_sphere_come_to_rest_where_the_test_set_says():
     """Problem fekete after 1000 s: places of four of the twenty, and the tension -2 lambda = 9.5 of every rod."""
     run = eomgen.simulate(eomgen.loads(repelling(fekete())), time=1000, samples=2)
     assert run.ok, run.message
-    published = {0: (-0.4070263380333202, 0.3463758772791802, 0.8451942450030429),
-                 4: (-0.4341114738782885, 0.8785430442262876, 0.1992720444237660),
-                 9: (0.9843259538440293, -0.1696995357819996, -0.04800504290609090),
-                 19: (0.2414481766969039, -0.3416456818373135, -0.9082846503446250)}  # fmt: skip
+    published = {
+        0: (-0.4070263380333202, 0.3463758772791802, 0.8451942450030429),
+        4: (-0.4341114738782885, 0.8785430442262876, 0.1992720444237660),
+        9: (0.9843259538440293, -0.1696995357819996, -0.04800504290609090),
+        19: (0.2414481766969039, -0.3416456818373135, -0.9082846503446250),
+    }
     for k, place in published.items():
         assert [run[f"{axis}{k}"][-1] for axis in "xyz"] == pytest.approx(place, abs=1e-9)
     assert [run[f"tension(rod{k})"][-1] for k in range(20)] == pytest.approx([9.5] * 20, abs=1e-9)
@@ -119,8 +155,12 @@ def test_particles_on_a_sphere_come_to_rest_where_the_test_set_says():
 
 def test_seven_stars_are_where_the_test_set_says():
     """Problem pleiades: masses 1 to 7, attraction m_i m_k/r^2, after 3 s and several near encounters."""
-    x0, y0, vx, vy = ((3, 3, -1, -3, 2, -2, 2), (3, -3, 2, 0, 0, -4, 4), (0, 0, 0, 0, 0, 1.75, -1.5),
-                      (0, 0, 0, -1.25, 1, 0, 0))  # fmt: skip
+    x0, y0, vx, vy = (
+        (3, 3, -1, -3, 2, -2, 2),
+        (3, -3, 2, 0, 0, -4, 4),
+        (0, 0, 0, 0, 0, 1.75, -1.5),
+        (0, 0, 0, -1.25, 1, 0, 0),
+    )
     text = 'eomgen = 1\nspace = "plane"\n[coordinates]\n'
     for k in range(7):
         text += f"x{k} = {{ start = {x0[k]}, speed = {vx[k]} }}\ny{k} = {{ start = {y0[k]}, speed = {vy[k]} }}\n"
@@ -131,20 +171,45 @@ def test_seven_stars_are_where_the_test_set_says():
             text += f'[forces.f{i}{k}]\nkind = "between"\npoints = ["s{i}.center", "s{k}.center"]\n'
             text += f'pull = "{(i + 1) * (k + 1)}/r^2"\n'
     run = eomgen.simulate(eomgen.loads(text), time=3, rtol=1e-12, atol=1e-12, samples=2)
-    assert [run[f"x{k}"][-1] for k in range(7)] == pytest.approx((
-        0.3706139143970502, 3.237284092057233, -3.222559032418324, 0.6597091455775310, 0.3425581707156584,
-        1.562172101400631, -0.7003092922212495), abs=1e-9)  # fmt: skip
-    assert [run[f"y{k}"][-1] for k in range(7)] == pytest.approx((
-        -3.943437585517392, -3.271380973972550, 5.225081843456543, -2.590612434977470, 1.198213693392275,
-        -0.2429682344935824, 1.091449240428980), abs=1e-9)  # fmt: skip
+    assert [run[f"x{k}"][-1] for k in range(7)] == pytest.approx(
+        (
+            0.3706139143970502,
+            3.237284092057233,
+            -3.222559032418324,
+            0.6597091455775310,
+            0.3425581707156584,
+            1.562172101400631,
+            -0.7003092922212495,
+        ),
+        abs=1e-9,
+    )
+    assert [run[f"y{k}"][-1] for k in range(7)] == pytest.approx(
+        (
+            -3.943437585517392,
+            -3.271380973972550,
+            5.225081843456543,
+            -2.590612434977470,
+            1.198213693392275,
+            -0.2429682344935824,
+            1.091449240428980,
+        ),
+        abs=1e-9,
+    )
 
 
 def test_the_spatial_slider_crank_moves_as_others_have_found():
     """Slider and crank by F. Gonzalez and by P. Masarati, handed in to the IFToMM library (in Exudyn's docs)."""
     run = eomgen.simulate(eomgen.load(MODELS / "spatial_slider_crank.toml"), time=5, samples=501)
     assert run.drift < 1e-7
-    gonzalez = {10: 0.226785384, 50: 0.184952803, 100: 0.211754668, 200: 0.289063554, 300: 0.228450093,
-                400: 0.188208161, 500: 0.240761815}  # fmt: skip
+    gonzalez = {
+        10: 0.226785384,
+        50: 0.184952803,
+        100: 0.211754668,
+        200: 0.289063554,
+        300: 0.228450093,
+        400: 0.188208161,
+        500: 0.240761815,
+    }
     assert run["s"][list(gonzalez)] == pytest.approx(list(gonzalez.values()), abs=5e-5)
     masarati = {10: 0.5600213536265, 20: 1.287191842519}  # of the crank's angle
     assert run["theta"][list(masarati)] == pytest.approx(list(masarati.values()), abs=2e-4)
@@ -221,8 +286,9 @@ def test_the_heavy_top_of_lie_group_integrators_turns_as_published():
     """Body rates by Runge-Kutta with steps of 1e-4 s, to their five digits: Exudyn's docs, HeavyTopSolution."""
     run = eomgen.simulate(eomgen.loads(HEAVY_TOP), time=0.06, samples=4)
     rates = np.column_stack([run["w1"], run["w2"], run["w3"]])[1:]
-    assert rates == pytest.approx(np.array([[1.2594, 150, 4.4536], [-2.4401, 150, -3.9779], [3.4673, 150, 3.2160]]),
-                                  abs=6e-5)  # fmt: skip
+    assert rates == pytest.approx(
+        np.array([[1.2594, 150, 4.4536], [-2.4401, 150, -3.9779], [3.4673, 150, 3.2160]]), abs=6e-5
+    )
 
 
 LIGHT_CART = """
@@ -284,7 +350,7 @@ INERTIA_AT_QN = [
     [-0.0025, 0.0000, 0.0000, 0.1925, 0.0000, 0.0000],
     [0.0000, 0.0024, 0.0015, 0.0000, 0.1713, 0.0000],
     [0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.1941],
-]  # fmt: skip
+]
 TORQUES_AT_QN = {  # rates, accelerations: torques
     (0, 0): (0, 31.6399, 6.0351, 0, 0.0283, 0),
     (0, 1): (3.35311, 36.0025, 7.42596, 0.190043, 0.203441, 0.194133),

@@ -60,7 +60,9 @@ def test_an_influence_line_is_the_force_under_a_load_of_1_at_any_place(seed, mem
         share, j = Fraction(rng.randint(1, 9), 10), int(span.name[1:])
         value, *ends = numbers(system, span.at_start + share * (span.at_end - span.at_start), *span.start, *span.end)
         along, _ = frame.axes(j)
-        s = sum((p + float(share) * (q - p) - o) * t for p, q, o, t in
-                zip(ends[:3], ends[3:], (*frame.place(j, 0), 0.0), along, strict=True))  # fmt: skip
+        s = sum(
+            (p + float(share) * (q - p) - o) * t
+            for p, q, o, t in zip(ends[:3], ends[3:], (*frame.place(j, 0), 0.0), along, strict=True)
+        )
         expected = frame.under_unit_load(j, s).section(i, float(x))[KINDS.index(kind)]
         assert value == pytest.approx(expected, abs=1e-8), (frame.text, kind, i, x, span.name, s)

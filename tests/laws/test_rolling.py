@@ -49,7 +49,7 @@ body = "body"
 {contact}
 {last}
 """
-UNEVEN = 'mass = 1.5\ncenter = [0.02, -0.03, 0.01]\ninertia = [0.11, 0.13, 0.17, 0.01, 0, 0.005]'
+UNEVEN = "mass = 1.5\ncenter = [0.02, -0.03, 0.01]\ninertia = [0.11, 0.13, 0.17, 0.01, 0, 0.005]"
 AXIS = (1 / 3, 2 / 3, 2 / 3)
 SURFACES = {
     "ball": ('radius = "R"', RoundBody(MASS, COM, INERTIA, "ball", (0.4,))),
@@ -156,8 +156,9 @@ def test_a_rolling_disc_by_independent_speeds_has_the_equations_of_the_textbooks
         x = np.array([0.3, -0.2, rng.normal(), lean, rng.normal(), u1, u2, u3])
         expected = [
             (4 * 9.81 * np.sin(lean) - 6 * 0.4 * u2 * u3 - 0.4 * u3**2 * np.tan(lean)) / (5 * 0.4),
-            2 * u1 * u3 / 3, (2 * u2 + u3 * np.tan(lean)) * u1,
-        ]  # fmt: skip
+            2 * u1 * u3 / 3,
+            (2 * u2 + u3 * np.tan(lean)) * u1,
+        ]
         assert rhs(0.0, x, rhs.p0)[-3:] == pytest.approx(expected, rel=1e-12)
 
 
@@ -185,7 +186,7 @@ def test_a_ball_on_a_turntable_runs_round_a_circle_at_two_sevenths_of_its_rate()
     """
     contact = 'on = "table"\nplane = { at = [0, 0, 0], normal = [0, 0, 1] }'
     written = text(contact, 'alpha = { motion = "3*t" }', ROUND_TABLE, SPHERE)
-    written = written.replace("x = 0\n", "x = 1\n").replace("y = 0\n", 'y = { start = 0, speed = 3 }\n')
+    written = written.replace("x = 0\n", "x = 1\n").replace("y = 0\n", "y = { start = 0, speed = 3 }\n")
     run = eomgen.simulate(eomgen.loads(written), time=2.0)
     rate = 2 / 7 * 3
     x, y = run.x[:, 0], run.x[:, 1]
@@ -282,13 +283,19 @@ def test_a_coin_that_falls_flat_ends_the_run():
         eomgen.derive(eomgen.loads(written.replace("start = 0.5", 'start = "pi/2"')))
 
 
-@pytest.mark.parametrize(("contact", "what"), [
-    ("line = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1", "'line' of 'contact' is for the plane"),
-    ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }", "the radius of 'body', which rolls, is not known"),
-    ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\ntube = 0.1", "the tyre of 'body' has no 'axis'"),
-    ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\nellipsoid = [1, 1, 2]", "it is one or the other"),
-    ("circle = { at = [0, 0, 0], radius = 3, axis = [1, 0, 0]}\nradius = 1\naxis = [0, 0, 1]", "rolls in or on a pipe"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("contact", "what"),
+    [
+        ("line = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1", "'line' of 'contact' is for the plane"),
+        ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }", "the radius of 'body', which rolls, is not known"),
+        ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\ntube = 0.1", "the tyre of 'body' has no 'axis'"),
+        ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1\nellipsoid = [1, 1, 2]", "it is one or the other"),
+        (
+            "circle = { at = [0, 0, 0], radius = 3, axis = [1, 0, 0]}\nradius = 1\naxis = [0, 0, 1]",
+            "rolls in or on a pipe",
+        ),
+    ],
+)
 def test_a_rolling_contact_that_makes_no_sense_is_named(contact, what):
     """One error, at the tie."""
     with pytest.raises(ModelError, match=what):

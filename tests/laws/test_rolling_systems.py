@@ -25,10 +25,18 @@ def turn(k: int, angle: float) -> np.ndarray:
     return R
 
 
-@pytest.mark.parametrize("name", [
-    "golf_ball_in_cup", "rolling_cone", "skate_on_slope", "tippe_top", "snakeboard", "roller_racer",
-    "robot_with_trailer",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "golf_ball_in_cup",
+        "rolling_cone",
+        "skate_on_slope",
+        "tippe_top",
+        "snakeboard",
+        "roller_racer",
+        "robot_with_trailer",
+    ],
+)
 def test_a_rolling_system_is_certified(name):
     assert eomgen.derive(model(name)).certify().ok
 
@@ -39,10 +47,28 @@ def test_a_rolling_system_is_certified(name):
 # 1983-2003: a state with its accelerations. Axes of the rear frame: x forwards, y down, z to the left; ground: z up;
 # x, y, z of the rear wheel's centre, angles of the sequence zxz, steer, turns of the rear and the front wheel.
 PLACE = (0, 0, 0.2440472102925, 0, 0.9501292851472, 3.1257073014894, 0.2311385135743, 0, 0)
-RATES = (-2.8069345714545, -0.1480982396001, 0.1058778746261, 0.7830033527065, 0.6068425835418, -0.0119185528069,
-         0.4859824687093, 8.9129896614890, 8.0133620584155)  # fmt: skip
-ACCELERATIONS = (-0.5041626315047, -0.3449706619454, -1.4604528332980, 0.8353281706379, -7.8555281128244,
-                 0.1205543897884, -4.6198904039403, 1.8472554144217, 2.4548072904550)  # fmt: skip
+RATES = (
+    -2.8069345714545,
+    -0.1480982396001,
+    0.1058778746261,
+    0.7830033527065,
+    0.6068425835418,
+    -0.0119185528069,
+    0.4859824687093,
+    8.9129896614890,
+    8.0133620584155,
+)
+ACCELERATIONS = (
+    -0.5041626315047,
+    -0.3449706619454,
+    -1.4604528332980,
+    0.8353281706379,
+    -7.8555281128244,
+    0.1205543897884,
+    -4.6198904039403,
+    1.8472554144217,
+    2.4548072904550,
+)
 
 
 def zxz(theta: float, psi: float, phi: float) -> np.ndarray:
@@ -59,8 +85,13 @@ def test_the_nonlinear_bicycle_has_the_published_accelerations():
     q, u = np.array(PLACE[3:6]), np.array(RATES[3:6])
     skew = R.T @ G @ (zxz(*(q + h * u)) - zxz(*(q - h * u))) @ P / (2 * h)
     w = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])  # of the frame, its own axes
-    own = np.array([[-np.sin(theta) * np.cos(phi), np.cos(theta), 0], [np.sin(phi), 0, 1],
-                    [np.cos(theta) * np.cos(phi), np.sin(theta), 0]])  # fmt: skip
+    own = np.array(
+        [
+            [-np.sin(theta) * np.cos(phi), np.cos(theta), 0],
+            [np.sin(phi), 0, 1],
+            [np.cos(theta) * np.cos(phi), np.sin(theta), 0],
+        ]
+    )
     found = (-PLACE[6], -PLACE[7], -PLACE[8])  # steer and turns count about axes that point the other way
     x = [*(G @ PLACE[:3]), psi, phi, theta, *found, *(G @ RATES[:3]), *np.linalg.solve(own, w), *(-np.array(RATES[6:]))]
     rhs = eomgen.derive(model("whipple_bicycle")).rhs("numpy")
@@ -126,6 +157,7 @@ def test_a_trailer_folds_out_along_the_tractrix():
 
 def multiplier_motion(mass, force, rows, x0, T):
     """q(T) of M(q, t) a = force(q, u, t) + J^T lam, J u = 0, by a fine Runge-Kutta method in plain numpy."""
+
     def rate(t, x):
         n = len(x) // 2
         q, u = x[:n], x[n:]

@@ -23,7 +23,9 @@ from eomgen.symbolic.text import to_text
 
 HEAD = 'eomgen = 1\nname = "beam"\nspace = "plane"\n'
 
-OVERHANG = HEAD + """
+OVERHANG = (
+    HEAD
+    + """
 [parameters]
 q = { positive = true }
 F = { positive = true }
@@ -38,6 +40,7 @@ B = { kind = "support", point = "beam.B", normal = [0, 1] }
 grows = { kind = "distributed", body = "beam", between = ["A", "B"], intensities = [[0, 0], [0, "-q"]] }
 tip = { kind = "force", point = "beam.D", force = [0, "-F"] }
 """
+)
 
 
 def along(text: str, body: str) -> SectionForces:
@@ -64,9 +67,12 @@ def test_the_moment_is_the_integral_of_the_shear_force_and_that_of_the_load():
 def test_values_at_jumps_are_asked_by_their_side():
     """V jumps by the roller's force q L/3 + F + F c/L; M does not, and is -F c there."""
     before, after, moment, end = exact(
-        OVERHANG, "shear_force(beam, L, before)", "shear_force(beam, L, after)", "bending_moment(beam, L)",
+        OVERHANG,
+        "shear_force(beam, L, before)",
+        "shear_force(beam, L, after)",
+        "bending_moment(beam, L)",
         "bending_moment(beam, L + c)",
-    )  # fmt: skip
+    )
     assert (before, after, moment, end) == ("-1/3*q*L - F*c/L", "F", "-F*c", "0")
     (answer,) = eomgen.solve(eomgen.loads(OVERHANG + '[outputs]\nV = "shear_force(beam, L)"\n')).values()
     assert answer.exact is None and "jumps there from -1/3*q*L - F*c/L to F" in answer.message
@@ -74,7 +80,7 @@ def test_values_at_jumps_are_asked_by_their_side():
 
 def test_the_greatest_moment_lies_where_the_shear_force_vanishes():
     """A line load p on a span l: M = p l^2/8 in the middle."""
-    text = HEAD + '[parameters]\np = {}\nl = { positive = true }\n'
+    text = HEAD + "[parameters]\np = {}\nl = { positive = true }\n"
     text += '[bodies.beam]\npoints = { A = [0, 0], B = ["l", 0] }\n'
     text += '[constraints]\nA = { kind = "pin", points = ["beam.A"] }\n'
     text += 'B = { kind = "support", point = "beam.B", normal = [0, 1] }\n[forces.p]\nkind = "distributed"\n'
@@ -103,12 +109,13 @@ def test_a_line_load_may_be_constant_or_nothing_at_the_values_of_its_parameters(
 
 def test_a_falling_rod_bends_most_at_a_third_of_its_length():
     """Hinged at its lower end: V = 0 and M = m g l cos(theta)/27 at l/3, whatever the speed: there chimneys break."""
-    text = HEAD + '[parameters]\nm = {}\ng = {}\nl = { positive = true }\n[coordinates]\ntheta = 1\n'
+    text = HEAD + "[parameters]\nm = {}\ng = {}\nl = { positive = true }\n[coordinates]\ntheta = 1\n"
     text += '[bodies.rod]\nshape = { kind = "rod", mass = "m", length = "l" }\n'
     text += 'joint = { kind = "revolute", angle = "theta" }\n'
     text += '[forces.gravity]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
-    V, M, N, tip = exact(text, "shear_force(rod, l/3)", "bending_moment(rod, l/3)", "axial_force(rod, l/3)",
-                         "bending_moment(rod, l)")  # fmt: skip
+    V, M, N, tip = exact(
+        text, "shear_force(rod, l/3)", "bending_moment(rod, l/3)", "axial_force(rod, l/3)", "bending_moment(rod, l)"
+    )
     assert (V, M, tip) == ("0", "1/27*m*g*l*cos(theta)", "0")
     assert N == "2/9*m*(2*l*theta'^2 - 3*g*sin(theta))"
 
@@ -157,19 +164,28 @@ def test_a_cantilever_carries_what_acts_beyond_the_section(seed):
             a = max(a, float(x))
             if b > a:
                 beyond.append(((a + b) / 2 - float(x), (b - a) * q, 0.0))
-        expected = [sum(f @ t for _, f, _ in beyond), -sum(f @ n for _, f, _ in beyond),
-                    sum(c + arm * (f @ n) for arm, f, c in beyond)]  # fmt: skip
+        expected = [
+            sum(f @ t for _, f, _ in beyond),
+            -sum(f @ n for _, f, _ in beyond),
+            sum(c + arm * (f @ n) for arm, f, c in beyond),
+        ]
         found = [float(evaluate((forces.value(kind, x),), {}, FLOAT)[0]) for kind in KINDS]
         assert found == pytest.approx(expected, abs=1e-9), k
 
 
 def test_a_bent_body_is_followed_around_its_corner():
     """An L of legs 2 and 3, clamped at its foot, F at its tip: N = -F, then 0; M = -3 F in the upright."""
-    text = HEAD + '[parameters]\nF = {}\n[bodies.L]\npoints = { foot = [0, 0], corner = [0, 2], tip = [3, 2] }\n'
+    text = HEAD + "[parameters]\nF = {}\n[bodies.L]\npoints = { foot = [0, 0], corner = [0, 2], tip = [3, 2] }\n"
     text += '[constraints.foot]\nkind = "clamp"\npoint = "L.foot"\n'
     text += '[forces.F]\nkind = "force"\npoint = "L.tip"\nforce = [0, "-F"]\n'
-    assert exact(text, "axial_force(L, 1)", "bending_moment(L, 1)", "axial_force(L, 3)", "bending_moment(L, 3)",
-                 "shear_force(L, 3)") == ["-F", "-3*F", "0", "-2*F", "F"]  # fmt: skip
+    assert exact(
+        text,
+        "axial_force(L, 1)",
+        "bending_moment(L, 1)",
+        "axial_force(L, 3)",
+        "bending_moment(L, 3)",
+        "shear_force(L, 3)",
+    ) == ["-F", "-3*F", "0", "-2*F", "F"]
 
 
 def test_a_line_of_the_body_says_where_x_begins():
@@ -180,15 +196,25 @@ def test_a_line_of_the_body_says_where_x_begins():
 
 WRONG = {
     "couple without a point": (
-        'tip = {', 'turn = { kind = "couple", body = "beam", couple = "F" }\ntip = {', "bending_moment(beam, L/2)",
+        "tip = {",
+        'turn = { kind = "couple", body = "beam", couple = "F" }\ntip = {',
+        "bending_moment(beam, L/2)",
         "the force 'turn' acts on 'beam' at no point",
     ),
-    "off the line": ('D = ["L + c", 0] }', 'D = ["L + c", 1] }\nline = ["A", "B"]', "bending_moment(beam, L/2)",
-                     "something acts on 'beam' at (L + c, 1), off the line"),
-    "beyond the end": ("F = { positive = true }", "F = { positive = true }", "bending_moment(beam, 2*L + 2*c)",
-                       "the body goes from x = 0 to L + c"),
+    "off the line": (
+        'D = ["L + c", 0] }',
+        'D = ["L + c", 1] }\nline = ["A", "B"]',
+        "bending_moment(beam, L/2)",
+        "something acts on 'beam' at (L + c, 1), off the line",
+    ),
+    "beyond the end": (
+        "F = { positive = true }",
+        "F = { positive = true }",
+        "bending_moment(beam, 2*L + 2*c)",
+        "the body goes from x = 0 to L + c",
+    ),
     "unsigned": ("L = { positive = true }", "L = {}", "bending_moment(beam, L/2)", "depends on L"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("old", "new", "asked", "told"), WRONG.values(), ids=WRONG)
@@ -209,7 +235,7 @@ def test_a_body_of_unknown_build_has_no_section_forces():
 
 def test_a_heavy_rod_on_two_supports_hangs_through_like_a_line_load():
     """M = m g l/8 in the middle, also of a rod that lies inclined: its weight across it is m g cos."""
-    text = HEAD + '[parameters]\nm = {}\ng = {}\nl = { positive = true }\n[bodies.rod]\n'
+    text = HEAD + "[parameters]\nm = {}\ng = {}\nl = { positive = true }\n[bodies.rod]\n"
     text += 'shape = { kind = "rod", mass = "m", length = "l" }\njoint = { kind = "fixed", angle = "pi/3" }\n'
     text += '[forces.gravity]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
     root, middle, N = exact(text, "bending_moment(rod, 0)", "bending_moment(rod, l/2)", "axial_force(rod, 0)")

@@ -29,8 +29,10 @@ def model_of(system: str, other: bool = False) -> eomgen.Model:
     model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
     if not other:
         return model
-    changed = {name: replace(model.parameters[name], value=as_expression(f"{x.numerator}/{x.denominator}"))
-               for name, x in numbers_of(system, other).items()}  # fmt: skip
+    changed = {
+        name: replace(model.parameters[name], value=as_expression(f"{x.numerator}/{x.denominator}"))
+        for name, x in numbers_of(system, other).items()
+    }
     return replace(model, parameters=dict(model.parameters) | changed)
 
 

@@ -43,8 +43,13 @@ def own_state_matrix(small: SmallMotions) -> np.ndarray:
     x0 = [named[x.name] for x in (*symbols.q, *symbols.u)]
     others = {x: named[x.name] for x in (symbols.t, *symbols.parameters.values(), *symbols.inputs.values())}
     n, k = len(symbols.u), len(graph.J)
-    wanted = (*equations.system.scope.rates, *(x for row in graph.M for x in row), *(x for row in graph.J for x in row),
-              *graph.forcing, *graph.gamma)  # fmt: skip
+    wanted = (
+        *equations.system.scope.rates,
+        *(x for row in graph.M for x in row),
+        *(x for row in graph.J for x in row),
+        *graph.forcing,
+        *graph.gamma,
+    )
 
     def f(x: list[Any]) -> list[Any]:
         state = {**others, **dict(zip((*symbols.q, *symbols.u), x, strict=True))}
@@ -393,7 +398,7 @@ SPEED = '"sqrt(g/(l*cos(theta_0)))"'
 
 @cache
 def rotating(psi: str, *about: Any) -> eomgen.Linearization:
-    text = ROTATING.format(psi, 0).replace('inertia = [0, 0, 0]\nmass = 0\n', "")
+    text = ROTATING.format(psi, 0).replace("inertia = [0, 0, 0]\nmass = 0\n", "")
     return eomgen.linearize(eomgen.loads('eomgen = 1\nname = "spin"\nspace = "space"\n' + text), *about)
 
 

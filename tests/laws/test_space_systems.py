@@ -51,11 +51,26 @@ def slope(name: str, x, *, t: float = 0.0, inputs=()) -> np.ndarray:
 
 
 SYSTEMS = (
-    "heavy_top", "sleeping_top", "tumbling_body", "gimbal_gyroscope", "gyrocompass", "dual_spin_satellite",
-    "satellite_wheels", "space_manipulator", "quadrotor", "balancing_robot", "half_car", "furuta_pendulum",
-    "foucault_pendulum", "trifilar_pendulum", "tower_crane", "cardan_shaft", "flyball_governor", "delta_robot",
+    "heavy_top",
+    "sleeping_top",
+    "tumbling_body",
+    "gimbal_gyroscope",
+    "gyrocompass",
+    "dual_spin_satellite",
+    "satellite_wheels",
+    "space_manipulator",
+    "quadrotor",
+    "balancing_robot",
+    "half_car",
+    "furuta_pendulum",
+    "foucault_pendulum",
+    "trifilar_pendulum",
+    "tower_crane",
+    "cardan_shaft",
+    "flyball_governor",
+    "delta_robot",
     "puma560",
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -126,7 +141,8 @@ def test_a_tumbling_body_follows_the_elliptic_functions():
     T2, L2 = np.dot(I, np.square(w)), np.sum(np.square(np.multiply(I, w)))
     k2 = (b - a) * (T2 * c - L2) / ((c - b) * (L2 - T2 * a))
     assert value("tumbling_body", "quarter") == pytest.approx(
-        ellipk(k2) / np.sqrt((c - b) * (L2 - T2 * a) / (a * b * c)), rel=1e-7)  # fmt: skip
+        ellipk(k2) / np.sqrt((c - b) * (L2 - T2 * a) / (a * b * c)), rel=1e-7
+    )
     run = eomgen.simulate(model("tumbling_body"), time=30, rtol=1e-10, atol=1e-12)
     exact = np.array([jacobi(I, w, t) for t in run.t])
     assert run.x[:, -3:] == pytest.approx(exact, abs=1e-5)
@@ -226,8 +242,17 @@ def robot() -> Tree:
     p = parameters("balancing_robot")
     wheel = {"axis": (0, 1, 0), "mass": p["m_w"], "inertia": (p["K"], p["J"], p["K"])}
     body = Joint(2, (0, 1, 0), mass=p["m_b"], center=(0, 0, p["l"]), inertia=(p["I_x"], p["I_y"], p["I_z"]))
-    return Tree([Joint(-1, (1, 0, 0), slides=True), Joint(0, (0, 1, 0), slides=True), Joint(1, (0, 0, 1)), body,
-                 Joint(2, at=(0, p["b"], 0), **wheel), Joint(2, at=(0, -p["b"], 0), **wheel)], p["g"])  # fmt: skip
+    return Tree(
+        [
+            Joint(-1, (1, 0, 0), slides=True),
+            Joint(0, (0, 1, 0), slides=True),
+            Joint(1, (0, 0, 1)),
+            body,
+            Joint(2, at=(0, p["b"], 0), **wheel),
+            Joint(2, at=(0, -p["b"], 0), **wheel),
+        ],
+        p["g"],
+    )
 
 
 def test_a_balancing_robot_moves_as_its_free_parts_with_rolling_wheels():
@@ -343,12 +368,15 @@ def governor() -> Tree:
     center = (m / 2 + M) * L / (m + M)
     across = m * (L**2 + a**2) / 12 + m * (L / 2 - center) ** 2 + M * (L - center) ** 2
     rod = {"mass": m + M, "inertia": (m * a**2 / 6, across, across)}
-    return Tree([
-        Joint(-1, (0, 0, 1), mass=m, inertia=(m * (L**2 + a**2) / 12, m * (L**2 + a**2) / 12, m * a**2 / 6)),
-        Joint(0, (0, 0, 1), slides=True, mass=p["m_s"], inertia=(p["m_s"] * b**2 / 6,) * 3),
-        Joint(0, (0, 1, 0), at=(b / 2, 0, L), center=(center, 0, 0), **rod),
-        Joint(0, (0, -1, 0), at=(-b / 2, 0, L), center=(-center, 0, 0), **rod),
-    ], p["g"])  # fmt: skip
+    return Tree(
+        [
+            Joint(-1, (0, 0, 1), mass=m, inertia=(m * (L**2 + a**2) / 12, m * (L**2 + a**2) / 12, m * a**2 / 6)),
+            Joint(0, (0, 0, 1), slides=True, mass=p["m_s"], inertia=(p["m_s"] * b**2 / 6,) * 3),
+            Joint(0, (0, 1, 0), at=(b / 2, 0, L), center=(center, 0, 0), **rod),
+            Joint(0, (0, -1, 0), at=(-b / 2, 0, L), center=(-center, 0, 0), **rod),
+        ],
+        p["g"],
+    )
 
 
 def governed(tree: Tree, x: np.ndarray) -> np.ndarray:
@@ -392,8 +420,15 @@ def test_a_space_manipulator_keeps_its_momenta():
 
     links = [link(6, (0, 0, 0), p["m_1"], p["l_1"], 0.02), link(7, (p["l_1"], 0, 0), p["m_2"], p["l_2"], 0.01)]
     turning = [Joint(k + 2, axis) for k, axis in enumerate([(1, 0, 0), (0, 1, 0)])]
-    tree = Tree([*(Joint(k - 1, axis, slides=True) for k, axis in enumerate(np.eye(3))), *turning,
-                 Joint(4, (0, 0, 1), mass=m, inertia=base), Joint(5, (0, 0, 1), at=(0.5, 0, 0.4)), *links])  # fmt: skip
+    tree = Tree(
+        [
+            *(Joint(k - 1, axis, slides=True) for k, axis in enumerate(np.eye(3))),
+            *turning,
+            Joint(4, (0, 0, 1), mass=m, inertia=base),
+            Joint(5, (0, 0, 1), at=(0.5, 0, 0.4)),
+            *links,
+        ]
+    )
     state = equations("space_manipulator").rhs("numpy")
     speeds = equations("space_manipulator").speeds
     for t, torques in ((0.0, (0.3, -0.2)), (0.0, (-1.0, 2.0))):
@@ -405,11 +440,14 @@ def test_a_space_manipulator_keeps_its_momenta():
         assert [found[n] for n in names] == pytest.approx([*a[:6], *a[7:]], rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize(("motors", "place"), [
-    ((0, 0, 0), (0, 0, -1.065)),
-    ((-20.5, -20.5, -20.5), (0, 0, -0.9)),
-    ((47.5, -11.6, 21.4), (0.3, 0.5, -1.1)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("motors", "place"),
+    [
+        ((0, 0, 0), (0, 0, -1.065)),
+        ((-20.5, -20.5, -20.5), (0, 0, -0.9)),
+        ((47.5, -11.6, 21.4), (0.3, 0.5, -1.1)),
+    ],
+)
 def test_the_platform_of_a_delta_robot_is_where_published(motors, place):
     """R. L. Williams II, The Delta Parallel Robot, to the digits given; to 1e-9 where three spheres meet below."""
     p = parameters("delta_robot")
@@ -419,8 +457,10 @@ def test_the_platform_of_a_delta_robot_is_where_published(motors, place):
         assert written in text
         text = text.replace(written, f"theta{k} = {{ start = {angle}, unit")
     for name, x in zip("xyz", place, strict=True):
-        text = text.replace(f"{name} = {{ dependent = true, near = {0 if name != 'z' else -1.1} }}",
-                            f"{name} = {{ dependent = true, near = {x} }}")  # fmt: skip
+        text = text.replace(
+            f"{name} = {{ dependent = true, near = {0 if name != 'z' else -1.1} }}",
+            f"{name} = {{ dependent = true, near = {x} }}",
+        )
     rhs = eomgen.derive(eomgen.loads(text)).rhs("numpy")
     start = dict(zip(rhs.coordinates, rhs.x0, strict=False))
     found = [start[name] for name in "xyz"]
@@ -467,16 +507,44 @@ def test_the_puma_falls_as_the_tree_of_its_links():
     p = parameters("puma560")
     down, up = turn((1, 0, 0), -np.pi / 2), turn((1, 0, 0), np.pi / 2)
     z = (0, 0, 1)
-    tree = Tree([
-        Joint(-1, z, inertia=(0, 0, 0.35), armature=1.14),
-        Joint(0, z, at=(0, p["d2"], 0), turned=down, mass=17.4, center=(0.068, 0.006, -0.016),
-              inertia=(0.13, 0.524, 0.539), armature=4.71),
-        Joint(1, z, at=(p["a2"], 0, p["d3"]), mass=4.8, center=(0, -0.07, 0.014), inertia=(0.066, 0.0125, 0.066),
-              armature=0.83),
-        Joint(2, z, at=(p["a3"], -p["d4"], 0), turned=up, mass=0.82, center=(0, 0, -0.019),
-              inertia=(0.0018, 0.0018, 0.0013), armature=0.2),
-        Joint(3, z, turned=down, mass=0.34, inertia=(0.0003, 0.0003, 0.0004), armature=0.179),
-        Joint(4, z, turned=up, mass=0.09, center=(0, 0, 0.032), inertia=(0.00015, 0.00015, 0.00004), armature=0.193),
-    ], p["g"])  # fmt: skip
+    tree = Tree(
+        [
+            Joint(-1, z, inertia=(0, 0, 0.35), armature=1.14),
+            Joint(
+                0,
+                z,
+                at=(0, p["d2"], 0),
+                turned=down,
+                mass=17.4,
+                center=(0.068, 0.006, -0.016),
+                inertia=(0.13, 0.524, 0.539),
+                armature=4.71,
+            ),
+            Joint(
+                1,
+                z,
+                at=(p["a2"], 0, p["d3"]),
+                mass=4.8,
+                center=(0, -0.07, 0.014),
+                inertia=(0.066, 0.0125, 0.066),
+                armature=0.83,
+            ),
+            Joint(
+                2,
+                z,
+                at=(p["a3"], -p["d4"], 0),
+                turned=up,
+                mass=0.82,
+                center=(0, 0, -0.019),
+                inertia=(0.0018, 0.0018, 0.0013),
+                armature=0.2,
+            ),
+            Joint(3, z, turned=down, mass=0.34, inertia=(0.0003, 0.0003, 0.0004), armature=0.179),
+            Joint(
+                4, z, turned=up, mass=0.09, center=(0, 0, 0.032), inertia=(0.00015, 0.00015, 0.00004), armature=0.193
+            ),
+        ],
+        p["g"],
+    )
     for q, u in RANDOM.uniform(-2, 2, (5, 2, 6)):
         assert slope("puma560", [*q, *u])[6:] == pytest.approx(tree.accelerations(q, u), rel=1e-8, abs=1e-8)

@@ -43,8 +43,10 @@ def as_named(name: str) -> str:
     return owner if what in ("n", "tension") else f"{owner}_{what}"
 
 
-@pytest.mark.parametrize(("seed", "bodies", "space"), [(1, 1, False), (2, 2, False), (3, 3, False), (4, 4, False),
-                                                        (5, 3, False), (6, 1, True), (7, 2, True)])
+@pytest.mark.parametrize(
+    ("seed", "bodies", "space"),
+    [(1, 1, False), (2, 2, False), (3, 3, False), (4, 4, False), (5, 3, False), (6, 1, True), (7, 2, True)],
+)
 def test_virtual_work_equals_equilibrium_equals_floats(seed, bodies, space):
     """R delta_R + sum of works = 0 and G rho + F = 0 give one rho, that of the equations in floats."""
     structure = determinate(seed, bodies=bodies, space=space)
@@ -93,8 +95,11 @@ def test_released_mechanism_moves_along_its_reaction_alone():
 
 def test_line_loads_do_the_work_of_the_integral():
     """L/6 (2 q_A.v_A + q_A.v_B + q_B.v_A + 2 q_B.v_B) = sum of Gauss points, not of the ends' forces."""
-    text = BEAM.replace("[forces]", '[forces]\nq = { kind = "distributed", body = "AB", between = ["A", "B"], '
-                        'intensities = [[0, "-p"], ["p", "-4*p"]] }')  # fmt: skip
+    text = BEAM.replace(
+        "[forces]",
+        '[forces]\nq = { kind = "distributed", body = "AB", between = ["A", "B"], '
+        'intensities = [[0, "-p"], ["p", "-4*p"]] }',
+    )
     structure = structure_of(system_of(eomgen.loads(text)))
     load = next(x for x in loads_at_rest(structure) if x.name == "q")
     plan = structure.released(structure.index("reaction_n(B)"))
@@ -152,7 +157,7 @@ LOOSE = {
         "infinitesimally movable: body 'AB' can turn about (0, 0)",
     ),
     "no second support": ("", "unstable: body 'AB' can turn about (0, 0)"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", LOOSE)
@@ -189,8 +194,11 @@ C = { kind = "support", point = "plate.C", normal = ["a - b", 1] }
 
 def test_indeterminate_reactions_are_named_and_the_others_given():
     """A beam on three rollers and a pin: x is determinate, the four vertical ones have two self-stresses."""
-    text = BEAM.replace("[forces]", 'C = { kind = "support", point = "AB.C", normal = [0, 1] }\n[forces]\n'
-                        'f = { kind = "force", point = "AB.C", force = ["p", "-p"] }')  # fmt: skip
+    text = BEAM.replace(
+        "[forces]",
+        'C = { kind = "support", point = "AB.C", normal = [0, 1] }\n[forces]\n'
+        'f = { kind = "force", point = "AB.C", force = ["p", "-p"] }',
+    )
     found = solved(text.replace('B = ["4*a", 0]', 'B = ["4*a", 0], C = ["2*a", 0]'))
     assert [r.name for r in found.open] == ["reaction_y(A)", "reaction_n(B)", "reaction_n(C)"]
     assert to_text(found.by_name["reaction_x(A)"].work.value) == "-p"

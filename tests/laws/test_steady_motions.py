@@ -70,10 +70,12 @@ def test_a_bicycle_turns_hands_free():
     text = (MODELS / "whipple_bicycle.toml").read_text()
     for old, new in (
         ('x = { unit = "m", about = "of the centre of the rear wheel", speed = "v" }', 'x = { unit = "m" }'),
-        ('z = { start = "-r_R",', 'z = { near = "-r_R",'), ('phi = { about', "phi = { start = 0.1, about"),
-        ("delta = { about", "delta = { near = 0.1, about"), ("theta_R = { speed", "theta_R = { near = 0, speed"),
+        ('z = { start = "-r_R",', 'z = { near = "-r_R",'),
+        ("phi = { about", "phi = { start = 0.1, about"),
+        ("delta = { about", "delta = { near = 0.1, about"),
+        ("theta_R = { speed", "theta_R = { near = 0, speed"),
         ('theta_F = { speed = "-v/r_F", ', "theta_F = { "),
-    ):  # fmt: skip
+    ):
         assert old in text
         text = text.replace(old, new)
     state = found(text)

@@ -20,10 +20,14 @@ from eomgen.symbolic.graph import Scalar
 def test_a_massive_pulley_has_different_tensions_on_its_sides(strands):
     """ch18-p1: 2 m and m over a disc of 6 m: the heavy side descends with g/6, T = 5/3 m g and 7/6 m g."""
     system = system_with(
-        disc("pulley", AXLE, "6*m") + particle("P", "-R", "p", "2*m") + particle("Q", "R", "q")
+        disc("pulley", AXLE, "6*m")
+        + particle("P", "-R", "p", "2*m")
+        + particle("Q", "R", "q")
         + tie("string", 'path = ["P.origin", { body = "pulley", turn = "cw" }, "Q.origin"]' + strands),
-        p=-1, q=-2, a=0,
-    )  # fmt: skip
+        p=-1,
+        q=-2,
+        a=0,
+    )
     a, lam = accelerations(system, p=-1, q=-2)
     assert a == pytest.approx({"p": -g / 6, "q": g / 6, "a": g / 6 / R})
     assert list(lam.values()) == pytest.approx([5 / 3 * m * g, 7 / 6 * m * g])
@@ -33,10 +37,14 @@ def test_a_massive_pulley_has_different_tensions_on_its_sides(strands):
 def test_a_string_that_slips_has_one_tension_and_leaves_the_pulley_at_rest():
     """Atwood's machine over a smooth drum: a = g/3, T = 4/3 m g."""
     system = system_with(
-        disc("pulley", AXLE, "6*m") + particle("P", "-R", "p", "2*m") + particle("Q", "R", "q")
+        disc("pulley", AXLE, "6*m")
+        + particle("P", "-R", "p", "2*m")
+        + particle("Q", "R", "q")
         + tie("string", 'path = ["P.origin", { body = "pulley", turn = "cw", slip = true }, "Q.origin"]'),
-        p=-1, q=-2, a=0,
-    )  # fmt: skip
+        p=-1,
+        q=-2,
+        a=0,
+    )
     a, lam = accelerations(system, p=-1, q=-2)
     assert a == pytest.approx({"p": -g / 3, "q": g / 3, "a": 0})
     assert list(lam.values()) == pytest.approx([4 / 3 * m * g])
@@ -57,12 +65,19 @@ def test_a_disc_unrolls_from_a_string():
 def test_a_disc_hangs_in_a_loop_of_two_drums():
     """ch20-p3: a_P = g/14, phi'' = 5g/7R, tensions 13/14 m g and 5/7 m g, the disc falls with 9g/14."""
     system = system_with(
-        disc("drum", AXLE, "6*m", "2*R") + particle("P", "-2*R", "p")
+        disc("drum", AXLE, "6*m", "2*R")
+        + particle("P", "-2*R", "p")
         + disc("C", 'kind = "placed", at = ["3*R", "c"], angle = "b"', "2*m")
-        + tie("string", 'path = ["P.origin", { body = "drum", turn = "cw" }, { body = "C", turn = "ccw" }]\n'
-                        'strands = ["up", "down"]'),
-        p=-1, c=-3, a=0, b=0,
-    )  # fmt: skip
+        + tie(
+            "string",
+            'path = ["P.origin", { body = "drum", turn = "cw" }, { body = "C", turn = "ccw" }]\n'
+            'strands = ["up", "down"]',
+        ),
+        p=-1,
+        c=-3,
+        a=0,
+        b=0,
+    )
     a, lam = accelerations(system, p=-1, c=-3)
     assert a["a"] == pytest.approx(g / (28 * R)) and a["b"] == pytest.approx(-5 / 7 * g / R)
     assert (a["p"], a["c"]) == pytest.approx((-g / 14, -9 / 14 * g))
@@ -77,10 +92,17 @@ def test_a_stepped_drum_lifts_a_disc_in_the_loop():
         + particle("P", "2*R", "p", "4*m")
         + disc("C", 'kind = "placed", at = ["-2*R", "c"], angle = "b"', "2*m")
         + tie("string", 'path = [{ body = "drum", radius = "2*R", turn = "cw" }, "P.origin"]', "outer")
-        + tie("string", 'path = [{ body = "drum", radius = "R", turn = "ccw" }, { body = "C", turn = "cw" }, '
-                        '"ceiling"]\nstrands = ["down", "up"]', "inner"),
-        a=0, p=-1, c=-1, b=0,
-    )  # fmt: skip
+        + tie(
+            "string",
+            'path = [{ body = "drum", radius = "R", turn = "ccw" }, { body = "C", turn = "cw" }, '
+            '"ceiling"]\nstrands = ["down", "up"]',
+            "inner",
+        ),
+        a=0,
+        p=-1,
+        c=-1,
+        b=0,
+    )
     J = np.array([at(row, state_of(system)) for row in system.ties.J])
     radius = float(state_of(system)[system.symbols.parameters["R"]])
     assert J @ [-1, -2 * radius, radius / 2, 0.5] == pytest.approx([0, 0, 0], abs=1e-13)
@@ -91,12 +113,17 @@ def test_a_pulley_that_a_body_carries_doubles_the_force():
     """A load 3 m hangs in a smooth loop, m on the free end: a_load = (3 - 2) g / (3 + 4), one tension through all."""
     system = system_with(
         '[points]\nceiling = ["-2*R", 0]\n'
-        + disc("hook", 'kind = "placed", at = ["-R", "y"]', "3*m") + particle("Q", "2*R", "q")
-        + tie("string", 'path = ["ceiling", { body = "hook", turn = "ccw", slip = true }, '
-                        '{ at = ["R", 0], radius = "R", turn = "cw", slip = true }, "Q.origin"]\n'
-                        'strands = ["down", "up", "down"]'),
-        y=-1, q=-1,
-    )  # fmt: skip
+        + disc("hook", 'kind = "placed", at = ["-R", "y"]', "3*m")
+        + particle("Q", "2*R", "q")
+        + tie(
+            "string",
+            'path = ["ceiling", { body = "hook", turn = "ccw", slip = true }, '
+            '{ at = ["R", 0], radius = "R", turn = "cw", slip = true }, "Q.origin"]\n'
+            'strands = ["down", "up", "down"]',
+        ),
+        y=-1,
+        q=-1,
+    )
     a, lam = accelerations(system, y=-1, q=-1)
     assert (a["y"], a["q"]) == pytest.approx((-g / 7, 2 * g / 7))
     assert list(lam.values()) == pytest.approx([m * (g + 2 * g / 7)])
@@ -119,20 +146,21 @@ def test_a_string_over_a_peg_gives_way_as_its_other_side_grows():
 ROPES = {
     "two points, a smooth wheel": '["P.P", { body = "wheel", turn = "cw", slip = true }, "Q.P"]',
     "crossed, open, crossed": '["P.P", { body = "wheel", turn = "ccw", slip = true }, '
-                              '{ body = "pulley", turn = "cw", slip = true }, "Q.P"]',
+    '{ body = "pulley", turn = "cw", slip = true }, "Q.P"]',
     "wheel, peg": '["G", { body = "wheel", turn = "cw", slip = true }, '
-                  '{ at = [9, 8], radius = "R", turn = "cw", slip = true }, "Q.P"]',
+    '{ at = [9, 8], radius = "R", turn = "cw", slip = true }, "Q.P"]',
     "no slip": '["P.P", { body = "wheel", turn = "cw" }, { body = "pulley", turn = "ccw" }, "Q.P"]',
     "wound at both ends": '[{ body = "wheel", turn = "ccw" }, { body = "pulley", turn = "cw" }]',
     "a peg between": '[{ body = "wheel", turn = "cw" }, '
-                     '{ at = [9, 8], radius = "R", turn = "cw", slip = true }, "Q.P"]',
-}  # fmt: skip
+    '{ at = [9, 8], radius = "R", turn = "cw", slip = true }, "Q.P"]',
+}
 MOVERS = (
     "[points]\nG = [-5, 7]\n"
-    + block("P", "x", "y", "a") + block("Q", "z", "r", "b")
+    + block("P", "x", "y", "a")
+    + block("Q", "z", "r", "b")
     + disc("wheel", 'kind = "planar", x = "s", y = "5 + d", angle = "e"')
     + disc("pulley", 'kind = "planar", x = "7 + c", y = "k", angle = "h"', radius="R/3")
-)  # fmt: skip
+)
 STARTS = dict.fromkeys("xyazrbsdeckh", 0.1) | {"x": -6, "z": 12}
 
 
@@ -186,8 +214,10 @@ def test_strands_pull_along_the_common_tangents_of_what_they_touch(path):
     for number, (first, second), (delta, _) in zip(numbered, pairwise(stops), tangents(stops), strict=True):
         d = np.array([cos(delta), sin(delta), 0])
         across = np.array([-d[1], d[0], 0])
-        v = [frozen_velocity(system, body, np.array([float(x), float(y), 0]) + float(a) * across, state)
-             for body, x, y, a in (first, second)]  # fmt: skip
+        v = [
+            frozen_velocity(system, body, np.array([float(x), float(y), 0]) + float(a) * across, state)
+            for body, x, y, a in (first, second)
+        ]
         expected[number] = expected.get(number, 0) + d @ (v[0] - v[1])
     assert at([row.velocity for row in system.ties.rows], state) == pytest.approx(list(expected.values()), rel=1e-11)
 

@@ -15,8 +15,11 @@ from eomgen.symbolic.evaluation import fifty_digits
 
 def test_a_wire_holds_the_weight_that_hangs_on_it():
     """At rest T = m g > 0; with speed v at the lowest point T = m (g + v^2/l)."""
-    system = system_with("[points]\nO = [0, 0]\n" + particle("bob", "x", "y")
-                         + tie("link", 'points = ["O", "bob.origin"]'), x=0, y='"-l"')  # fmt: skip
+    system = system_with(
+        "[points]\nO = [0, 0]\n" + particle("bob", "x", "y") + tie("link", 'points = ["O", "bob.origin"]'),
+        x=0,
+        y='"-l"',
+    )
     at_rest, lam = accelerations(system, y=-l)
     assert lam["tie, 1"] == pytest.approx(m * g) and at_rest == pytest.approx({"x": 0, "y": 0})
     with_speed, lam = accelerations(system, y=-l, **{"x'": 3})
@@ -26,16 +29,20 @@ def test_a_wire_holds_the_weight_that_hangs_on_it():
 @pytest.mark.parametrize("ends", ['["O", "bob.origin"]', '["bob.origin", "O"]'])
 def test_a_strut_is_pressed_whichever_end_is_named_first(ends):
     """A rod that holds a weight from below has T = - m g."""
-    system = system_with("[points]\nO = [0, 0]\n" + particle("bob", "x", "y")
-                         + tie("link", f'points = {ends}\nlength = "l"'), x=0, y='"l"')  # fmt: skip
+    system = system_with(
+        "[points]\nO = [0, 0]\n" + particle("bob", "x", "y") + tie("link", f'points = {ends}\nlength = "l"'),
+        x=0,
+        y='"l"',
+    )
     assert accelerations(system, y=l)[1]["tie, 1"] == pytest.approx(-m * g)
 
 
 def test_a_link_without_a_length_at_the_start_is_refused():
     """Its length would be the distance at the start, which is 0."""
     with pytest.raises(eomgen.ModelError, match=r"'O' and 'bob.origin' are at one place at the start") as caught:
-        system_with("[points]\nO = [0, 0]\n" + particle("bob", "x", "y")
-                    + tie("link", 'points = ["O", "bob.origin"]'), x=0, y=0)  # fmt: skip
+        system_with(
+            "[points]\nO = [0, 0]\n" + particle("bob", "x", "y") + tie("link", 'points = ["O", "bob.origin"]'), x=0, y=0
+        )
     assert caught.value.problems[0].where == "constraints.tie" and "length" in caught.value.problems[0].mend
 
 
@@ -102,8 +109,9 @@ COLLAR = '[bodies.bar]\nmass = "m"\ninertia = 1\npoints = { A = [0, "l"], B = ["
 def test_a_collar_on_a_turning_bar_is_carried_with_coriolis_force():
     """On a bar driven with w: N = 2 m r' w + m g cos(angle), to the left of A -> B, on the collar."""
     text = COLLAR.replace('"l"]', "0]") + 'joint = { kind = "revolute", angle = "2*t" }\n'
-    system = system_with(text + particle("collar", "x", "y") + tie("slider", 'point = "collar.origin"\non = "bar"'),
-                         x=1, y=0)  # fmt: skip
+    system = system_with(
+        text + particle("collar", "x", "y") + tie("slider", 'point = "collar.origin"\non = "bar"'), x=1, y=0
+    )
     a, lam = accelerations(system, x=1, **{"x'": 0.3, "y'": 2.0})  # r' = 0.3, on the line: y' = w r
     assert lam["tie, 1"] == pytest.approx(m * g + 2 * m * 0.3 * 2)
     assert a["x"] == pytest.approx(0)  # r'' - r w^2 = 0 in turning axes
@@ -141,7 +149,8 @@ def test_a_disc_that_slips_keeps_its_spin():
     speeds = [state[u] for u in system.symbols.u]
     radius = state[system.symbols.parameters["R"]]
     assert at((system.ties.rows[0].sliding,), state)[0] == pytest.approx(
-        float(speeds[0] * 4 / 5 - speeds[1] * 3 / 5 + radius * speeds[2]))  # fmt: skip
+        float(speeds[0] * 4 / 5 - speeds[1] * 3 / 5 + radius * speeds[2])
+    )
 
 
 @pytest.mark.parametrize(("inside", "distance", "spin"), [("false", 2 * l + R, -1), ("true", 2 * l - R, 1)])

@@ -113,8 +113,12 @@ kind = "equation"
 """
 BY_POINTS = 'gap = "(x(follower.center, cam)/a)^2 + (y(follower.center, cam)/b)^2 - 1"\n'
 BY_COORDINATES = 'gap = "((e*cos(phi) + h*sin(phi))/a)^2 + ((h*cos(phi) - e*sin(phi))/b)^2 - 1"\n'
-CAM_ASKED = {"x": "reaction_x(contact)", "y": "reaction_y(contact)", "axle": "reaction_x(cam)",
-             "guide": "reaction_n(follower)"}  # fmt: skip
+CAM_ASKED = {
+    "x": "reaction_x(contact)",
+    "y": "reaction_y(contact)",
+    "axle": "reaction_x(cam)",
+    "guide": "reaction_n(follower)",
+}
 
 
 def test_a_cam_with_an_offset_follower_moves_as_its_equation_in_coordinates():
@@ -204,9 +208,17 @@ def test_a_slider_in_space_holds_a_bead_on_a_turning_wire():
     """s'' = s w^2 sin(al)^2 - g cos(al); across the wire it pushes with m (2 w s' + ...) and the weight's share."""
     s0, al, w, m = 0.2 / sin(0.6), 0.6, 3.0, 0.4
     text = WIRE.replace("y = 0\n", 'y = { start = 0, speed = "0.2*w" }\n')
-    found = values_of(text + WEIGHT + "".join(
-        ['[outputs]\n', *(f'a{k} = {{ value = "a{k}(bead.center)", at = "t = 0" }}\n' for k in "xyz"),
-         *(f'R{k} = {{ value = "reaction_{k}(hole)", at = "t = 0" }}\n' for k in "xyz")]))  # fmt: skip
+    found = values_of(
+        text
+        + WEIGHT
+        + "".join(
+            [
+                "[outputs]\n",
+                *(f'a{k} = {{ value = "a{k}(bead.center)", at = "t = 0" }}\n' for k in "xyz"),
+                *(f'R{k} = {{ value = "reaction_{k}(hole)", at = "t = 0" }}\n' for k in "xyz"),
+            ]
+        )
+    )
     along = s0 * w**2 * sin(al) ** 2 - G * cos(al)
     a = np.array([along * sin(al) - s0 * sin(al) * w**2, 0, along * cos(al)])
     assert [found["ax"], found["ay"], found["az"]] == pytest.approx(a, abs=1e-12)
@@ -235,12 +247,17 @@ def test_a_guide_in_space_is_a_prismatic_joint():
     """Two forces and three couples: the same acceleration, and the same force and couple in space."""
     asked = "[outputs]\n" + "".join(
         f'{kind}{k} = {{ value = "reaction_{kind}{k}(NAME)", at = "t = 0" }}\n'
-        for kind in ("", "couple_") for k in "xyz")
-    free = BLOCK.replace("COORDINATES", "x = 0\ny = 0\nz = 0\na = 0\nb = 0\nc = 0").replace("JOINT", (
-        'joint = { kind = "free", position = ["x", "y", "z"], orientation = "xyz", angles = ["a", "b", "c"] }'))
+        for kind in ("", "couple_")
+        for k in "xyz"
+    )
+    free = BLOCK.replace("COORDINATES", "x = 0\ny = 0\nz = 0\na = 0\nb = 0\nc = 0").replace(
+        "JOINT",
+        ('joint = { kind = "free", position = ["x", "y", "z"], orientation = "xyz", angles = ["a", "b", "c"] }'),
+    )
     free += '[constraints.rail]\nkind = "guide"\npoint = "block.origin"\nalong = [1, 2, 2]\n'
     slide = BLOCK.replace("COORDINATES", "s = 0").replace(
-        "JOINT", 'joint = { kind = "prismatic", axis = [1, 2, 2], displacement = "s" }')
+        "JOINT", 'joint = { kind = "prismatic", axis = [1, 2, 2], displacement = "s" }'
+    )
     one = values_of(free + WEIGHT + asked.replace("NAME", "rail"))
     other = values_of(slide + WEIGHT + asked.replace("NAME", "block"))
     assert one == pytest.approx(other, abs=1e-9)
@@ -380,10 +397,22 @@ path = ["left.center", {{ body = "wheel", radius = "R", turn = "cw" AXIS }}, "ri
 kind = "gravity"
 acceleration = DOWN
 """
-IN_PLANE = {"INERTIA": "0.05", "AXLE": "", "LEFT": '["-R", "a - 1"]', "RIGHT": '["R", "b - 1"]', "AXIS": "",
-            "DOWN": '[0, "-g"]'}  # fmt: skip
-IN_SPACE = {"INERTIA": "[1, 0.05, 1]", "AXLE": "axis = [0, -1, 0],", "LEFT": '["-R", 0, "a - 1"]',
-            "RIGHT": '["R", 0, "b - 1"]', "AXIS": ", axis = [0, -1, 0]", "DOWN": '[0, 0, "-g"]'}  # fmt: skip
+IN_PLANE = {
+    "INERTIA": "0.05",
+    "AXLE": "",
+    "LEFT": '["-R", "a - 1"]',
+    "RIGHT": '["R", "b - 1"]',
+    "AXIS": "",
+    "DOWN": '[0, "-g"]',
+}
+IN_SPACE = {
+    "INERTIA": "[1, 0.05, 1]",
+    "AXLE": "axis = [0, -1, 0],",
+    "LEFT": '["-R", 0, "a - 1"]',
+    "RIGHT": '["R", 0, "b - 1"]',
+    "AXIS": ", axis = [0, -1, 0]",
+    "DOWN": '[0, 0, "-g"]',
+}
 
 
 def test_a_rope_over_a_pulley_in_space_moves_as_in_the_plane():
@@ -573,7 +602,7 @@ CASES = {
     "two rows of which one reaches on": (["y' - psi*x'", "theta' - 2*psi'"], [False, True], 2, 3),
     "Engel's rows: brackets of brackets": (["y' - psi*x'", "psi' - theta*x'"], [False, False], 2, 4),
     "a belt that moves": (["x' - R*theta' - t"], [True], 3, 3),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -631,13 +660,23 @@ NOT_DERIVED = [
     (BEAD + '[constraints.c]\nkind = "equation"\nrate = "vx(bead.center)^2 - 1"\n', "not linear in the velocities"),
     (BEAD + '[constraints.c]\nkind = "equation"\nrate = "x\'*vx(bead.center)"\n', "not linear in the rates"),
     (BEAD + '[constraints.c]\nkind = "equation"\ngap = "angle(bead) - 1"\n', "no single angle in space"),
-    (BEVEL.replace('kind = "revolute", axis = [1, 0, 0], angle = "p"',
-                   'kind = "universal", axes = [[1, 0, 0], [0, 1, 0]], angles = ["p", "q"]')
-     .replace(", torque = 3", ""), "the joint of body 'pinion' has no single angle"),
-    (PULLEY.replace("INERTIA", "[1, 1, 1]").replace("AXLE", "").replace("LEFT", '[0, 0.2, "a"]')
-     .replace("AXIS", "").replace("RIGHT", '[1, 1, "b"]').replace("DOWN", "[0, 0, -1]"),
-     "is not in the plane of the wrap"),
-]  # fmt: skip
+    (
+        BEVEL.replace(
+            'kind = "revolute", axis = [1, 0, 0], angle = "p"',
+            'kind = "universal", axes = [[1, 0, 0], [0, 1, 0]], angles = ["p", "q"]',
+        ).replace(", torque = 3", ""),
+        "the joint of body 'pinion' has no single angle",
+    ),
+    (
+        PULLEY.replace("INERTIA", "[1, 1, 1]")
+        .replace("AXLE", "")
+        .replace("LEFT", '[0, 0.2, "a"]')
+        .replace("AXIS", "")
+        .replace("RIGHT", '[1, 1, "b"]')
+        .replace("DOWN", "[0, 0, -1]"),
+        "is not in the plane of the wrap",
+    ),
+]
 
 
 @pytest.mark.parametrize(("text", "message"), NOT_DERIVED)

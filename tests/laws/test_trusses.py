@@ -67,8 +67,10 @@ def test_members_are_those_of_the_method_of_joints(seed):
     normal = (-int(r[1]) + 1, int(r[0]) + 1)  # not through the hinge
     rest = f'[constraints]\nA = {{ kind = "pin", points = ["T.{held}"] }}\n'
     rest += f'B = {{ kind = "support", point = "T.{rolled}", normal = [{normal[0]}, {normal[1]}] }}\n[forces]\n'
-    rest += "".join(f'f{k} = {{ kind = "force", point = "T.{n}", force = [{x}, {y}] }}\n'
-                    for k, (n, (x, y)) in enumerate(loads.items()))  # fmt: skip
+    rest += "".join(
+        f'f{k} = {{ kind = "force", point = "T.{n}", force = [{x}, {y}] }}\n'
+        for k, (n, (x, y)) in enumerate(loads.items())
+    )
     found = answers(model(nodes, members, rest + asked(members) + 'A_x = "reaction_x(A)"\nB = "reaction_n(B)"\n'))
     structure = Structure(joints=nodes)
     for member in members:
@@ -113,8 +115,10 @@ def test_symbolic_panels_and_heights_stay_short_in_long_trusses():
     rest += '[outputs]\nchord = "tension(T, b0-b1)"\nfirst = "tension(T, b0-t1)"\npost = "tension(T, b1-t1)"\n'
     found = eomgen.solve(model(nodes, members, rest, parameters="P = {}\na = { positive = true }\nh = {}"))
     assert {name: a.exact for name, a in found.items()} == {
-        "chord": "3/4*P*a/h", "first": "-3/4*P*sqrt(a^2 + h^2)/h", "post": "0",
-    }  # fmt: skip
+        "chord": "3/4*P*a/h",
+        "first": "-3/4*P*sqrt(a^2 + h^2)/h",
+        "post": "0",
+    }
 
 
 def test_a_truss_in_space_is_in_balance_at_every_node():

@@ -20,7 +20,9 @@ HEAD = 'eomgen = 1\nname = "turning"\nspace = "space"\n'
 BY_QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, 0, "-g"]\n'
 
-TOP = HEAD + """
+TOP = (
+    HEAD
+    + """
 [parameters]
 m = 0.5
 d = 0.06
@@ -41,9 +43,15 @@ w3 = { start = "%s" }
 mass = "m"
 center = [0, 0, "d"]
 inertia = ["A - m*d^2", "A - m*d^2", "C"]
-joint = { kind = "spherical", """ + BY_QUATERNION + " }\n" + WEIGHT
+joint = { kind = "spherical", """
+    + BY_QUATERNION
+    + " }\n"
+    + WEIGHT
+)
 
-SATELLITE = HEAD + """
+SATELLITE = (
+    HEAD
+    + """
 [parameters]
 n = 0.001
 A = 10
@@ -64,13 +72,18 @@ joint = { kind = "revolute", axis = [0, 0, 1], angle = "u" }
 [bodies.satellite]
 mass = 100
 inertia = ["A", "B", "C"]
-joint = { kind = "spherical", on = "orbit", """ + BY_QUATERNION + """ }
+joint = { kind = "spherical", on = "orbit", """
+    + BY_QUATERNION
+    + """ }
 [forces.gradient]
 kind = "potential"
 energy = "3/2*n^2*(A*(e0^2+e1^2-e2^2-e3^2)^2 + 4*B*(e1*e2-e0*e3)^2 + 4*C*(e1*e3+e0*e2)^2)"
 """
+)
 
-FREE = HEAD + """
+FREE = (
+    HEAD
+    + """
 [parameters]
 m = 3
 A = 1.1
@@ -92,7 +105,10 @@ w3 = { start = 2 }
 mass = "m"
 center = [0.1, 0.2, -0.3]
 inertia = ["A", "B", "C"]
-joint = { kind = "free", position = ["x", "y", "z"], """ + BY_QUATERNION + " }\n"
+joint = { kind = "free", position = ["x", "y", "z"], """
+    + BY_QUATERNION
+    + " }\n"
+)
 
 
 def small(text: str, about: str = "equilibrium"):
@@ -125,11 +141,14 @@ def test_a_satellite_librates_in_the_gradient_of_gravity(C):
     """Pitch w^2 = 3 n^2 (B - A)/C; roll and yaw by C th1'' and so on, worked out by hand below."""
     n, A, B = 0.001, 10.0, 12.0
     found = small(SATELLITE % C)
-    roll_yaw = np.array([  # x = (th1, th2, th1', th2'), th1 about the radius, th2 about the orbit's tangent
-        [0, 0, 1, 0], [0, 0, 0, 1],
-        [-n**2 * (C - B) / A, 0, 0, n * (A + B - C) / A],
-        [0, -4 * n**2 * (C - A) / B, -n * (A + B - C) / B, 0],
-    ])  # fmt: skip
+    roll_yaw = np.array(
+        [  # x = (th1, th2, th1', th2'), th1 about the radius, th2 about the orbit's tangent
+            [0, 0, 1, 0],
+            [0, 0, 0, 1],
+            [-(n**2) * (C - B) / A, 0, 0, n * (A + B - C) / A],
+            [0, -4 * n**2 * (C - A) / B, -n * (A + B - C) / B, 0],
+        ]
+    )
     expected = [*np.linalg.eigvals(roll_yaw), *(s * 1j * n * np.sqrt(3 * (B - A) / C) for s in (1, -1))]
     found = np.linalg.eigvals(found.state_matrix)
     ours, by_hand = (np.sort_complex(np.round(np.array(x) / n, 7)) for x in (found, expected))
@@ -152,7 +171,7 @@ def test_a_sleeping_top_is_stable_above_its_critical_spin():
 def test_the_small_motions_of_a_quaternion_are_those_of_angles():
     """A hanging body whose tensor is no symmetric one, by quaternion in a turned start and by xyz angles."""
     tensor = 'inertia = ["A - m*d^2", "A - m*d^2", "C"]'
-    other = 'inertia = [0.002, 0.0035, 0.004, 0.0003, -0.0002, 0.0001]'
+    other = "inertia = [0.002, 0.0035, 0.004, 0.0003, -0.0002, 0.0001]"
     by_four = (TOP % (0, 0.6, 0.8, 0, 0)).replace(tensor, other)
     angles = by_four[: by_four.index("[coordinates]")] + "[coordinates]\na = 3.0\nb = 0.1\nc = 0.4\n"
     angles += by_four[by_four.index("[bodies.top]") :]
@@ -162,7 +181,9 @@ def test_the_small_motions_of_a_quaternion_are_those_of_angles():
 
 def test_rest_and_reactions_do_not_ask_for_declared_speeds():
     """At theta = 0 the speed u2 = psi' sin(theta) gives no psi': rest is known there, small motions are not."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
 [parameters]
 g = 9.81
 [coordinates]
@@ -178,7 +199,9 @@ mass = 0.5
 center = [0, 0, 0.06]
 inertia = [0.003, 0.003, 0.0008]
 joint = { kind = "spherical", orientation = "zxz", angles = ["psi", "theta", "phi"] }
-""" + WEIGHT
+"""
+        + WEIGHT
+    )
     model = eomgen.loads(text)
     assert eomgen.statics(model).as_dict()["reactions"]["reaction_z(top)"]["value"] == pytest.approx(0.5 * 9.81)
     with pytest.raises(eomgen.EomgenError, match="declared speeds do not determine"):
@@ -267,7 +290,7 @@ def test_reactions_are_printed_in_the_declared_speeds():
 
 def test_a_body_on_a_wire_swings_the_same_by_a_quaternion_and_by_angles():
     """Where the wire passes through the mass centre its row has no part along any turn: none of these is solved for."""
-    body = '[bodies.base]\nmass = 4\ninertia = [0.3, 0.4, 0.5]\npoints = { P = [0.1, 0.2, 0.1] }\n'
+    body = "[bodies.base]\nmass = 4\ninertia = [0.3, 0.4, 0.5]\npoints = { P = [0.1, 0.2, 0.1] }\n"
     wire = '[constraints.wire]\nkind = "link"\npoints = ["O", "base.P"]\nlength = 1.2\n'
     head = HEAD + "[parameters]\ng = 9.81\n[points]\nO = [0, 0, 1]\n[coordinates]\nx = 0\ny = 0\nz = -0.4\n"
     joint = 'joint = { kind = "free", position = ["x", "y", "z"], %s }\n'

@@ -66,8 +66,10 @@ def solved(text: str) -> dict[str, eomgen.Answer]:
 def test_a_lever_is_held_by_the_ratio_of_its_arms():
     """P b = G a, the bearing carries both."""
     assert {name: answer.exact for name, answer in solved(LEVER).items()} == {
-        "P": "a*G/b", "O_y": "G + a*G/b", "both": "2*a*G/b + G",
-    }  # fmt: skip
+        "P": "a*G/b",
+        "O_y": "G + a*G/b",
+        "both": "2*a*G/b + G",
+    }
 
 
 def test_a_couple_at_a_joint_may_be_unknown():
@@ -109,7 +111,8 @@ def test_a_press_is_held_where_its_ties_place_it():
 def test_an_unknown_that_nothing_fixes_is_named_with_what_it_shares():
     """Two unknown couples on one lever: only their sum is known."""
     text = LEVER.replace('it"', 'it"\nM = "a couple"\nN = "another"', 1).replace(
-        '[outputs]', 'm = { kind = "couple", body = "lever", couple = "M + N" }\n[outputs]\nM = "M"\n')  # fmt: skip
+        "[outputs]", 'm = { kind = "couple", body = "lever", couple = "M + N" }\n[outputs]\nM = "M"\n'
+    )
     answer = solved(text)["M"]
     assert answer.exact is None and "M is statically indeterminate" in answer.message and "N" in answer.message
 
@@ -131,8 +134,10 @@ def test_what_no_balance_gives_is_said(old, new, told):
 
 def test_friction_leaves_a_range_and_is_refused():
     """A rough support sticks beside the hinge, by anything up to mu N: what leaves P open is named."""
-    text = LEVER.replace("[forces]", 'R = { kind = "support", point = "lever.A", normal = [0, 1], '
-                                     'friction = { coulomb = 0.3 } }\n[forces]')  # fmt: skip
+    text = LEVER.replace(
+        "[forces]",
+        'R = { kind = "support", point = "lever.A", normal = [0, 1], friction = { coulomb = 0.3 } }\n[forces]',
+    )
     answer = solved(text)["P"]
     assert not answer.answered and "P is statically indeterminate" in answer.message
     assert "reaction_n(R)" in answer.message

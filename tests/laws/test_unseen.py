@@ -44,8 +44,14 @@ def ladder_lets_go() -> float:
         return falling_ladder(x[0], x[1], 8, 3, 0.25)[2]
 
     wall.terminal = True  # type: ignore[attr-defined]
-    run = solve_ivp(lambda t, x: [x[1], falling_ladder(x[0], x[1], 8, 3, 0.25)[0]], (0, 5), [pi / 4, 0.0],
-                    events=wall, rtol=1e-11, atol=1e-12)  # fmt: skip
+    run = solve_ivp(
+        lambda t, x: [x[1], falling_ladder(x[0], x[1], 8, 3, 0.25)[0]],
+        (0, 5),
+        [pi / 4, 0.0],
+        events=wall,
+        rtol=1e-11,
+        atol=1e-12,
+    )
     return float(np.degrees(run.y_events[0][0][0]))
 
 
@@ -55,16 +61,22 @@ wedge = 2 + 0.5 * sin(pi / 6) ** 2
 KNOWN: dict[str, dict[str, float]] = {
     "scotch_yoke": {"N": 2 * 0.3 * 25, "T": 0, "C": 0},
     "block_on_wedge": {
-        "a_wedge": -0.5 * G * sin(pi / 6) * cos(pi / 6) / wedge, "N": G * cos(pi / 6) / wedge, "N_floor": 5 * G / wedge,
+        "a_wedge": -0.5 * G * sin(pi / 6) * cos(pi / 6) / wedge,
+        "N": G * cos(pi / 6) / wedge,
+        "N_floor": 5 * G / wedge,
     },
     "disc_leaves_cylinder": {"N": 2 * G, "cos_theta": 4 / 7, "v": sqrt(5 * G / 7)},
     "ball_on_free_hemisphere": {"theta_d_squared": 0, "cos_theta": sqrt(3) - 1},
     "bowling_ball": {
-        "t_rolls": 10 / (1.4 * G), "v_rolls": 25 / 7, "x_rolls": 300 / (9.8 * G), "v_later": 25 / 7, "F_later": 0,
+        "t_rolls": 10 / (1.4 * G),
+        "v_rolls": 25 / 7,
+        "x_rolls": 300 / (9.8 * G),
+        "v_later": 25 / 7,
+        "F_later": 0,
     },
     "double_atwood": {"a1": a1, "T_upper": 3 * (G - a1), "T_lower": 1.5 * (G - a1)},
     "box_on_two_feet": {"a": 0, "N_left": 5 * G - 8, "N_right": 5 * G + 8},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", KNOWN)

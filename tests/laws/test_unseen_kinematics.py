@@ -14,7 +14,9 @@ from eomgen.symbolic.graph import Graph
 
 PLANE = 'eomgen = 1\nspace = "plane"\n'
 
-FOUR_BAR = PLANE + """
+FOUR_BAR = (
+    PLANE
+    + """
 [parameters]
 a = 0.1
 b = 0.3
@@ -45,6 +47,7 @@ w3 = "omega(rocker)"
 be = "be"
 ga = "ga"
 """
+)
 
 
 def test_a_given_mechanism_is_answered_by_its_coordinates_where_their_closed_form_is_long():
@@ -66,7 +69,9 @@ def test_a_rate_without_a_value_stays_a_symbol_where_the_places_are_numbers():
 
 def test_a_rate_that_is_asked_by_its_name_is_the_one_that_is_given():
     """A skate at F = (2, 0) of a cart at psi: y' cos(psi) - x' sin(psi) + 2 psi' = 0."""
-    cart = PLANE + """
+    cart = (
+        PLANE
+        + """
 [coordinates]
 x = 0
 y = 0
@@ -81,12 +86,15 @@ acceleration = ["psi'' = 3", "x'' = 0", "y'' = 0"]
 v = "y'"
 e = "2*psi''"
 """
+    )
     answers = eomgen.solve(eomgen.loads(cart))
     assert answers["v"].value == pytest.approx((math.sin(math.pi / 6) - 2 * 0.5) / math.cos(math.pi / 6))
     assert answers["e"].exact == "6"
 
 
-CHANGE_POINT = PLANE + """
+CHANGE_POINT = (
+    PLANE
+    + """
 [bodies]
 a = { points = { O = [0, 0], A = [1, 0] } }
 b = { points = { A = [1, 0], B = [4, 0] } }
@@ -101,6 +109,7 @@ velocity = ["omega(a) = 1", "omega(c) = RATE"]
 [outputs]
 w = "omega(b)"
 """
+)
 
 
 @pytest.mark.parametrize(("rate", "spin"), [("1", 0), ("-2", -1), ("2", None)])
@@ -113,7 +122,9 @@ def test_at_a_change_point_only_the_velocities_of_a_motion_are_answered(rate, sp
         assert answer.value == pytest.approx(spin)
 
 
-PLATE = PLANE + """
+PLATE = (
+    PLANE
+    + """
 [unknowns]
 k = "a speed"
 [bodies.plate]
@@ -125,21 +136,27 @@ k = "k"
 w = "omega(plate)"
 e = "epsilon(plate)"
 """
+)
 
 
-@pytest.mark.parametrize(("given", "output", "said"), [
-    ('acceleration = "omega(plate) = 1"', "e", "says nothing of accelerations; put it under `velocity`"),
-    ('velocity = "x(plate.A) = 2"', "w", "says nothing of velocities"),
-    ('velocity = "epsilon(plate) = 2"', "w", "put it under `acceleration`"),
-    ('velocity = "omega(plate) = 2"', "k", "the unknown 'k' stands in no load and in no equation of [given]"),
-    ('velocity = ["vx(plate.A) = k", "vx(plate.B) = k"]', "k", "3 freedoms and 1 unknown, 1 equation given"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("given", "output", "said"),
+    [
+        ('acceleration = "omega(plate) = 1"', "e", "says nothing of accelerations; put it under `velocity`"),
+        ('velocity = "x(plate.A) = 2"', "w", "says nothing of velocities"),
+        ('velocity = "epsilon(plate) = 2"', "w", "put it under `acceleration`"),
+        ('velocity = "omega(plate) = 2"', "k", "the unknown 'k' stands in no load and in no equation of [given]"),
+        ('velocity = ["vx(plate.A) = k", "vx(plate.B) = k"]', "k", "3 freedoms and 1 unknown, 1 equation given"),
+    ],
+)
 def test_an_equation_in_the_wrong_place_is_said_so(given, output, said):
     """What is given is of velocities under `velocity`, of accelerations under `acceleration`."""
     assert said in eomgen.solve(eomgen.loads(PLATE.replace("GIVEN", given)))[output].message
 
 
-SLIDING_SEAT = PLANE + """
+SLIDING_SEAT = (
+    PLANE
+    + """
 [parameters]
 h = { positive = true }
 v = { positive = true }
@@ -157,6 +174,7 @@ kind = "slider"
 point = "C"
 on = "bar"
 """
+)
 
 
 def test_a_hinge_on_a_seat_that_moves_is_no_centre_of_rotation():
@@ -169,7 +187,9 @@ def test_a_hinge_on_a_seat_that_moves_is_no_centre_of_rotation():
     assert center["place"][1]["value"] == pytest.approx(0.5 + 0.5**2 / 0.5)
 
 
-SLIDER_CRANK = PLANE + """
+SLIDER_CRANK = (
+    PLANE
+    + """
 [parameters]
 r = 0.1
 l = 0.3
@@ -191,6 +211,7 @@ joint = { kind = "prismatic", at = [0, "-e"], axis = [1, 0], displacement = "s" 
 kind = "pin"
 points = ["rod.end", "piston.origin"]
 """
+)
 
 
 def test_no_number_is_shown_as_a_fraction_and_no_formula_is_longer_than_a_line():
@@ -204,7 +225,9 @@ def test_no_number_is_shown_as_a_fraction_and_no_formula_is_longer_than_a_line()
 
 def test_where_all_is_at_rest_no_table_is_empty():
     """Nothing that rests has a centre or a pole."""
-    rod = PLANE + """
+    rod = (
+        PLANE
+        + """
 [coordinates]
 a = "pi/4"
 b = 0.1
@@ -215,13 +238,16 @@ joint = { kind = "revolute", angle = "a" }
 shape = { kind = "rod", mass = 1, length = 1 }
 joint = { kind = "revolute", on = "l1.end", angle = "b" }
 """
+    )
     text = eomgen.kinematics(eomgen.loads(rod)).render("text")
     assert "rest at this instant" in text and "poles" not in text
 
 
 def test_nodes_of_a_truss_have_no_kind_of_motion():
     """A point does not translate, it moves."""
-    truss = PLANE + """
+    truss = (
+        PLANE
+        + """
 [trusses.T]
 nodes = { a = [0, 0], b = [2, 0], c = [2, 1], d = [0, 1] }
 members = ["a-b", "b-c", "c-d", "d-a"]
@@ -231,6 +257,7 @@ E = { kind = "support", point = "T.b", normal = [0, 1] }
 [given]
 velocity = "vx(T.d) = 1"
 """
+    )
     found = eomgen.kinematics(eomgen.loads(truss))
     assert found.as_dict()["velocities"]["T.c"]["x"]["value"] == 1
     assert "translation" not in found.render("text")

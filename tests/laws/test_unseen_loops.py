@@ -256,7 +256,8 @@ kind = "gravity"
 acceleration = [0, "-g"]
 """
 
-PEAUCELLIER = """
+PEAUCELLIER = (
+    """
 eomgen = 1
 name = "Peaucellier's inversor"
 space = "plane"
@@ -274,18 +275,24 @@ ga = { near = 1.3 }
 de = { near = -1.2 }
 q1 = { near = -0.4 }
 q2 = { near = 0.8 }
-""" + "".join(
-    f"""
+"""
+    + "".join(
+        f"""
 [bodies.{name}]
 shape = {{ kind = "rod", mass = "m", length = "{length}" }}
 joint = {{ kind = "revolute", {place}, angle = "{angle}" }}
 """
-    for name, length, place, angle in (
-        ("crank", "c", 'at = ["c", 0]', "phi"), ("up", "L", "at = [0, 0]", "al"), ("down", "L", "at = [0, 0]", "be"),
-        ("p1", "b", 'on = "crank.end"', "ga - phi"), ("p2", "b", 'on = "crank.end"', "de - phi"),
-        ("q1", "b", 'on = "up.end"', "q1 - al"), ("q2", "b", 'on = "down.end"', "q2 - be"),
+        for name, length, place, angle in (
+            ("crank", "c", 'at = ["c", 0]', "phi"),
+            ("up", "L", "at = [0, 0]", "al"),
+            ("down", "L", "at = [0, 0]", "be"),
+            ("p1", "b", 'on = "crank.end"', "ga - phi"),
+            ("p2", "b", 'on = "crank.end"', "de - phi"),
+            ("q1", "b", 'on = "up.end"', "q1 - al"),
+            ("q2", "b", 'on = "down.end"', "q2 - be"),
+        )
     )
-) + """
+    + """
 [constraints]
 A = { kind = "pin", points = ["up.end", "p1.end"] }
 B = { kind = "pin", points = ["down.end", "p2.end"] }
@@ -297,7 +304,8 @@ acceleration = [0, "-g"]
 x = "x(q1.end)"
 v = "vx(q1.end)"
 a = "ax(q1.end)"
-"""  # fmt: skip
+"""
+)
 
 
 @dataclass(frozen=True)
@@ -329,8 +337,11 @@ def acceleration(pieces: list[Piece], q: float, u: float, force: Callable = lamb
         q = mp.mpf(q)
 
         def slope(piece: Piece, at: Any) -> tuple[Any, Any, Any]:
-            return (mp.diff(lambda s: piece.place(s)[0], at), mp.diff(lambda s: piece.place(s)[1], at),
-                    mp.diff(piece.turn, at))  # fmt: skip
+            return (
+                mp.diff(lambda s: piece.place(s)[0], at),
+                mp.diff(lambda s: piece.place(s)[1], at),
+                mp.diff(piece.turn, at),
+            )
 
         def inertia(at: Any) -> Any:
             slopes = [(piece, *slope(piece, at)) for piece in pieces]
@@ -382,12 +393,11 @@ def geared(m: float = 1, a: float = 0.3, b: float = 0.8, d: float = 0.7, J: floa
 
 MACHINES = {
     "slider-crank": (CRANK, lambda: acceleration(slider_crank(), 0.7, 6)),
-    "umbrella": (UMBRELLA, lambda: acceleration(
-        umbrella(), 0.35, 0.4, lambda s, u: -60 * (s - mp.mpf("0.2")) - 2 * u)),
+    "umbrella": (UMBRELLA, lambda: acceleration(umbrella(), 0.35, 0.4, lambda s, u: -60 * (s - mp.mpf("0.2")) - 2 * u)),
     "geared five-bar": (GEARED, lambda: acceleration(geared(), 1.2, 3)),
     "vice": (VICE, lambda: 0.4 / (0.003 + 2 * 0.005**2)),
     "differential": (DIFFERENTIAL, lambda: 50 * 0.3 / (504.2 * 0.3**2 + 3 * 0.1 + 2 * 0.02)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", MACHINES)

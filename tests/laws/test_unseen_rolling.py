@@ -52,9 +52,13 @@ acceleration = [0, 0, "-g"]
 SLIP = np.array([2.5, 3.0])
 
 
-@pytest.mark.parametrize(("friction", "force"), [
-    ('"mu"', -0.2 * 9.81 * SLIP / np.hypot(*SLIP)), ("{ viscous = 0.2 }", -0.2 * 9.81 * SLIP),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("friction", "force"),
+    [
+        ('"mu"', -0.2 * 9.81 * SLIP / np.hypot(*SLIP)),
+        ("{ viscous = 0.2 }", -0.2 * 9.81 * SLIP),
+    ],
+)
 def test_friction_on_a_surface_has_its_two_components_while_it_slides(friction, force):
     """T = -mu N v/|v|, -c N v along t and s: in runs, in answers, in the emitted code."""
     text = BALL.replace("FRICTION", friction) + '[outputs]\nT = "reaction_t(floor)"\nS = "reaction_s(floor)"\n'
@@ -104,9 +108,15 @@ acceleration = [0, 0, "-g"]
 """
 
 
-@pytest.mark.parametrize("more", [
-    "", "slip = true", "slip = true\nunilateral = true", "slip = true\nunilateral = true\nfriction = 0.3",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "more",
+    [
+        "",
+        "slip = true",
+        "slip = true\nunilateral = true",
+        "slip = true\nunilateral = true\nfriction = 0.3",
+    ],
+)
 def test_a_coin_that_falls_flat_ends_the_run_whatever_its_contact(more):
     """Its whole rim touches; a run through it would take the coin below the floor."""
     run = eomgen.simulate(eomgen.loads(COIN.replace("MORE", more)), time=2, samples=50)

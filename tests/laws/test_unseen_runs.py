@@ -269,8 +269,13 @@ def test_a_roller_racer_is_driven_by_its_steering():
 
     def rows(q, v, t):
         hinge, wheel = point_rate(q, v, 0, (0.3, 0)), point_rate(q, v, 1, (0.2, 0))
-        return [hinge[0] - v[3], hinge[1] - v[4], np.cos(q[2]) * v[1] - np.sin(q[2]) * v[0],
-                np.cos(q[5]) * wheel[1] - np.sin(q[5]) * wheel[0], v[5] - v[2] - 1.8 * np.cos(3 * t)]  # fmt: skip
+        return [
+            hinge[0] - v[3],
+            hinge[1] - v[4],
+            np.cos(q[2]) * v[1] - np.sin(q[2]) * v[0],
+            np.cos(q[5]) * wheel[1] - np.sin(q[5]) * wheel[0],
+            v[5] - v[2] - 1.8 * np.cos(3 * t),
+        ]
 
     turning = -1.8 * 0.2 / 0.5  # the back wheels do not slip while the front stands
     c, s = 0.3 * np.cos(0.2), 0.3 * np.sin(0.2)
@@ -462,9 +467,17 @@ def period() -> float:
 
 @pytest.mark.parametrize(
     ("until", "part"),
-    [("speed(arm.end) = 0", 1 / 2), ("kinetic_energy() = 0", 1 / 2), ("q' = 0", 1 / 2), ("q = 0", 1 / 4),
-     ("y(arm.end) = -1", 1 / 4), ("abs(q) = 0", 1 / 4), ("q = 1", 1), ("q'' = 0", 1 / 4)],
-)  # fmt: skip
+    [
+        ("speed(arm.end) = 0", 1 / 2),
+        ("kinetic_energy() = 0", 1 / 2),
+        ("q' = 0", 1 / 2),
+        ("q = 0", 1 / 4),
+        ("y(arm.end) = -1", 1 / 4),
+        ("abs(q) = 0", 1 / 4),
+        ("q = 1", 1),
+        ("q'' = 0", 1 / 4),
+    ],
+)
 def test_a_run_ends_where_the_condition_holds_though_it_may_only_touch(until, part):
     """Speeds, squares and turning points touch zero and turn back."""
     run = ran(SWING, 10, until=until)

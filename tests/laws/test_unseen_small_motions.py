@@ -123,7 +123,8 @@ acceleration = [0, -9.81]
 
 def test_a_top_of_micrometres_precesses_as_a_large_one():
     """(I_t - I_3) cos(theta) phi'^2 - I_3 psi' phi' + m g d = 0"""
-    found = small("""[coordinates]
+    found = small(
+        """[coordinates]
 phi = {}
 theta = 0.5
 psi = { speed = 20000 }
@@ -135,7 +136,10 @@ joint = { kind = "spherical", orientation = "zxz", angles = ["phi", "theta", "ps
 [forces.weight]
 kind = "gravity"
 acceleration = [0, 0, -9.81]
-""", "space", "steady").as_dict()["state"]  # fmt: skip
+""",
+        "space",
+        "steady",
+    ).as_dict()["state"]
     I_t, I_3 = 2.5e-23 + 1e-13 * 16e-12, 4e-23
     rates = np.roots([(I_t - I_3) * np.cos(0.5), -I_3 * 20000, 1e-13 * 9.81 * 4e-6])
     assert found["phi'"]["value"] == pytest.approx(min(rates, key=abs), rel=1e-10)
@@ -200,7 +204,8 @@ def test_roots_of_a_gyroscopic_pair_do_not_stand_in_one_another():
     low, high = (f.exact for f in small(FOUCAULT).frequencies)
     assert formula("sqrt(k/m + W**2) - W", low) and formula("sqrt(k/m + W**2) + W", high)
     assert to_text(low).count("sqrt") == 1
-    rotor = small("""[parameters]
+    rotor = small(
+        """[parameters]
 J_t = 0.02
 J_p = 0.04
 k = 50
@@ -216,7 +221,10 @@ joint = { kind = "spherical", orientation = "xyz", angles = ["a", "b", "phi"] }
 [forces.shaft]
 kind = "potential"
 energy = "k*(a^2 + b^2)/2"
-""", "space", "start")  # fmt: skip
+""",
+        "space",
+        "start",
+    )
     low = rotor.frequencies[0]
     assert formula("(sqrt(J_p**2*W**2 + 4*J_t*k) - J_p*W)/(2*J_t)", low.exact)
     assert low.mode.frequency == pytest.approx(max(np.roots([0.02, 0.04 * 300, -50]).real))
@@ -262,7 +270,8 @@ def test_a_satellite_librates_in_the_gradient_of_gravity():
 
     Source: Hughes, Spacecraft Attitude Dynamics, chapter 9.
     """
-    found = small("""[parameters]
+    found = small(
+        """[parameters]
 I_x = 30
 I_y = 40
 I_z = 15
@@ -281,7 +290,9 @@ joint = { kind = "spherical", on = "orbit", orientation = "zyx", angles = ["yaw"
 [forces.gradient]
 kind = "potential"
 energy = "3/2*n^2*(I_x*sin(pitch)^2 + I_y*(cos(pitch)*sin(roll))^2 + I_z*(cos(pitch)*cos(roll))^2)"
-""", "space")  # fmt: skip
+""",
+        "space",
+    )
     I_x, I_y, I_z, n = 30, 40, 15, 0.0011
     h = n * (I_x - I_y + I_z)
     K = [[4 * n * n * (I_y - I_z), 0], [0, n * n * (I_y - I_x)]]
@@ -372,7 +383,8 @@ value = "-{k}*y + F"
 
 def test_a_ball_rolls_in_a_bowl_in_every_direction():
     """w^2 = 5/7 g/(R - r), twice; its spin stays"""
-    found = small("""[coordinates]
+    found = small(
+        """[coordinates]
 x = 0
 y = 0
 z = -0.9
@@ -399,7 +411,9 @@ circle = { at = [0, 0, 0], radius = 1, inside = true }
 [forces.weight]
 kind = "gravity"
 acceleration = [0, 0, -9.81]
-""", "space")  # fmt: skip
+""",
+        "space",
+    )
     w = np.sqrt(5 / 7 * 9.81 / 0.9)
     assert [f.mode.frequency for f in found.frequencies] == pytest.approx([w, w])
     assert sum(x == 0 for x in found.spectrum.eigenvalues) == 2
@@ -526,7 +540,8 @@ def test_a_disc_rolls_in_a_circle_by_a_formula():
 
     Source: O'Reilly, The dynamics of rolling disks and sliding disks, Nonlinear Dynamics 10 (1996) 287-305.
     """
-    found = small("""[parameters]
+    found = small(
+        """[parameters]
 m = 2
 r = 0.3
 g = 9.81
@@ -550,7 +565,10 @@ plane = { at = [0, 0, 0], normal = [0, 0, 1] }
 [forces.weight]
 kind = "gravity"
 acceleration = [0, 0, "-g"]
-""", "space", "steady")  # fmt: skip
+""",
+        "space",
+        "steady",
+    )
     state = {x.name: value for x, value in found.small.reference.exact.items()}
     assert formula("-5*W*cos(theta_0)/6 - 2*g*cos(theta_0)/(3*r*W*sin(theta_0))", state["phi'"])
     assert formula("r*sin(theta_0)", state["z"])
@@ -566,7 +584,8 @@ acceleration = [0, 0, "-g"]
 
 def test_of_a_family_as_few_values_change_as_the_equations_need():
     """A conical pendulum with angle and rate stated: one of both stays; cos(theta) psi'^2 = g/l"""
-    found = small("""[parameters]
+    found = small(
+        """[parameters]
 l = 1
 g = 9.81
 [coordinates]
@@ -578,7 +597,10 @@ joint = { kind = "placed", at = ["l*sin(theta)*cos(psi)", "l*sin(theta)*sin(psi)
 [forces.weight]
 kind = "gravity"
 acceleration = [0, 0, "-g"]
-""", "space", "steady")  # fmt: skip
+""",
+        "space",
+        "steady",
+    )
     state = {name: x["value"] for name, x in found.as_dict()["state"].items()}
     assert np.cos(state["theta"]) * state["psi'"] ** 2 == pytest.approx(9.81)
     assert (state["theta"] == 0.5) != (state["psi'"] == 3) and found.is_exact
@@ -629,7 +651,8 @@ def test_a_car_turns_steadily_by_its_understeer():
     Source: Pacejka, Tyre and Vehicle Dynamics, section 1.3.
     """
     m, J, a, b, C_f, C_r, V, d = 1500, 2500, 1.1, 1.6, 55000, 60000, 25, 0.02
-    found = small(f"""[parameters]
+    found = small(
+        f"""[parameters]
 V = {V}
 [coordinates]
 x = {{}}
@@ -657,19 +680,26 @@ kind = "force"
 point = "car.R"
 axes = "car"
 force = [0, "-{C_r}*(v - {b}*r)/V"]
-""", about="steady")
+""",
+        about="steady",
+    )
     state = found.as_dict()["state"]
     K = m * (b * C_r - a * C_f) / ((a + b) * C_f * C_r)
     assert state["r"]["value"] == pytest.approx(V * d / (a + b + K * V * V)) and state["r"]["exact"]
-    A = -np.array([[(C_f + C_r) / (m * V), V + (a * C_f - b * C_r) / (m * V)],
-                   [(a * C_f - b * C_r) / (J * V), (a * a * C_f + b * b * C_r) / (J * V)]])  # fmt: skip
+    A = -np.array(
+        [
+            [(C_f + C_r) / (m * V), V + (a * C_f - b * C_r) / (m * V)],
+            [(a * C_f - b * C_r) / (J * V), (a * a * C_f + b * b * C_r) / (J * V)],
+        ]
+    )
     assert_same(found.spectrum.eigenvalues, [*np.linalg.eigvals(A), 0])
 
 
 def test_two_masses_on_a_rod_in_orbit_librate_by_the_root_of_three():
     """n' = n sqrt(3) beside n of the orbit itself, of a rod much shorter than its orbit; metres beside 7000 km"""
     n = 0.0011
-    found = small(f"""[coordinates]
+    found = small(
+        f"""[coordinates]
 nu = {{ speed = {n} }}
 r = {{ near = 7e6 }}
 th = 0
@@ -693,7 +723,9 @@ pull = "4e16/r^2"
 kind = "between"
 points = ["E", "b.center"]
 pull = "4e16/r^2"
-""", about="steady")
+""",
+        about="steady",
+    )
     assert found.as_dict()["state"]["r"]["value"] == pytest.approx((4e14 / n**2) ** (1 / 3), rel=1e-9)
     assert [f.mode.frequency for f in found.frequencies] == pytest.approx([n, n * np.sqrt(3)], rel=1e-7)
 
@@ -763,7 +795,8 @@ def test_the_governed_engine_of_vyshnegradskii():
     g, F, k, m, J = 9.81, 10, 30, 1, 4
     critical = 2 * F * m / (J * np.sqrt(g * k / F))
     for b, stability in ((0.99 * critical, "unstable"), (1.01 * critical, "stable to first order")):
-        found = small(f"""[parameters]
+        found = small(
+            f"""[parameters]
 b = {float(b)}
 F = {F}
 k = {k}
@@ -784,7 +817,10 @@ value = "{m}*(w^2*sin(phi)*cos(phi) - g*sin(phi)) - b*phi'"
 [bodies.b]
 mass = {m}
 joint = {{ kind = "prismatic", axis = [1, 0, 0], displacement = "phi", at = [10, 0, 0] }}
-""", "space", "steady")
+""",
+            "space",
+            "steady",
+        )
         state = {x.name: value for x, value in found.small.reference.exact.items()}
         assert formula("acos(F/k)", state["phi"]) and formula("sqrt(g*k/F)", state["w"])
         assert found.spectrum.stability == stability
@@ -797,7 +833,8 @@ def test_a_spinning_satellite_leans_in_its_orbit():
     Source: Likins, Stability of a symmetrical satellite in attitudes fixed in an orbiting reference frame,
     J. Astronautical Sciences 12 (1965).
     """
-    found = small("""[parameters]
+    found = small(
+        """[parameters]
 A = 10
 C = 14
 n = 0.001
@@ -815,15 +852,20 @@ joint = { kind = "spherical", on = "orbit", orientation = "xyz", angles = ["a", 
 [forces.gradient]
 kind = "potential"
 energy = "3/2*n^2*(C - A)*sin(b)^2"
-""", "space", "steady")
+""",
+        "space",
+        "steady",
+    )
     family = found.as_dict()["family"]
     a = np.arccos(14 * -0.0001 / (-4 * 0.001))
     assert sorted(x["state"]["a"]["value"] for x in family["motions"]) == pytest.approx([-a, 0, a, np.pi])
     assert family["held"] == ["b", "s'"] and family["formulas"] and found.is_exact
     A, C, n, s = 10, 14, 0.001, -0.0001  # to second order of Routh's function: h stays
     h = C * (s + n * np.cos(a))
-    K = [[h * n * np.cos(a) - A * n**2 * np.cos(2 * a), 0],
-         [0, h * n * np.cos(a) - A * n**2 * np.cos(a) ** 2 + 3 * n**2 * (C - A)]]  # fmt: skip
+    K = [
+        [h * n * np.cos(a) - A * n**2 * np.cos(2 * a), 0],
+        [0, h * n * np.cos(a) - A * n**2 * np.cos(a) ** 2 + 3 * n**2 * (C - A)],
+    ]
     G = h - 2 * A * n * np.cos(a)
     across = eigenvalues([[A, 0], [0, A]], [[0, G], [-G, 0]], K)
     assert_same([x for x in found.spectrum.eigenvalues if x], across, 1e-6)
@@ -857,7 +899,8 @@ acceleration = [0, "-g"]
 
 def test_a_planet_circles_at_the_radius_of_kepler():
     """r^3 = mu/n^2, without values of mu and n; beside it r swings with n"""
-    found = small("""[parameters]
+    found = small(
+        """[parameters]
 mu = { positive = true }
 m = 1
 n = { positive = true }
@@ -873,7 +916,9 @@ O = [0, 0]
 kind = "between"
 points = ["O", "p.center"]
 pull = "mu*m/r^2"
-""", about="steady")
+""",
+        about="steady",
+    )
     radius = {x.name: value for x, value in found.small.reference.exact.items()}["r"]
     assert formula("(mu/n**2)**(1/3)", radius)
     assert formula("n", found.frequencies[0].exact)

@@ -102,17 +102,23 @@ inertia = ["m*l^2/600", "m*l^2/12", "m*l^2/12"]
 joint = { kind = "universal", on = "upper.end", axes = [[1, 2, 0], [1, 0, 1]], angles = ["a2", "b2"] }
 """
 
-CONTROL_MOMENT_GYROS = QUATERNION + """
+CONTROL_MOMENT_GYROS = (
+    QUATERNION
+    + """
 d1 = { start = 0.1, speed = 0.3 }
 d2 = { start = -0.4, speed = 0.1 }
 s1 = { motion = "30*t" }
 s2 = { motion = "0.3 + 30*t + sin(t)" }
-""" + SPINS + """
+"""
+    + SPINS
+    + """
 [bodies.bus]
 mass = 100
 center = [0.1, 0, 0.02]
 inertia = [10, 12, 14, 0.1, 0, -0.2]
-joint = { kind = "spherical", """ + BY_QUATERNION + """ }
+joint = { kind = "spherical", """
+    + BY_QUATERNION
+    + """ }
 [bodies.gimbal]
 inertia = [0.1, 0.1, 0.1]
 mass = 0
@@ -145,6 +151,7 @@ body = "bus"
 couple = [0.1, "-0.2*w2", 0]
 axes = "bus"
 """
+)
 
 CAMERA = """
 [coordinates]
@@ -197,8 +204,13 @@ couple = [0, 0, "-0.01*f'"]
 axes = "puck"
 """
 
-SYSTEMS = {"skew chain": SKEW_CHAIN, "universals": UNIVERSALS, "gyros": CONTROL_MOMENT_GYROS, "camera": CAMERA,
-           "puck": PUCK}  # fmt: skip
+SYSTEMS = {
+    "skew chain": SKEW_CHAIN,
+    "universals": UNIVERSALS,
+    "gyros": CONTROL_MOMENT_GYROS,
+    "camera": CAMERA,
+    "puck": PUCK,
+}
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -233,7 +245,9 @@ def test_a_tree_moves_and_reacts_as_a_second_reading_of_its_file_says(name):
 @pytest.mark.parametrize("sequence", "xyz xzy yxz yzx zxy zyx xyx xzx yxy yzy zxz zyz".split())
 def test_every_sequence_of_angles_is_three_turns_about_the_bodys_own_axes(sequence):
     """R = R_1(a) R_2(b) R_3(c): a top whose mass centre, inertia and point lie anywhere."""
-    text = HEAD + f"""
+    text = (
+        HEAD
+        + f"""
 [coordinates]
 a = {{ start = 0.4, speed = 1 }}
 b = {{ start = 0.7, speed = -1 }}
@@ -249,7 +263,9 @@ turned = {{ axis = [1, 1, 1], angle = 0.3 }}
 point = "tip"
 orientation = "{sequence}"
 angles = ["a", "b", "c"]
-""" + WEIGHT
+"""
+        + WEIGHT
+    )
     rhs = eomgen.derive(eomgen.loads(text)).rhs("numpy")
     q, u = ({k: mp.mpf(str(x)) for k, x in zip("abc", row, strict=True)} for row in ((0.4, 0.7, 0.2), (1, -1, 2)))
     expected = ByHand(text).accelerations(q, u, mp.mpf(0))
@@ -299,8 +315,11 @@ def test_a_freedom_that_two_joints_share_is_named_where_nothing_holds_it():
 
 def test_a_constant_of_motion_keeps_the_value_of_the_start_exactly():
     """L, |L|^2, the energy of a free body at t = 5 as formulas of the parameters; w1 by integration."""
-    text = HEAD + "[parameters]\nA = 1\nB = 2\nC = 2.5\nW = 3\n" + QUATERNION.replace("0.9", "1").replace(
-        "0.1", "0").replace("0.3", "0").replace("-0.2", "0") + """
+    text = (
+        HEAD
+        + "[parameters]\nA = 1\nB = 2\nC = 2.5\nW = 3\n"
+        + QUATERNION.replace("0.9", "1").replace("0.1", "0").replace("0.3", "0").replace("-0.2", "0")
+        + """
 [speeds]
 w1 = { start = "W" }
 w2 = { start = 0.1 }
@@ -310,12 +329,15 @@ O = [0, 0, 0]
 [bodies.body]
 mass = 1
 inertia = ["A", "B", "C"]
-joint = { kind = "spherical", """ + BY_QUATERNION + """ }
+joint = { kind = "spherical", """
+        + BY_QUATERNION
+        + """ }
 [outputs]
 L_x = { value = "angular_momentum_x(O)", at = "t = 5" }
 T = { value = "kinetic_energy()", at = "t = 5", unit = "J" }
 w = { value = "w1", at = "t = 5" }
-"""  # fmt: skip
+"""
+    )
     answers = eomgen.solve(eomgen.loads(text))
     assert answers["L_x"].exact == "A*W"
     assert answers["T"].method == "constant of motion"
@@ -328,7 +350,9 @@ w = { value = "w1", at = "t = 5" }
 
 def test_masses_in_line_have_no_moment_about_it():
     """det I = 0: the smallest principal moment and its radius of gyration are 0, and no number near it."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
 [parameters]
 m = 2
 [coordinates]
@@ -341,17 +365,25 @@ joint = { kind = "placed", at = ["cos(a)*cos(b)", "sin(a)*cos(b)", "sin(b)"] }
 shape = { kind = "particle", mass = "m" }
 joint = { kind = "placed", at = ["2*cos(a)*cos(b)", "2*sin(a)*cos(b)", "2*sin(b)"] }
 """
+    )
     found = eomgen.inertia(eomgen.loads(text))
     assert (found["I_1"].value, found["k_1"].value) == (0, 0)
     assert found["I_2"].value == pytest.approx(2 / 3)  # m1 m2/(m1 + m2) d^2, d = 1
 
 
 def test_a_bare_start_beside_omega_is_told_how_to_be_written():
-    text = HEAD + QUATERNION + "[speeds]\nw1 = 0.4\nw2 = {}\nw3 = {}\n" + """
+    text = (
+        HEAD
+        + QUATERNION
+        + "[speeds]\nw1 = 0.4\nw2 = {}\nw3 = {}\n"
+        + """
 [bodies.body]
 mass = 1
 inertia = [1, 1, 1]
-joint = { kind = "spherical", """ + BY_QUATERNION + " }\n"
+joint = { kind = "spherical", """
+        + BY_QUATERNION
+        + " }\n"
+    )
     with pytest.raises(ModelError, match=r"a start is w1 = \{ start = 0.4 \}"):
         eomgen.loads(text)
 
@@ -360,5 +392,3 @@ def test_options_in_a_typeset_sentence_keep_both_hyphens():
     """T1 fonts make a dash of two hyphens, which no shell knows."""
     latex = eomgen.derive(eomgen.loads(HEAD + CONTROL_MOMENT_GYROS)).latex()
     assert "-{}-full" in latex and "--full" not in latex
-
-

@@ -273,14 +273,19 @@ def test_virtual_work_and_equilibrium_agree(name):
 # -- loose and redundant structures ----------------------------------------------------------------------------------
 
 PLANE = 'eomgen = 1\nspace = "plane"\nparameters = { P = 1, a = 1 }\n'
-ONE_BEAM = PLANE + """
+ONE_BEAM = (
+    PLANE
+    + """
 [bodies.beam]
 points = { A = [0, 0], B = ["2*a", 0], C = ["5*a", 0], D = ["a", 0], E = ["a", "-a"] }
 [forces]
 load = { kind = "force", point = "beam.B", force = [0, "-P"] }
 [constraints]
 """
-TWO_BARS = PLANE + """
+)
+TWO_BARS = (
+    PLANE
+    + """
 [bodies.I]
 points = { A = [0, 0], C = ["2*a", "a"] }
 [bodies.II]
@@ -291,7 +296,10 @@ load = { kind = "force", point = "I.C", force = ["P", 0] }
 A = { kind = "pin", points = ["I.A"] }
 C = { kind = "pin", points = ["I.C", "II.C"] }
 """
-SQUARE = PLANE + """
+)
+SQUARE = (
+    PLANE
+    + """
 [trusses.T]
 nodes = { A = [0, 0], B = ["a", 0], C = ["a", "a"], D = [0, "a"], E = ["2*a", 0] }
 members = ["A-B", "B-C", "C-D", "D-A", "B-E", "C-E"MORE]
@@ -301,7 +309,10 @@ D = { kind = "support", point = "T.D", normal = [1, 0] }
 [forces]
 load = { kind = "force", point = "T.E", force = [0, "-P"] }
 """
-FOUR_BAR = PLANE + """
+)
+FOUR_BAR = (
+    PLANE
+    + """
 [bodies.I]
 points = { O = [0, 0], A = ["3*a", "4*a"] }
 [bodies.II]
@@ -316,6 +327,7 @@ C = { kind = "pin", points = ["III.C"] }
 [forces]
 load = { kind = "force", point = "II.A", force = [0, "-P"] }
 """
+)
 
 
 def roller(name: str, normal: str, point: str | None = None) -> str:
@@ -356,10 +368,16 @@ REDUNDANT = {  # the model, degree, {reaction: its value, None where it is open}
     "a panel with both diagonals": (
         SQUARE.replace("MORE", ', "A-C", "B-D"'),
         1,
-        {"tension(T, A-C)": None, "tension(T, B-D)": None, "tension(T, B-E)": "-P", "tension(T, C-E)": "sqrt(2)*P",
-         "reaction_x(A)": "2*P", "reaction_n(D)": "-2*P"},
+        {
+            "tension(T, A-C)": None,
+            "tension(T, B-D)": None,
+            "tension(T, B-E)": "-P",
+            "tension(T, C-E)": "sqrt(2)*P",
+            "reaction_x(A)": "2*P",
+            "reaction_n(D)": "-2*P",
+        },
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", LOOSE)

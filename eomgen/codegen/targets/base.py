@@ -191,8 +191,12 @@ def header(program: Program, description: Description) -> list[str]:
     symbols, result = program.symbols, description.role.result
     lines = [f"{description.title}: {description.role.about}", ""]
     lines += [description.origin, ""]
-    groups = {"x": program.states, "a": program.accelerations, "p": symbols.parameters.values(),
-              "inputs": symbols.inputs.values()}  # fmt: skip
+    groups = {
+        "x": program.states,
+        "a": program.accelerations,
+        "p": symbols.parameters.values(),
+        "inputs": symbols.inputs.values(),
+    }
     for array, members in groups.items():
         for place, x in enumerate(members):
             remark = description.remarks.get(x.name, "")

@@ -158,9 +158,7 @@ def _names(bodies: Layout) -> dict[Node, str]:
     return bodies.names | {x: f"c[{place}]" for place, x in enumerate(bodies.kept)}
 
 
-def _silenced(
-    bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], result: str, parts: Parts
-) -> list[str]:
+def _silenced(bodies: Layout, loaded: frozenset[Node], inputs: Sequence[Node], result: str, parts: Parts) -> list[str]:
     """(void) for arguments that this program does not need."""
     program = bodies.program
     if parts.all:

@@ -58,15 +58,19 @@ def _c_function(name: str, sampled: Sampled) -> str:
     for power in range(1, len(columns)):
         value = f"({value})*s + v[{power}][k]" if power > 1 else f"{value}*s + v[1][k]"
     lines = [
-        f"static double {name}(double t) /* {sampled.name} */", "{",
+        f"static double {name}(double t) /* {sampled.name} */",
+        "{",
         f"    static const double bounds[{len(bounds)}] = {_braced(bounds)};",
         f"    static const double origins[{len(origins)}] = {_braced(origins)};",
         f"    static const double v[{len(columns)}][{len(origins)}] = {{",
-        *(f"        {_braced(column)}," for column in columns), "    };",
+        *(f"        {_braced(column)}," for column in columns),
+        "    };",
         f"    const size_t k = piece_of(t, {len(bounds)}, bounds){ended};",
         *(["    const double s = t - origins[k];"] if len(columns) > 1 else ["    (void)origins;"]),
-        f"    return {value};", "}", "",
-    ]  # fmt: skip
+        f"    return {value};",
+        "}",
+        "",
+    ]
     return "\n".join(lines)
 
 

@@ -53,8 +53,10 @@ def _share(system: System, force: Applied, body: str) -> Scalar:
         elif all(_acts_on(other, body) or _acts_on(other, None) for other in force.loads):
             return force.potential
         else:
-            raise DerivationError(f"the potential of force '{force.name}' belongs to more than body '{body}'",
-                                  mend=f"ask potential_energy({force.name})")  # fmt: skip
+            raise DerivationError(
+                f"the potential of force '{force.name}' belongs to more than body '{body}'",
+                mend=f"ask potential_energy({force.name})",
+            )
     return share
 
 

@@ -1,7 +1,7 @@
 """System, Assembly -> first integrals: what stays constant along every motion.
 
-    T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
-    u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
+T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
+u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
 """
 
 from __future__ import annotations

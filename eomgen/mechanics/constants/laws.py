@@ -31,9 +31,7 @@ WORK = 20_000  # products of terms for one law
 SEEN = 1e-3  # relative: a change that rounding does not make
 
 
-def laws_of_motion(
-    system: System, accelerations: Sequence[Scalar], start: Mapping[Node, Scalar]
-) -> dict[Node, Scalar]:
+def laws_of_motion(system: System, accelerations: Sequence[Scalar], start: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
     """q(t) and u(t) of every coordinate and speed that has a law in closed form.
 
     Args:

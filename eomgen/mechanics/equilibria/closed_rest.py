@@ -134,8 +134,10 @@ class ClosedForms:
             entries = readable_all([x for row in rows for x in row], WORK) if rows and statics.lam else ()
             solution = solved(
                 [{j: entries[len(statics.lam) * k + j] for j in range(len(statics.lam))} for k in range(len(rows))],
-                readable_all(right, WORK), len(statics.lam),
-                lambda scalars: evaluate(scalars, self.values, fifty_digits()))  # fmt: skip
+                readable_all(right, WORK),
+                len(statics.lam),
+                lambda scalars: evaluate(scalars, self.values, fifty_digits()),
+            )
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
         if not all(map(_is_nothing, solution.left)):
@@ -144,8 +146,10 @@ class ClosedForms:
         lam = {statics.lam[j]: simplest(x, WORK, positive) for j, x in solution.constants.items()}
         single = {statics.lam[j] for j in solution.constants if solution.determined(j)}
         place = {node: simplest(x, WORK, positive) for node, x in q.items()}
-        return Held({**place, **{node: x for node, x in lam.items() if node in single}},
-                     {**dict.fromkeys(statics.lam, 0), **lam})  # fmt: skip
+        return Held(
+            {**place, **{node: x for node, x in lam.items() if node in single}},
+            {**dict.fromkeys(statics.lam, 0), **lam},
+        )
 
 
 def _round_components(graph: Graph) -> tuple[Scalar, ...]:

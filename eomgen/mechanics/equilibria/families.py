@@ -30,9 +30,7 @@ def nearest_first(statics: StaticEquations, found: Sequence[np.ndarray], guess: 
     return sorted(turned, key=lambda z: float(np.sum((z[: len(guess)] - guess) ** 2)))
 
 
-def each_once(
-    statics: StaticEquations, found: Sequence[np.ndarray], floats: Mapping[Node, float]
-) -> list[np.ndarray]:
+def each_once(statics: StaticEquations, found: Sequence[np.ndarray], floats: Mapping[Node, float]) -> list[np.ndarray]:
     """The places, the first of those that are one, or one family.
 
     Args:
@@ -81,9 +79,7 @@ def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node,
     return dict(zip(statics.given, map(float, found), strict=True))
 
 
-def _is_one(
-    statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]
-) -> bool:
+def _is_one(statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
     """Whether two places are the same, or of one family."""
     (z, marks), (y, others) = one, other
     if np.all(abs(z - y)[: len(statics.q)] <= NEAR):

@@ -1,6 +1,6 @@
 """System at the start, with unknowns in its loads -> the unknowns that hold it there, by virtual work.
 
-    Q_k + (J^T lam)_k = 0        linear in the unknowns and the multipliers
+Q_k + (J^T lam)_k = 0        linear in the unknowns and the multipliers
 """
 
 from __future__ import annotations
@@ -50,17 +50,23 @@ def holding_of(system: System) -> Holding:
     """
     statics = static_equations(system)
     if not statics.loaded:
-        raise DerivationError("no unknown load does work when the system moves: none can hold it",
-                              mend="write one of [unknowns] into a force on what moves")  # fmt: skip
+        raise DerivationError(
+            "no unknown load does work when the system moves: none can hold it",
+            mend="write one of [unknowns] into a force on what moves",
+        )
     state = at_rest(statics.system)
     place = {q: state[q] for q in statics.system.symbols.q}
     solution = _solved(statics, place)
     _refuse_undetermined(statics, solution)
     positive = positive_parameters(statics.system.scope)
-    found = {node: simplest(solution.constants[j], WORK, positive)
-             for j, node in enumerate((*statics.loaded, *statics.lam)) if solution.determined(j)}  # fmt: skip
-    return Holding(statics, place, {p: found[p] for p in statics.loaded},
-                   {lam: found[lam] for lam in statics.lam if lam in found})  # fmt: skip
+    found = {
+        node: simplest(solution.constants[j], WORK, positive)
+        for j, node in enumerate((*statics.loaded, *statics.lam))
+        if solution.determined(j)
+    }
+    return Holding(
+        statics, place, {p: found[p] for p in statics.loaded}, {lam: found[lam] for lam in statics.lam if lam in found}
+    )
 
 
 def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
@@ -70,23 +76,32 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
     for row in slopes:
         for p, slope in zip(sought, row, strict=True):
             if depends_on(slope, statics.loaded):
-                raise DerivationError(f"the balance is not linear in the unknown '{p.name}'", f"unknowns.{p.name}",
-                                      "let it stand alone, times what is known")  # fmt: skip
+                raise DerivationError(
+                    f"the balance is not linear in the unknown '{p.name}'",
+                    f"unknowns.{p.name}",
+                    "let it stand alone, times what is known",
+                )
     right = [-x for x in substituted(substituted(statics.forces, dict.fromkeys(sought, 0)), place)]
     flat = iter(readable_all(substituted([x for row in slopes for x in row], place), WORK))
     rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
     values = values_of_parameters(statics.system.scope, Random(3))
-    return solved(rows, readable_all(right, WORK), len(sought),
-                  lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+    return solved(
+        rows, readable_all(right, WORK), len(sought), lambda scalars: evaluate(scalars, values, fifty_digits())
+    )
 
 
 def _refuse_undetermined(statics: StaticEquations, solution: Solution) -> None:
     open_ = [p.name for j, p in enumerate(statics.loaded) if not solution.determined(j)]
     if open_:
-        raise DerivationError(f"rest does not determine '{open_[0]}': there are more unknowns than freedoms",
-                              f"unknowns.{open_[0]}", "give a value to some of them")  # fmt: skip
+        raise DerivationError(
+            f"rest does not determine '{open_[0]}': there are more unknowns than freedoms",
+            f"unknowns.{open_[0]}",
+            "give a value to some of them",
+        )
     if not all(is_zero(x) or vanishes(x) for x in solution.left):
         names = ", ".join(f"'{p.name}'" for p in statics.loaded)
         freedoms = ", ".join(u.name.removesuffix("'") for u in statics.system.symbols.u)
-        raise DerivationError(f"{names} alone cannot hold the system where it starts: something moves on",
-                              mend=f"the freedoms are {freedoms}; let an unknown act on each")  # fmt: skip
+        raise DerivationError(
+            f"{names} alone cannot hold the system where it starts: something moves on",
+            mend=f"the freedoms are {freedoms}; let an unknown act on each",
+        )

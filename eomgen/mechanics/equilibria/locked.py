@@ -39,8 +39,11 @@ def is_balanced(statics: StaticEquations, place: State) -> bool:
     motion = (statics.system.free or statics.system).motion
     given = [(node, x) for node, x in statics.given.items() if node not in place]
     state = dict(place) | dict(zip((node for node, _ in given), _numbers([x for _, x in given], place), strict=True))
-    return all(_is_free(statics, motion, lock, state) for lock in locks_of(motion)
-               if abs(_numbers([lock.determinant], state)[0]) < LOCKED)  # fmt: skip
+    return all(
+        _is_free(statics, motion, lock, state)
+        for lock in locks_of(motion)
+        if abs(_numbers([lock.determinant], state)[0]) < LOCKED
+    )
 
 
 def _is_free(statics: StaticEquations, motion: Motion, lock: Lock, state: dict[Node, float]) -> bool:

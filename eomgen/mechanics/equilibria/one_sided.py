@@ -24,8 +24,11 @@ def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, 
         state: exact scalars of everything that moves.
         values: of the parameters.
     """
-    names = [contact.name for contact in contacts_of(system.scope.model)
-             if contact.unilateral and system.modes.get(contact.name, CLOSED).closed]  # fmt: skip
+    names = [
+        contact.name
+        for contact in contacts_of(system.scope.model)
+        if contact.unilateral and system.modes.get(contact.name, CLOSED).closed
+    ]
     if not names:
         return ()
     try:

@@ -148,8 +148,7 @@ class _Search:
             found += self._descent.roots_near(self._with_multipliers(self._scattered()), MOST_PLACES)
         n = len(self.statics.q)
         size = high - low
-        lost = [x for x in boxes.undecided
-                if not any(np.all(abs(x - z[:n]) <= CLUSTER * size) for z in found)]  # fmt: skip
+        lost = [x for x in boxes.undecided if not any(np.all(abs(x - z[:n]) <= CLUSTER * size) for z in found)]
         inside = [z for z in found if np.all((z[:n] >= low) & (z[:n] <= high))]
         return self._sorted(inside, complete=boxes.finished and not lost, where=self._where)
 
@@ -160,9 +159,10 @@ class _Search:
         """Angles after a whole turn of which all equations are the same."""
         equations = [x for x in self.statics.equations if not is_zero(x)]
         return frozenset(
-            q for q in self._angles
+            q
+            for q in self._angles
             if all(not depends_on(x, (q,)) or has_period(x, q, 2 * q.graph.pi) for x in equations)
-        )  # fmt: skip
+        )
 
     @cached_property
     def _angles(self) -> frozenset[Node]:

@@ -62,7 +62,6 @@ class Equilibrium:
         """Whether every coordinate is known in closed form."""
         return all(q in self.exact for q in self.statics.system.symbols.q)
 
-
     @cached_property
     def pulling(self) -> tuple[str, ...]:
         """The one-sided ties that would have to pull there; () where that is not known."""
@@ -256,8 +255,9 @@ class _Search:
         complete = places.complete and (self.valued or len(found) == len(places.found))
         certain = self.valued or places.where == ANYWHERE
         where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
-        return Equilibria(self._held_by_forces, tuple(found), complete, where, self._indifferent,
-                          self._chosen.coordinates)  # fmt: skip
+        return Equilibria(
+            self._held_by_forces, tuple(found), complete, where, self._indifferent, self._chosen.coordinates
+        )
 
     def _equilibrium(self, z: np.ndarray, forms: ClosedForms) -> Equilibrium | None:
         """The place, exact where it can be; None where only trial values of the parameters lead to it."""
@@ -269,9 +269,12 @@ class _Search:
         exact = {**self._fixed, **({} if held is None else held.state)}
         fixed = {q: located.value(x) for q, x in self._fixed.items()}
         stability = stability_of(
-            self.whole if self._slides else self.statics, {**exact, **({} if held is None else held.particular)},
-            {**fixed, **numbers}, self.values if self.valued else None, self._chosen if self._slides else None,
-        )  # fmt: skip
+            self.whole if self._slides else self.statics,
+            {**exact, **({} if held is None else held.particular)},
+            {**fixed, **numbers},
+            self.values if self.valued else None,
+            self._chosen if self._slides else None,
+        )
         own = fixed | self._determined(z)
         own |= {q: 0.0 for q in own if q in exact and is_zero(exact[q])}  # no 1e-51 for it
         return Equilibrium(self.statics, exact, own if self.valued else {}, stability)

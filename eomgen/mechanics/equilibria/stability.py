@@ -64,9 +64,12 @@ class Stability:
 
 
 def stability_of(
-    statics: StaticEquations, exact: Mapping[Node, Scalar], numbers: Mapping[Node, float],
-    values: Mapping[Node, Any] | None, chosen: Chosen | None = None,
-) -> Stability:  # fmt: skip
+    statics: StaticEquations,
+    exact: Mapping[Node, Scalar],
+    numbers: Mapping[Node, float],
+    values: Mapping[Node, Any] | None,
+    chosen: Chosen | None = None,
+) -> Stability:
     """The stability of a place of rest.
 
     Args:
@@ -189,9 +192,21 @@ class _Place:
         try:
             Z = self._exact_Z(along)
             H = [substituted(row, self.exact) for row in self._H]
-            rows = [[sum((Z[i][a] * H[i][j] * Z[j][b] for i in range(len(Z)) for j in range(len(Z))
-                          if not is_zero(Z[i][a]) and not is_zero(Z[j][b]) and not is_zero(H[i][j])), start=0)
-                     for b in range(len(along))] for a in range(len(along))]  # fmt: skip
+            rows = [
+                [
+                    sum(
+                        (
+                            Z[i][a] * H[i][j] * Z[j][b]
+                            for i in range(len(Z))
+                            for j in range(len(Z))
+                            if not is_zero(Z[i][a]) and not is_zero(Z[j][b]) and not is_zero(H[i][j])
+                        ),
+                        start=0,
+                    )
+                    for b in range(len(along))
+                ]
+                for a in range(len(along))
+            ]
             return tuple(tuple(simplest(x, WORK, positive) for x in row) for row in rows)
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
@@ -205,8 +220,11 @@ class _Place:
         values = self.values or values_of_parameters(self.statics.system.scope, Random(3))
         for column, a in enumerate(along):
             solution = linear.solved(
-                [{j: row[k] for j, k in enumerate(others)} for row in J], [-row[a] for row in J], len(others),
-                lambda scalars: evaluate(scalars, values, fifty_digits()))  # fmt: skip
+                [{j: row[k] for j, k in enumerate(others)} for row in J],
+                [-row[a] for row in J],
+                len(others),
+                lambda scalars: evaluate(scalars, values, fifty_digits()),
+            )
             if len(solution.constants) < len(others):
                 raise NoValue("the ties do not determine the other coordinates there")
             for j, k in enumerate(others):
@@ -292,5 +310,3 @@ def _as_exact(K: np.ndarray, size: float) -> Matrix:
 def _minors(K: Matrix) -> tuple[Scalar, ...]:
     """det of the leading parts."""
     return tuple(simplest(cramer.determinant([row[:n] for row in K[:n]]), WORK) for n in range(1, len(K) + 1))
-
-

@@ -106,16 +106,23 @@ class StaticEquations:
         for q, force in zip(self.q, self.forces, strict=True):
             if q in dropped and not is_zero(force) and not vanishes(force):
                 if not any(depends_on(force, (x,)) for x in self.unknowns):
-                    raise DerivationError(f"nothing balances the force along '{q.name}': it is at rest nowhere",
-                                          f"coordinates.{q.name}")  # fmt: skip
+                    raise DerivationError(
+                        f"nothing balances the force along '{q.name}': it is at rest nowhere", f"coordinates.{q.name}"
+                    )
                 beside.append(force)
         kept = [k for k, q in enumerate(self.q) if q not in dropped]
 
         def of(row: tuple[Any, ...]) -> tuple[Any, ...]:
             return tuple(row[k] for k in kept)
 
-        return replace(self, q=of(self.q), Q=of(self.Q), unbalanced=of(self.unbalanced), J=tuple(map(of, self.J)),
-                       beside=(*self.beside, *beside))  # fmt: skip
+        return replace(
+            self,
+            q=of(self.q),
+            Q=of(self.Q),
+            unbalanced=of(self.unbalanced),
+            J=tuple(map(of, self.J)),
+            beside=(*self.beside, *beside),
+        )
 
     def holding(self, at: State) -> StaticEquations:
         """The same over the other coordinates, those named held at a place; the forces along them balance too."""
@@ -124,9 +131,15 @@ class StaticEquations:
         Q, unbalanced, phi, others = (substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.beside))
         rows = [substituted(row, at) for row in self.J]
         more = tuple(x for x in substituted(tuple(beside), at) if not is_zero(x))
-        return replace(self, q=tuple(self.q[k] for k in kept), Q=tuple(Q[k] for k in kept),
-                       unbalanced=tuple(unbalanced[k] for k in kept), phi=phi, beside=(*others, *more),
-                       J=tuple(tuple(row[k] for k in kept) for row in rows))  # fmt: skip
+        return replace(
+            self,
+            q=tuple(self.q[k] for k in kept),
+            Q=tuple(Q[k] for k in kept),
+            unbalanced=tuple(unbalanced[k] for k in kept),
+            phi=phi,
+            beside=(*others, *more),
+            J=tuple(tuple(row[k] for k in kept) for row in rows),
+        )
 
     def slopes(self, rows: Sequence[Row], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
@@ -162,21 +175,32 @@ def static_equations(system: System) -> StaticEquations:
     Q, unbalanced, phi = (readable_all(x, WORK) if x else () for x in (Q, unbalanced, phi))
     lam = free.symbols.lam
     kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
-    statics = StaticEquations(system, held, q, given, Q, unbalanced, tuple(rows[i] for i in kept),
-                              tuple(lam[i] for i in kept), tuple(x for x in phi if not is_zero(x)))  # fmt: skip
+    statics = StaticEquations(
+        system,
+        held,
+        q,
+        given,
+        Q,
+        unbalanced,
+        tuple(rows[i] for i in kept),
+        tuple(lam[i] for i in kept),
+        tuple(x for x in phi if not is_zero(x)),
+    )
     return with_norms(statics)
 
 
 def with_norms(statics: StaticEquations) -> StaticEquations:
     """The equations with a tie for the norm of each quaternion that something holds: Q + 2 e lam = 0, e . e = 1."""
     scope, indifferent = statics.system.scope, statics.indifferent
-    turning = [(four, part) for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True)
-               if not all(e in indifferent for e in four)]  # fmt: skip
+    turning = [
+        (four, part)
+        for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True)
+        if not all(e in indifferent for e in four)
+    ]
     rows = tuple(tuple(2 * q if q in four else 0 for q in statics.q) for four, _ in turning)
     lam = tuple(scope.graph.symbol(f"lam(norm of {part.body}, 1)") for _, part in turning)
     phi = tuple(sum((e * e for e in four), start=-1) for four, _ in turning)
-    return replace(statics, J=(*statics.J, *rows), lam=(*statics.lam, *lam), phi=(*statics.phi, *phi),
-                   norms=len(rows))  # fmt: skip
+    return replace(statics, J=(*statics.J, *rows), lam=(*statics.lam, *lam), phi=(*statics.phi, *phi), norms=len(rows))
 
 
 def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
@@ -227,8 +251,9 @@ def _refuse_dry_friction(system: System) -> None:
     rough = rough_contacts(system.scope.model)
     if rough:
         what = f"'{rough[0].name}' rubs: by dry friction it rests in a range of places, not in single ones"
-        raise DerivationError(what, rough[0].declared_at,
-                              "leave the friction out, or ask at an instant which force it takes")  # fmt: skip
+        raise DerivationError(
+            what, rough[0].declared_at, "leave the friction out, or ask at an instant which force it takes"
+        )
 
 
 def _refuse_signs_of_rates(Q: Row, free: System) -> None:
@@ -236,7 +261,7 @@ def _refuse_signs_of_rates(Q: Row, free: System) -> None:
     u = free.symbols.u
     for node in order(Q):
         if node.op == "sign" and any(depends_on(a, u) for a in node.args):
-            raise DerivationError("a force jumps with the sign of a rate: at rest it may have any value in between",
-                                  mend="leave it out where rest is sought")  # fmt: skip
-
-
+            raise DerivationError(
+                "a force jumps with the sign of a rate: at rest it may have any value in between",
+                mend="leave it out where rest is sought",
+            )

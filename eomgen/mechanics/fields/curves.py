@@ -1,7 +1,7 @@
 """Possible, a moving place -> Curve: on what line it runs, recognised exactly by rates that vanish along every motion.
 
-    at rest: c' = 0;   straight: c' x c'' = 0;
-    a circle: the centre of curvature stays, c + |c'|^2 (c' x c'') x c' / |c' x c''|^2
+at rest: c' = 0;   straight: c' x c'' = 0;
+a circle: the centre of curvature stays, c + |c'|^2 (c' x c'') x c' / |c' x c''|^2
 """
 
 from __future__ import annotations

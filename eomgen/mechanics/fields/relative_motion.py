@@ -121,9 +121,12 @@ _VECTORS: dict[str, Callable[[Composition], Vector]] = {
 COMPONENTS = {f"{name}{axis}": (name, i) for name in _VECTORS for i, axis in enumerate(AXES)}
 """Functions (point, body[, body whose axes]): a part, and its component."""
 MAGNITUDES = {
-    "transport_speed": "transport_v", "transport_acceleration": "transport_a", "coriolis_acceleration": "coriolis_a",
-    "euler_acceleration": "euler_a", "centripetal_acceleration": "centripetal_a",
-}  # fmt: skip
+    "transport_speed": "transport_v",
+    "transport_acceleration": "transport_a",
+    "coriolis_acceleration": "coriolis_a",
+    "euler_acceleration": "euler_a",
+    "centripetal_acceleration": "centripetal_a",
+}
 """Functions (point, body): a part, whose magnitude they are."""
 
 

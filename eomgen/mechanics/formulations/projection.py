@@ -1,6 +1,6 @@
 """Newton-Euler of every body, projected on the motions that the joints allow.
 
-    M = sum B^T I B,   c = sum B^T (I alpha + xi x* (I xi)),   Q = sum B^T W
+M = sum B^T I B,   c = sum B^T (I alpha + xi x* (I xi)),   Q = sum B^T W
 """
 
 from __future__ import annotations

@@ -48,9 +48,11 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> Row:
     motion = loads.motion
     size = len(motion.scope.symbols.u)
     bias = bias_forces(
-        branches, size,
-        base_acceleration=times(-1, loads.fields), applied=applied_wrenches(loads, branches),
-    )  # fmt: skip
+        branches,
+        size,
+        base_acceleration=times(-1, loads.fields),
+        applied=applied_wrenches(loads, branches),
+    )
     direct = [a + b for a, b in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
     armature = armature_bias(motion, size)
     return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))

@@ -140,10 +140,16 @@ def body_motions(
     """
     readable, plane = readable_at(system, state), system.scope.model.space == "plane"
     return tuple(
-        BodyMotion(body, readable.field(field_of(system.motion, body)), readable, _ends(system, readable, body), plane,
-                   _kind(kinds, body))
+        BodyMotion(
+            body,
+            readable.field(field_of(system.motion, body)),
+            readable,
+            _ends(system, readable, body),
+            plane,
+            _kind(kinds, body),
+        )
         for body in bodies or [link.name for link in system.motion.links if not is_node(link.name)]
-    )  # fmt: skip
+    )
 
 
 def _kind(kinds: Kinds | None, body: str) -> Kind | None:

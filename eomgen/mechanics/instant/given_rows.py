@@ -131,8 +131,9 @@ def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) ->
     try:
         parts = collected_in(gap, unknowns)
     except DerivationError:
-        raise DerivationError(f"{text} is not linear in what it gives", where,
-                              "give components: vx(...), vy(...), omega(...)") from None  # fmt: skip
+        raise DerivationError(
+            f"{text} is not linear in what it gives", where, "give components: vx(...), vy(...), omega(...)"
+        ) from None
     entries = {node: x for node, x in parts.items() if node is not None}
     return Line(text, entries, -parts.get(None, 0))
 
@@ -148,8 +149,11 @@ def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
     for (row, _), gap in zip(rows, gaps, strict=True):
         if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > OPEN:
             along = f" along {row.component}" if row.component in ("x", "y", "z") else ""
-            raise DerivationError(f"'{row.tie}' does not close at the start: it is open by {value:.4g}{along}",
-                                  f"constraints.{row.tie}", "put its points where they meet")  # fmt: skip
+            raise DerivationError(
+                f"'{row.tie}' does not close at the start: it is open by {value:.4g}{along}",
+                f"constraints.{row.tie}",
+                "put its points where they meet",
+            )
 
 
 def _at_own_values(system: System, x: Scalar) -> float:
@@ -160,7 +164,10 @@ def _at_own_values(system: System, x: Scalar) -> float:
 
 
 def solution_of(
-    system: System, ties: Sequence[Line], given: Sequence[Line], unknowns: Sequence[Node],
+    system: System,
+    ties: Sequence[Line],
+    given: Sequence[Line],
+    unknowns: Sequence[Node],
     near: Mapping[Node, float] | None = None,
 ) -> tuple[dict[Node, Scalar], tuple[int, int]]:
     """(each unknown that the equations determine, with the free ones in it; ranks of the ties and of all).
@@ -179,9 +186,13 @@ def solution_of(
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
-    found = solved(rows, [line.right for line in lines], len(unknowns),
-                   lambda scalars: evaluate(scalars, values, fifty_digits()),
-                   tolerance=EXACT if near is None else RANK)  # fmt: skip
+    found = solved(
+        rows,
+        [line.right for line in lines],
+        len(unknowns),
+        lambda scalars: evaluate(scalars, values, fifty_digits()),
+        tolerance=EXACT if near is None else RANK,
+    )
     result = {}
     for j, constant in found.constants.items():
         shares = [share * unknowns[f] for f, share in found.shares[j].items()]
@@ -225,10 +236,16 @@ def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray, ties: int) 
         shares = np.linalg.lstsq(basis[before][:, :-1].T, matrix[i, :-1], rcond=None)[0] if before else np.zeros(0)
         rest = matrix[i, -1] - shares @ basis[before][:, -1]
         if abs(rest) > RANK * max(1.0, float(np.max(np.abs(matrix[:, -1])))):
-            others = dict.fromkeys(lines[kept[k]].said for k, share in zip(before, shares, strict=True)
-                                   if abs(share) > RANK and lines[kept[k]].said != UNSAID)  # fmt: skip
+            others = dict.fromkeys(
+                lines[kept[k]].said
+                for k, share in zip(before, shares, strict=True)
+                if abs(share) > RANK and lines[kept[k]].said != UNSAID
+            )
             against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
             if i < ties:
-                raise DerivationError(f"no motion has these velocities: {line.said}{against}", "given",
-                                      "the bodies lock there, or their motion branches: give other velocities")
+                raise DerivationError(
+                    f"no motion has these velocities: {line.said}{against}",
+                    "given",
+                    "the bodies lock there, or their motion branches: give other velocities",
+                )
             raise DerivationError(f"{line.said}{against}", "given", "leave one of them out, or change its value")

@@ -79,8 +79,9 @@ class Mechanism:
         """The homogeneous centre of every body; nodes of trusses left out."""
         motion = self.system.motion
         bodies = [link for link in motion.links if not is_node(link.name)]
-        return {link.name: self._simple(homogeneous_center(field_of(motion, link.name).at(self.moving)))
-                for link in bodies}  # fmt: skip
+        return {
+            link.name: self._simple(homogeneous_center(field_of(motion, link.name).at(self.moving))) for link in bodies
+        }
 
     def _apart(self, block: str, body: str) -> Homogeneous:
         return minus(self.fields[body], ZERO if block == FIXED else self.fields[block])

@@ -214,8 +214,11 @@ class Snapshot:
             if depends_on(scalar, (node,)) and node in self.accelerations.free:
                 raise self._open(self.accelerations, "acceleration", "acceleration")
             if depends_on(scalar, (node,)):
-                raise Undetermined(f"the unknown '{name}' is not determined by what is given", f"unknowns.{name}",
-                                   "let it stand in an equation of [given], or in a load")  # fmt: skip
+                raise Undetermined(
+                    f"the unknown '{name}' is not determined by what is given",
+                    f"unknowns.{name}",
+                    "let it stand in an equation of [given], or in a load",
+                )
 
     def _open(self, known: Known, order: str, noun: str) -> Undetermined:
         many = "1 freedom" if known.freedoms == 1 else f"{known.freedoms} freedoms"
@@ -225,8 +228,9 @@ class Snapshot:
         rates = f"{known.given} {noun}{'s' if known.given != 1 else ''} given"
         more = "one more" if known.given else "one" if known.missing == 1 else f"{known.missing}"
         offer = self._offered(known, order)
-        return Undetermined(f"it is not determined: {many}, {rates}", "given",
-                            f"give {more} in [given]: {order} = [\"{offer} = ...\"]")  # fmt: skip
+        return Undetermined(
+            f"it is not determined: {many}, {rates}", "given", f'give {more} in [given]: {order} = ["{offer} = ..."]'
+        )
 
     def _offered(self, known: Known, order: str) -> str:
         """A quantity that is still open: the spin of a body, or the velocity of a point."""
@@ -283,8 +287,9 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     if not located:
         open_gaps(free, still)
     given = model.given
-    speeds = {f"{name}'": part.speed for name, part in model.coordinates.items()
-              if part.speed is not None and not part.driven}  # fmt: skip
+    speeds = {
+        f"{name}'": part.speed for name, part in model.coordinates.items() if part.speed is not None and not part.driven
+    }
     speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
     velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
     return Snapshot(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})

@@ -197,8 +197,11 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     lengths = [abs(known[q]) for q in free] + [abs(x) for x in p.values()]
     here = np.array([known[q] for q in sought])
     kept = tuple(q.name for q in free if q not in sought)
-    agreeing = tuple(x for name, tie in system.scope.model.constraints.items()
-                     for x in tie.agreeing(SystemScene(system.motion, f"constraints.{name}")))  # fmt: skip
+    agreeing = tuple(
+        x
+        for name, tie in system.scope.model.constraints.items()
+        for x in tie.agreeing(SystemScene(system.motion, f"constraints.{name}"))
+    )
     reach = 2 * max(lengths, default=1.0)
     return _Search(system, gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
 

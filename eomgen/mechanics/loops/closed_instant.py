@@ -100,8 +100,14 @@ class ClosedInstant:
     def _rates(self, at: State) -> State:
         """The speeds as functions of the coordinates that are not in `at`."""
         try:
-            found = rates_of(self.system, self.assembly, self.start,
-                             there=self.located.numbers, accelerations=self.accelerations, at=at)  # fmt: skip
+            found = rates_of(
+                self.system,
+                self.assembly,
+                self.start,
+                there=self.located.numbers,
+                accelerations=self.accelerations,
+                at=at,
+            )
             return dict(zip(found, substituted(tuple(found.values()), at), strict=True)) if found else {}
         except DerivationError:  # a division by 0 at this place
             return {}

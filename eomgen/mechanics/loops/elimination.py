@@ -167,8 +167,7 @@ def _undetermined(names: tuple[str, ...], J_d: np.ndarray, ties: Ties) -> Deriva
             solved.append(k)
     left = [name for k, name in enumerate(names) if k not in solved]
     what = f"'{left[0]}' is dependent, but " + _why(ties, len(left))
-    return DerivationError(what, f"coordinates.{left[0]}",
-                           "add the constraint that moves it, or leave out `dependent`")  # fmt: skip
+    return DerivationError(what, f"coordinates.{left[0]}", "add the constraint that moves it, or leave out `dependent`")
 
 
 def _why(ties: Ties, left: int) -> str:

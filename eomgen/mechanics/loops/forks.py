@@ -86,9 +86,7 @@ def at_rest(ties: Ties, state: State) -> bool:
     return all(abs(state[u]) <= STILL for u in ties.motion.scope.symbols.u)
 
 
-def speeds_along(
-    ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]
-) -> dict[Node, Any] | None:
+def speeds_along(ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]) -> dict[Node, Any] | None:
     """The state with the nearest speeds that lead along a branch; None where none is found.
 
     Args:

@@ -199,8 +199,9 @@ def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, .
     kept = independent_rows(J, DEPENDENT)
     return tuple(
         Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
-        for i, row in enumerate(closing) if i not in kept
-    )  # fmt: skip
+        for i, row in enumerate(closing)
+        if i not in kept
+    )
 
 
 def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:

@@ -141,8 +141,10 @@ def _forms_of(ties: Ties, state: State) -> _Forms:
     def form(entries: dict[int, Scalar], at_rest: Scalar) -> Form:
         return (*(entries.get(k, 0) for k in range(len(q))), at_rest)
 
-    rows = [(row, form(dict(zip(free, J, strict=True)), sigma))
-            for row, J, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True)]  # fmt: skip
+    rows = [
+        (row, form(dict(zip(free, J, strict=True)), sigma))
+        for row, J, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True)
+    ]
     driven = [form({k: 1}, -nu) for k, nu in enumerate(scope.nu) if k not in free]
     norms = [form({q.index(e): e for e in four}, 0) for four in scope.quaternions]
     held = (*(w for row, w in rows if row.gap is not None), *driven, *norms)
@@ -173,8 +175,10 @@ def _fields(forms: _Forms) -> list[Form]:
     n = len(forms.y)
     rows = [{k: x for k, x in enumerate(w) if not is_zero(x)} for w in (*forms.held, *(w for _, w in forms.moving))]
     solution = linear.solved(rows, [0] * len(rows), n, forms.values, last=(n - 1,))
-    return [tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
-            for f in solution.free]  # fmt: skip
+    return [
+        tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
+        for f in solution.free
+    ]
 
 
 def _bracket(y: Sequence[Node], X: Form, Y: Form) -> Form:

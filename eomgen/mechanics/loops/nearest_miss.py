@@ -1,6 +1,6 @@
 """System, a place where ties are open -> how near they come to closing, wherever the coordinates go.
 
-    min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Marquardt from several places
+min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Marquardt from several places
 """
 
 from __future__ import annotations

@@ -32,8 +32,11 @@ def refuse_open_gaps(system: System, state: State) -> None:
         return
     row, gap, size = found
     if size == float("inf"):
-        raise DerivationError(f"'{row.tie}' (row {row.number}) has no value at the start", f"constraints.{row.tie}",
-                              "give start values at which its roots and quotients have one")  # fmt: skip
+        raise DerivationError(
+            f"'{row.tie}' (row {row.number}) has no value at the start",
+            f"constraints.{row.tie}",
+            "give start values at which its roots and quotients have one",
+        )
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
     raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
 
@@ -112,5 +115,8 @@ def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
 
 
 _OF_TERMS: dict[str, Callable[..., Any]] = {
-    "add": operator.add, "sub": operator.add, "mul": operator.mul, "neg": operator.pos,
-}  # fmt: skip
+    "add": operator.add,
+    "sub": operator.add,
+    "mul": operator.mul,
+    "neg": operator.pos,
+}

@@ -32,8 +32,10 @@ def stabilized(system: System, assembly: Assembly, rates: Rates) -> Assembly:
     taken = dict.fromkeys(row.tie for row in system.ties.rows if row.status == "eliminated")
     if taken:
         names = ", ".join(f"'{name}'" for name in taken)
-        raise UsageError(f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
-                         mend="take the projection, or declare no coordinate dependent")  # fmt: skip
+        raise UsageError(
+            f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
+            mend="take the projection, or declare no coordinate dependent",
+        )
     rows = zip(assembly.gamma, system.ties.closing, assembly.phi, strict=True)
     pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
     return replace(assembly, gamma=tuple(pulling))

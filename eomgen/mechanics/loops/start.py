@@ -217,8 +217,9 @@ def _changes(
     own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in start)
-        for x in own if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
-    )  # fmt: skip
+        for x in own
+        if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
+    )
 
 
 def _change(model: Model, name: str, values: tuple[float, float], called: bool) -> Change:

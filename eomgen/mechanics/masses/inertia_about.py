@@ -118,8 +118,11 @@ def _refuse_unknown(call: Call, motion: Motion, bodies: Sequence[str], flat: boo
         DerivationError: naming a body of which it is not known.
     """
     if unknown := shapeless(motion, bodies):
-        raise DerivationError(f"'{call}': body '{unknown[0]}' has a mass and no inertia", f"bodies.{unknown[0]}",
-                              "give 'inertia' (0 for a point), or a shape")  # fmt: skip
+        raise DerivationError(
+            f"'{call}': body '{unknown[0]}' has a mass and no inertia",
+            f"bodies.{unknown[0]}",
+            "give 'inertia' (0 for a point), or a shape",
+        )
     if not flat and (unknown := flat_bodies(motion, bodies)):
         what = f"'{call}': of body '{unknown[0]}' only the moment about z is known, its 'inertia'"
         raise DerivationError(what, f"bodies.{unknown[0]}", "give it a shape, or parts")
@@ -244,8 +247,13 @@ def _momentum(axis: int) -> Callable[[Asked], Scalar]:
 
 
 FUNCTIONS: dict[str, Callable[[Asked], Scalar]] = {
-    "inertia_point": _point, "inertia_axis": _axis, "inertia_plane": _plane, "inertia_product": _product,
-    "inertia_tensor": _tensor, "principal_moment": _principal, "mass_of": _mass,
+    "inertia_point": _point,
+    "inertia_axis": _axis,
+    "inertia_plane": _plane,
+    "inertia_product": _product,
+    "inertia_tensor": _tensor,
+    "principal_moment": _principal,
+    "mass_of": _mass,
     **{f"angular_momentum_{name}": _momentum(k) for name, k in AXES.items()},
-}  # fmt: skip
+}
 """Functions of the outputs, by name."""

@@ -308,9 +308,7 @@ def _with_signs(x: Scalar) -> Scalar:
     return substituted((x,), known)[0] if known else x
 
 
-def values_of(
-    scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
-) -> list[float] | None:
+def values_of(scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None) -> list[float] | None:
     """What scalars are worth; None where they hold what has no value.
 
     Args:

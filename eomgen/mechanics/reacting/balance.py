@@ -134,8 +134,11 @@ def _refuse_placeless_ties(system: System) -> None:
         slide = sum((slide_power(system.motion, push) for push in points), start=0)
         own = 0 if is_zero(row.direct) else row.direct - slide  # a row of material points sees no slide
         if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
-            raise DerivationError(f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
-                                  f"constraints.{row.tie}", "give it as a tie between bodies")  # fmt: skip
+            raise DerivationError(
+                f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
+                f"constraints.{row.tie}",
+                "give it as a tie between bodies",
+            )
         if row.pushes and _pushes_along(system, row.direct):
             raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
 
@@ -160,8 +163,11 @@ def _seat_moves_others(system: System, link: Link) -> bool:
 
 
 def _moved_inside(what: str, where: str) -> DerivationError:
-    return DerivationError(f"{what} acts on a point that a coordinate moves in its body, and no body moves it there",
-                           where, "make the point one of a body of its own")  # fmt: skip
+    return DerivationError(
+        f"{what} acts on a point that a coordinate moves in its body, and no body moves it there",
+        where,
+        "make the point one of a body of its own",
+    )
 
 
 def _coefficient(component: Component, link: int, direction: int) -> Scalar:

@@ -49,8 +49,9 @@ def solution_of_balance(
     if at:
         entries = list(readable_all(substituted(tuple(entries), at), work))
         needed = list(readable_all(substituted(tuple(needed), at), work))
-        pushes = [dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True))
-                  for row in pushes]  # fmt: skip
+        pushes = [
+            dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True)) for row in pushes
+        ]
     flat = iter(entries)
     rows = [{j: next(flat) for j in row} for row in coefficients]
     parameters = frozenset(balance.system.symbols.parameters.values())
@@ -61,8 +62,17 @@ def solution_of_balance(
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return solved(rows, needed, len(balance.names), values, simple=simple, last=last, sure=sure,
-                  tests=pushes, sure_symbols=parameters)  # fmt: skip
+    return solved(
+        rows,
+        needed,
+        len(balance.names),
+        values,
+        simple=simple,
+        last=last,
+        sure=sure,
+        tests=pushes,
+        sure_symbols=parameters,
+    )
 
 
 def combined(balance: Balance, solution: Solution, combination: Combination, name: str) -> Scalar:
@@ -83,8 +93,11 @@ def combined(balance: Balance, solution: Solution, combination: Combination, nam
             open_[f] = open_.get(f, 0) - k * share
     left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
     if left:
-        partners = [other for j, other in enumerate(balance.names)
-                    if other != name and (j in left or left & shares.get(j, {}).keys())]  # fmt: skip
+        partners = [
+            other
+            for j, other in enumerate(balance.names)
+            if other != name and (j in left or left & shares.get(j, {}).keys())
+        ]
         raise Indeterminate(
             f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
             + (", together with " + ", ".join(partners) if partners else ""),
@@ -97,8 +110,10 @@ def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
     """The coefficients of the components that rub as they would be without friction."""
     link = balance.system.motion.index[equation.body]
     rubbing = [j for j in equation.coefficients if balance.components[j].rubbing]
-    return {j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
-            for j in rubbing}  # fmt: skip
+    return {
+        j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
+        for j in rubbing
+    }
 
 
 def _is_product(a: Node, parameters: frozenset[Node]) -> bool:

@@ -138,9 +138,12 @@ def _refuse_spread(joints: Sequence[Link], follow: Sequence[Scalar], free: Seque
         moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
         if len(moved) > 1 and any(depends_on(s, (q,)) for s in follow):
             which = " and ".join(f"'{name}'" for name in moved)
-            raise DerivationError(f"what drives '{driver.name}' has no one place: with '{q.name}' it moves the "
-                                  f"joints of {which}, and reactions do not follow", f"bodies.{moved[0]}.joint",
-                                  f"let one joint follow '{driver.name}' alone")  # fmt: skip
+            raise DerivationError(
+                f"what drives '{driver.name}' has no one place: with '{q.name}' it moves the "
+                f"joints of {which}, and reactions do not follow",
+                f"bodies.{moved[0]}.joint",
+                f"let one joint follow '{driver.name}' alone",
+            )
 
 
 def _basis(axes: Axes, link: Link, system: System) -> list[tuple[str, Vector, Vector]]:
@@ -246,8 +249,10 @@ def _friction(axes: Axes, row: Row) -> tuple[Rubbing, ...]:
     if row.friction is None:
         return ()
     ways = zip("ts", row.shares or (1,), (row.tangent, row.cross_tangent), strict=False)
-    return tuple(Rubbing(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
-                 for label, share, pushes in ways)  # fmt: skip
+    return tuple(
+        Rubbing(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
+        for label, share, pushes in ways
+    )
 
 
 def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[Rubbing, ...]) -> Component:

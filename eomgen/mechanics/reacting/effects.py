@@ -156,8 +156,11 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
     i = axes.motion.index[body]
     link = axes.motion.links[i]
     given = load.couple if isinstance(load, Couple) else load.force
-    vector = given if load.axes == body and not axes.plane else axes.of_ground(
-        link, in_ground_axes(axes.motion, given, load.axes))  # fmt: skip
+    vector = (
+        given
+        if load.axes == body and not axes.plane
+        else axes.of_ground(link, in_ground_axes(axes.motion, given, load.axes))
+    )
     if isinstance(load, Couple):
         return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1]),)
     return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1]),)

@@ -42,8 +42,10 @@ def _turn(link: Link, three: Sequence[int], rows: list[Row], needed: list[Scalar
     """The three equations times R, where the coefficients then take fewer operations."""
     own = sorted({j for n in three for j in rows[n]})
     columns = {j: [rows[n].get(j, 0) for n in three] for j in own}
-    turned = [dict(zip(own, readable_all(tuple(inner(r, c) for c in columns.values()), WORK), strict=True))
-              for r in link.pose.R]  # fmt: skip
+    turned = [
+        dict(zip(own, readable_all(tuple(inner(r, c) for c in columns.values()), WORK), strict=True))
+        for r in link.pose.R
+    ]
     if _work(x for row in turned for x in row.values()) >= _work(x for c in columns.values() for x in c):
         return
     right = readable_all(tuple(inner(r, [needed[n] for n in three]) for r in link.pose.R), WORK)

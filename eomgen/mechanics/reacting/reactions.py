@@ -79,8 +79,11 @@ class Reactions:
             Indeterminate: the balance at rest leaves it open.
         """
         if name not in self.balance.names[len(self.components) :]:
-            raise DerivationError(f"the unknown '{name}' stands in no load and in no equation of [given]",
-                                  f"unknowns.{name}", "write it where it is meant")  # fmt: skip
+            raise DerivationError(
+                f"the unknown '{name}' stands in no load and in no equation of [given]",
+                f"unknowns.{name}",
+                "write it where it is meant",
+            )
         return self.combined({self.balance.names.index(name, len(self.components)): 1}, name)
 
     def value(self, j: int) -> Scalar:
@@ -163,8 +166,10 @@ class Reactions:
         members = {c.side: j for j, c in enumerate(self.components) if c.owner == truss}
         found = [j for member, j in members.items() if set(member.split("-")) == {first, second}]
         if not found:
-            raise DerivationError(f"truss '{truss}' has no member between '{first}' and '{second}'",
-                                  mend=f"its members: {', '.join(members)}")  # fmt: skip
+            raise DerivationError(
+                f"truss '{truss}' has no member between '{first}' and '{second}'",
+                mend=f"its members: {', '.join(members)}",
+            )
         return self.value(found[0])
 
     def tension(self, owner: str, strand: int = 1) -> Scalar:
@@ -176,8 +181,11 @@ class Reactions:
         if numbers and not 1 <= strand <= len(numbers):
             raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
         number = numbers[strand - 1] if numbers else strand
-        found = [j for j, c in enumerate(self.components)
-                 if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number]  # fmt: skip
+        found = [
+            j
+            for j, c in enumerate(self.components)
+            if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number
+        ]
         if not found:
             raise DerivationError(f"tension({owner}): '{owner}' has no tension there, it pulls on no body")
         return self.value(found[0])

@@ -83,10 +83,12 @@ def _freed(system: System, model: Model, row: Row) -> Model:
     model, name = _with_coordinate(model, row.tie, DISPLACEMENTS[row.component])
     joint: Any = model.bodies[leave.link.name].joint
     at = joint.at or (Expression.number(0),) * (2 if model.space == "plane" else 3)
-    changes: dict[str, Any] = {"at": tuple(
-        place if is_zero(n) else as_expression(f"({place.text}) + {name}*({to_text(n)})")
-        for place, n in zip(at, leave.direction, strict=False)
-    )}  # fmt: skip
+    changes: dict[str, Any] = {
+        "at": tuple(
+            place if is_zero(n) else as_expression(f"({place.text}) + {name}*({to_text(n)})")
+            for place, n in zip(at, leave.direction, strict=False)
+        )
+    }
     if leave.turns:
         model, turn = _with_coordinate(model, row.tie, "turn")
         changes["angle"] = as_expression(turn if joint.angle is None else f"({joint.angle.text}) + {turn}")
@@ -113,8 +115,13 @@ def _placed(system: System, row: Row) -> Leave:
     """
     pushed = _pushed(system, row)
     for link, n in pushed:
-        others = [m for other in system.ties.rows if other.identical and other.tie != row.tie
-                  for on, m in _pushed(system, other) if on is link]  # fmt: skip
+        others = [
+            m
+            for other in system.ties.rows
+            if other.identical and other.tie != row.tie
+            for on, m in _pushed(system, other)
+            if on is link
+        ]
         d = _across(n, others)
         along = readable_all((dot(n, d),))[0]
         if not holds_identically(along):
@@ -123,9 +130,11 @@ def _placed(system: System, row: Row) -> Leave:
     for link, n in pushed:
         if system.scope.model.space == "plane":
             return Leave(link, vector_of(readable_all(n)), straight=False, turns=True)
-    raise DerivationError(f"'{row.tie}' ends, and no body can leave it: the coordinates describe contact only",
-                          f"constraints.{row.tie}",
-                          "place the body by coordinates that can leave the contact")  # fmt: skip
+    raise DerivationError(
+        f"'{row.tie}' ends, and no body can leave it: the coordinates describe contact only",
+        f"constraints.{row.tie}",
+        "place the body by coordinates that can leave the contact",
+    )
 
 
 def _pushed(system: System, row: Row) -> list[tuple[Link, Vector]]:

@@ -53,8 +53,11 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     turning = direction.startswith("moment")
     what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
     joined = _joined_by_a_coordinate(system)
-    mend = (f"{joined}, and nothing named joins them: name the constraint that does" if joined else
-            "what is placed carries no reaction: name the constraint that holds it")  # fmt: skip
+    mend = (
+        f"{joined}, and nothing named joins them: name the constraint that does"
+        if joined
+        else "what is placed carries no reaction: name the constraint that holds it"
+    )
     raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
 
 

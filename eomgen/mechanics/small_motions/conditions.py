@@ -41,8 +41,9 @@ class Conditions:
         return " or ".join(said)
 
 
-def stability_conditions(polynomial: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any], *,
-                         conservative: bool) -> Conditions:  # fmt: skip
+def stability_conditions(
+    polynomial: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any], *, conservative: bool
+) -> Conditions:
     """Of Routh and Hurwitz for each factor of p(s), in the fewer ones of Lienard and Chipart: all coefficients, every
     other determinant. Of an even factor, what makes all s^2 real and negative.
 

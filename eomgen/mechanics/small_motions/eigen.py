@@ -1,6 +1,6 @@
 """Matrices of small motions -> eigenvalues and eigenvectors in numbers, and how many eigenvalues are 0.
 
-    A_0 x = lambda B_0 x,   A_0 = [F, E; -K, -C],   B_0 = [1, 0; 0, M]
+A_0 x = lambda B_0 x,   A_0 = [F, E; -K, -C],   B_0 = [1, 0; 0, M]
 """
 
 from __future__ import annotations

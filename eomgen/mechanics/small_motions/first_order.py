@@ -99,12 +99,15 @@ class FirstOrder:
         q, u, w = symbols.q, symbols.u, tuple(symbols.inputs.values())
         velocities, accelerations = self.rows
         return {
-            "R_q": jacobian(self.residual, q), "R_u": jacobian(self.residual, u),
-            "S_q": jacobian(self.system.scope.rates, q), "V_q": jacobian(velocities, q),
-            "A_q": jacobian(accelerations, q), "A_u": jacobian(accelerations, u),
+            "R_q": jacobian(self.residual, q),
+            "R_u": jacobian(self.residual, u),
+            "S_q": jacobian(self.system.scope.rates, q),
+            "V_q": jacobian(velocities, q),
+            "A_q": jacobian(accelerations, q),
+            "A_u": jacobian(accelerations, u),
             "G": (*jacobian(self.relations, q), *_held(self.system)),
             "W": [[-x for x in row] for row in jacobian(self.residual, w)],
-        }  # fmt: skip
+        }
 
 
 def first_order_of(system: System) -> FirstOrder:
@@ -150,8 +153,9 @@ def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) ->
     elsewhere = Numbers(_elsewhere(reference))
     G_there, J_there = (_floats(at(elsewhere, rows), len(columns)) for rows, columns in _rows(first))
     relations, dq = determined(G, [late(q.name, stays) for q, stays in zip(symbols.q, _same(G, G_there), strict=True)])
-    ties, du = determined(J, [late(u.name.removesuffix("'"), stays)
-                               for u, stays in zip(symbols.u, _same(J, J_there), strict=True)])  # fmt: skip
+    ties, du = determined(
+        J, [late(u.name.removesuffix("'"), stays) for u, stays in zip(symbols.u, _same(J, J_there), strict=True)]
+    )
     q = tuple(k for k in range(len(symbols.q)) if k not in dq)
     u = tuple(k for k in range(len(symbols.u)) if k not in du)
     return Choice(q, dq, relations, u, du, ties)
@@ -166,9 +170,10 @@ def _rows(first: FirstOrder) -> tuple[tuple[Rows, Sequence[Node]], ...]:
 def _elsewhere(reference: Reference) -> dict[Node, Any]:
     """The state with other coordinates."""
     rng, number = Random(4), fifty_digits().number(1)
-    return {**reference.numbers, **{
-        q: reference.numbers[q] + number * rng.uniform(0.01, 0.1) for q in reference.system.symbols.q
-    }}  # fmt: skip
+    return {
+        **reference.numbers,
+        **{q: reference.numbers[q] + number * rng.uniform(0.01, 0.1) for q in reference.system.symbols.q},
+    }
 
 
 def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:

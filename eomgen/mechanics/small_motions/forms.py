@@ -96,9 +96,11 @@ def over_coordinates(field: Field, equations: LinearEquations, kept: Indices) ->
     chosen = replace(
         equations,
         coordinates=tuple(equations.coordinates[j] for j in kept),
-        K=_columns(equations.K, kept), P=_columns(equations.P, kept),
-        F=[[equations.F[i][j] for j in kept] for i in kept], E=[equations.E[i] for i in kept],
-    )  # fmt: skip
+        K=_columns(equations.K, kept),
+        P=_columns(equations.P, kept),
+        F=[[equations.F[i][j] for j in kept] for i in kept],
+        E=[equations.E[i] for i in kept],
+    )
     return _second_order(field, chosen) if _can_be_of_second_order(field, chosen) else chosen
 
 
@@ -113,9 +115,11 @@ def _can_be_of_second_order(field: Field, equations: LinearEquations) -> bool:
 def is_second_order(equations: LinearEquations) -> bool:
     """Whether q_i' = u_i."""
     n = len(equations.speeds)
-    return len(equations.coordinates) == n and all(
-        x == int(i == j) for i, row in enumerate(equations.E) for j, x in enumerate(row)
-    ) and all(x == 0 for row in equations.F for x in row)  # fmt: skip
+    return (
+        len(equations.coordinates) == n
+        and all(x == int(i == j) for i, row in enumerate(equations.E) for j, x in enumerate(row))
+        and all(x == 0 for row in equations.F for x in row)
+    )
 
 
 def _second_order(field: Field, e: LinearEquations) -> LinearEquations:
@@ -136,8 +140,9 @@ def _second_order(field: Field, e: LinearEquations) -> LinearEquations:
 # -- only those that are asked ---------------------------------------------------------------------------------
 
 
-def restricted(field: Field, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
-               ) -> LinearEquations:  # fmt: skip
+def restricted(
+    field: Field, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
+) -> LinearEquations:
     """The equations of the coordinates that are asked, alone.
 
     Args:
@@ -176,9 +181,17 @@ def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
         return _columns([A[i] for i in c], c)
 
     return replace(
-        e, coordinates=tuple(e.coordinates[j] for j in c), speeds=tuple(e.speeds[j] for j in c),
-        M=part(e.M), C=part(e.C), K=part(e.K), E=part(e.E), F=part(e.F), B=[e.B[i] for i in c], P=_columns(e.P, c),
-    )  # fmt: skip
+        e,
+        coordinates=tuple(e.coordinates[j] for j in c),
+        speeds=tuple(e.speeds[j] for j in c),
+        M=part(e.M),
+        C=part(e.C),
+        K=part(e.K),
+        E=part(e.E),
+        F=part(e.F),
+        B=[e.B[i] for i in c],
+        P=_columns(e.P, c),
+    )
 
 
 def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices) -> LinearEquations:
@@ -195,9 +208,11 @@ def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices)
 
     return replace(
         whole,
-        M=less(whole.M, (M_co, by_rates)), C=less(whole.C, (M_co, by_places), (C_co, by_rates)),
-        K=less(whole.K, (C_co, by_places)), B=less(whole.B, (M_co, by_inputs)),
-    )  # fmt: skip
+        M=less(whole.M, (M_co, by_rates)),
+        C=less(whole.C, (M_co, by_places), (C_co, by_rates)),
+        K=less(whole.K, (C_co, by_places)),
+        B=less(whole.B, (M_co, by_inputs)),
+    )
 
 
 def _columns(A: Matrix, columns: Indices) -> Matrix:

@@ -191,8 +191,9 @@ def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exa
 # -- whether it is a reference ---------------------------------------------------------------------------------
 
 
-def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wanted: Sequence[str]
-              ) -> tuple[Reference, FirstOrder]:  # fmt: skip
+def _balanced(
+    system: System, about: str, guess: Mapping[str, float] | None, wanted: Sequence[str]
+) -> tuple[Reference, FirstOrder]:
     """The reference, at which forces and inertia balance, and the equations of its system.
 
     Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
@@ -206,8 +207,11 @@ def _balanced(system: System, about: str, guess: Mapping[str, float] | None, wan
         except (NoValue, ZeroDivisionError) as error:
             raise _without_value(reference) from error
         if wrong:
-            raise DerivationError(f"the start is no steady motion: '{wrong}' is accelerated there", "linearize.about",
-                                  'start from a steady motion, or let it be sought: about = "steady"')  # fmt: skip
+            raise DerivationError(
+                f"the start is no steady motion: '{wrong}' is accelerated there",
+                "linearize.about",
+                'start from a steady motion, or let it be sought: about = "steady"',
+            )
         return reference, first
     try:
         reference = place_of_rest(system, guess)
@@ -230,9 +234,7 @@ def _with_family(first: FirstOrder, reference: Reference) -> Reference:
     return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
 
 
-def _other_rest(
-    system: System, guess: Mapping[str, float] | None, why: EomgenError
-) -> tuple[Reference, FirstOrder]:
+def _other_rest(system: System, guess: Mapping[str, float] | None, why: EomgenError) -> tuple[Reference, FirstOrder]:
     """Rest beside what the model drives steadily, or the start without speeds."""
     first = first_order_of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())

@@ -80,8 +80,13 @@ class Modes:
         """Routh and Hurwitz: what must be positive."""
         if self.polynomial is None or self.small.exact is None:
             return Conditions()
-        return stability_conditions(self.polynomial, laplace_variable(self.small.exact), self.positive,
-                                    self.small.reference.trial, conservative=self.is_conservative)  # fmt: skip
+        return stability_conditions(
+            self.polynomial,
+            laplace_variable(self.small.exact),
+            self.positive,
+            self.small.reference.trial,
+            conservative=self.is_conservative,
+        )
 
     @cached_property
     def is_conservative(self) -> bool:
@@ -105,8 +110,11 @@ class Modes:
         """The frequencies of the oscillating modes, the lowest first."""
         candidates = self._closed
         if not self.small.reference.valued and not self._ordered(candidates):
-            raise DerivationError("which motion is slower, and whether it oscillates, depends on the parameters",
-                                  "parameters", "give them values")  # fmt: skip
+            raise DerivationError(
+                "which motion is slower, and whether it oscillates, depends on the parameters",
+                "parameters",
+                "give them values",
+            )
         return tuple(Frequency(mode, self._exact(mode, candidates)) for mode in self.spectrum.oscillating)
 
     @cached_property
@@ -187,8 +195,11 @@ class Modes:
     def symmetric_parts(self) -> dict[str, list[list[Entry]]]:
         """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
         equations = self.small.exact or self.small.numbers
-        return {name: part for letter, names in (("C", "DG"), ("K", "SH"))
-                for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)}  # fmt: skip
+        return {
+            name: part
+            for letter, names in (("C", "DG"), ("K", "SH"))
+            for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)
+        }
 
     def tidy(self, x: Entry) -> Entry:
         """An entry in its shortest form."""

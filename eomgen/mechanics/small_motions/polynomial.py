@@ -1,6 +1,6 @@
 """LinearEquations, exact -> characteristic polynomial, frequencies in closed form.
 
-    p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2 M + s C + K)
+p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2 M + s C + K)
 """
 
 from __future__ import annotations

@@ -183,12 +183,18 @@ class Reducing:
         N = at(field, self.first.system.scope.N)
         rates = total(field, product(field, self.derivative("S_q"), P), product(field, N, Y))
         return LinearEquations(
-            tuple(symbols.q[k] for k in choice.q), tuple(symbols.u[k] for k in choice.u),
-            tuple(symbols.inputs.values()), symbols.q,
-            product(field, Z_T, product(field, self.M, Z)), product(field, Z_T, C), product(field, Z_T, K),
+            tuple(symbols.q[k] for k in choice.q),
+            tuple(symbols.u[k] for k in choice.u),
+            tuple(symbols.inputs.values()),
+            symbols.q,
+            product(field, Z_T, product(field, self.M, Z)),
+            product(field, Z_T, C),
+            product(field, Z_T, K),
             product(field, Z_T, self.derivative("W")),
-            [rates[k] for k in choice.q], product(field, [N[k] for k in choice.q], Z), P,
-        )  # fmt: skip
+            [rates[k] for k in choice.q],
+            product(field, [N[k] for k in choice.q], Z),
+            P,
+        )
 
 
 def dependent_speeds(first: FirstOrder, choice: Choice, field: Field) -> dict[Node, Entry]:

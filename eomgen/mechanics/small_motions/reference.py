@@ -85,8 +85,11 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     """
     place = nearest_equilibrium(static_equations(system), guess)
     if contacts_of(system.scope.model) and (pulls := place.pulling):
-        raise DerivationError(f"'{pulls[0]}' would have to pull where the other forces balance",
-                              f"constraints.{pulls[0]}", "without it the system rests elsewhere")  # fmt: skip
+        raise DerivationError(
+            f"'{pulls[0]}' would have to pull where the other forces balance",
+            f"constraints.{pulls[0]}",
+            "without it the system rests elsewhere",
+        )
     return _place(place)
 
 
@@ -110,10 +113,16 @@ def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float]
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
         raise DerivationError("rest beside drives is sought of coordinates that are all free or driven")
     statics = StaticEquations(
-        system, (), tuple(own), given, tuple(forcing[k] for k in own.values()), tuple(forcing[k] for k in own.values()),
-        tuple(substituted(row, given) for row in assembly.J), symbols.lam,
+        system,
+        (),
+        tuple(own),
+        given,
+        tuple(forcing[k] for k in own.values()),
+        tuple(forcing[k] for k in own.values()),
+        tuple(substituted(row, given) for row in assembly.J),
+        symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
-    )  # fmt: skip
+    )
     return _place(nearest_equilibrium(statics, guess))
 
 
@@ -148,9 +157,13 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
         exact[u] = 0 if at_rest else scope.value(speed)
-    located = Located({**{x: float(v) for x, v in numbers.items()}, **{
-        x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)
-    }}, positive_parameters(scope))  # fmt: skip
+    located = Located(
+        {
+            **{x: float(v) for x, v in numbers.items()},
+            **{x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)},
+        },
+        positive_parameters(scope),
+    )
     gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
     exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}

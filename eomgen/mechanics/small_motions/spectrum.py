@@ -167,8 +167,10 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
     largest = abs(values).max(initial=0)
     real = np.full(len(values), STILL * largest) if gyroscopic else STILL * abs(values) + NOISE * largest
     both = zip(values, real, strict=True)
-    return [complex(0 if abs(x.real) <= least else x.real, 0 if abs(x.imag) <= STILL * abs(x) + NOISE * largest
-                    else x.imag) for x, least in both]  # fmt: skip
+    return [
+        complex(0 if abs(x.real) <= least else x.real, 0 if abs(x.imag) <= STILL * abs(x) + NOISE * largest else x.imag)
+        for x, least in both
+    ]
 
 
 def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
@@ -233,8 +235,11 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
 
 def _drifting(modes: Sequence[Mode]) -> str:
     """That of motions which stay as they are, or drift, terms of higher order decide; what moves in them."""
-    moving = [q.name for q in (modes[0].shape if modes else ()) if any(
-        mode.eigenvalue == 0 and abs(mode.shape[q]) > 1e-6 for mode in modes)]  # fmt: skip
+    moving = [
+        q.name
+        for q in (modes[0].shape if modes else ())
+        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > 1e-6 for mode in modes)
+    ]
     names = ", ".join(moving) or "some speeds"
     others = "; all other motions oscillate or fade" if any(mode.eigenvalue for mode in modes) else ""
     return f"to first order {names} may stay anywhere, or drift{others}"

@@ -36,8 +36,9 @@ def reduced(first: FirstOrder, choice: Choice, reference: Reference, field: Fiel
     return over_turns(field, first.system, equations, spinning(reference, choice))
 
 
-def refuse_corners(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
-                    kept: Sequence[int]) -> None:  # fmt: skip
+def refuse_corners(
+    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+) -> None:
     """Forces that are not smooth at the reference, as k |x| at x = 0: close to it, on both sides, all must be the same.
 
     Raises:
@@ -50,12 +51,16 @@ def refuse_corners(first: FirstOrder, choice: Choice, reference: Reference, raw:
     for _ in range(SIDES):
         aside = {x: fifty_digits().number(1) * ASIDE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
-            raise DerivationError("the forces have a corner or a jump at the place of reference", "linearize",
-                                  "take a place beside it, or forces that are smooth there")  # fmt: skip
+            raise DerivationError(
+                "the forces have a corner or a jump at the place of reference",
+                "linearize",
+                "take a place beside it, or forces that are smooth there",
+            )
 
 
-def steady_coordinates(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations,
-                       wanted: Sequence[str]) -> tuple[int, ...]:  # fmt: skip
+def steady_coordinates(
+    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, wanted: Sequence[str]
+) -> tuple[int, ...]:
     """The coordinates over which the equations stay as they are with time: those that carry the motion.
 
     Where the reference moves, a coordinate on which nothing depends may have a rate that changes, as the place of a car
@@ -75,14 +80,18 @@ def steady_coordinates(first: FirstOrder, choice: Choice, reference: Reference, 
     t = first.system.symbols.t
     culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
     if culprit is t:
-        raise DerivationError("coefficients of the small motions change with time: there are no modes", "linearize",
-                              "let nothing but inputs depend on t")  # fmt: skip
+        raise DerivationError(
+            "coefficients of the small motions change with time: there are no modes",
+            "linearize",
+            "let nothing but inputs depend on t",
+        )
     what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
     raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
 
 
-def _unsteady(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
-              ) -> list[dict[Node, Any]]:  # fmt: skip
+def _unsteady(
+    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+) -> list[dict[Node, Any]]:
     """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
     moving, t, graph = reference.moving, first.system.symbols.t, first.assembly
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
@@ -106,12 +115,16 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
     idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
     if idle or dense.scaled_condition(M) > 1 / REGULAR:
         moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
-        raise DerivationError(f"the mass matrix is singular at the place: {moved}", "linearize",
-                              "describe the motion by coordinates that are regular there")  # fmt: skip
+        raise DerivationError(
+            f"the mass matrix is singular at the place: {moved}",
+            "linearize",
+            "describe the motion by coordinates that are regular there",
+        )
 
 
-def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
-             ) -> Callable[[Mapping[Node, Any]], bool]:  # fmt: skip
+def _changed(
+    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+) -> Callable[[Mapping[Node, Any]], bool]:
     """Whether the equations are others at a shifted state."""
     here = list(_compared(raw, kept))
 
@@ -124,9 +137,7 @@ def _changed(first: FirstOrder, choice: Choice, reference: Reference, raw: Linea
         except (NoValue, ZeroDivisionError):
             return True
         pairs = zip(here, there, strict=True)
-        return bool(pushed) or any(
-            np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs
-        )
+        return bool(pushed) or any(np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
 
     return changes
 

@@ -69,16 +69,21 @@ def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] 
             fewer = _needed(Here.at(first, choice, found), np.where(mask, free, -1))
             alone = _sought(first, choice, reference.numbers, fewer)
             return _steady(first, choice, found if alone is None else alone, fewer)
-    raise DerivationError("no steady motion was found near the start", "linearize.about",
-                          "start nearer to one; `near` marks what may change, with its speed")  # fmt: skip
+    raise DerivationError(
+        "no steady motion was found near the start",
+        "linearize.about",
+        "start nearer to one; `near` marks what may change, with its speed",
+    )
 
 
 def _steady(first: FirstOrder, choice: Choice, state: State, changed: np.ndarray) -> Steady:
     symbols = first.system.symbols
     values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
     independent = (*(symbols.q[k] for k in choice.q), *(symbols.u[k] for k in choice.u))
-    return Steady({name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()},
-                  tuple(x for x, one in zip(independent, changed, strict=True) if one))  # fmt: skip
+    return Steady(
+        {name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()},
+        tuple(x for x, one in zip(independent, changed, strict=True) if one),
+    )
 
 
 def _free(first: FirstOrder, choice: Choice) -> np.ndarray:

@@ -199,12 +199,14 @@ class _Writing:
         if not unknowns or len(unknowns) != len(conditions) or len(unknowns) > MOST_SOUGHT:
             return family
         numbers = self.reference.numbers
-        sought = StaticEquations(system=self.first.system, held=(), q=unknowns, given={}, Q=conditions, unbalanced=(),
-                                 J=(), lam=(), phi=())  # fmt: skip
+        sought = StaticEquations(
+            system=self.first.system, held=(), q=unknowns, given={}, Q=conditions, unbalanced=(), J=(), lam=(), phi=()
+        )
         at = np.array([float(numbers[x]) for x in unknowns])
         places = places_of_rest(sought, {x: v for x, v in numbers.items() if x not in unknowns}, at)
-        others = tuple({x: float(v) if abs(v) > NOTHING else 0.0 for x, v in zip(unknowns, z, strict=True)}
-                       for z in places.found)  # fmt: skip
+        others = tuple(
+            {x: float(v) if abs(v) > NOTHING else 0.0 for x, v in zip(unknowns, z, strict=True)} for z in places.found
+        )
         closed = tuple(self._solved(conditions, self._beside(at)) for at in others)
         return replace(family, others=others, closed=closed, complete=places.complete, where=places.where)
 

@@ -62,8 +62,9 @@ def transfer_functions(
     return tuple(found)
 
 
-def _shortened(above: Polynomial, below: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any]
-               ) -> tuple[Polynomial, Polynomial]:  # fmt: skip
+def _shortened(
+    above: Polynomial, below: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any]
+) -> tuple[Polynomial, Polynomial]:
     """Without the factors that they have in common; powers of s alone where that is too much work."""
     a, b = list(above.coefficients), list(below.coefficients)
     while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):

@@ -68,13 +68,12 @@ def _over_turn(field: Field, system: System, e: LinearEquations, turn: Turn) -> 
     F = product(field, T_inverse, total(field, product(field, e.F, T), negative(rate)))
     names = dict(zip(turn.carriers, turn.speeds, strict=True))
     labels = tuple(graph.symbol(NAME + names[j].name) if j in names else q for j, q in enumerate(e.coordinates))
-    return replace(e, coordinates=labels, K=product(field, e.K, T), P=product(field, e.P, T), F=F,
-                   E=product(field, T_inverse, e.E))  # fmt: skip
+    return replace(
+        e, coordinates=labels, K=product(field, e.K, T), P=product(field, e.P, T), F=F, E=product(field, T_inverse, e.E)
+    )
 
 
-def _by_turn(
-    field: Field, system: System, e: LinearEquations, turn: Turn, n: int
-) -> tuple[Matrix, Matrix]:
+def _by_turn(field: Field, system: System, e: LinearEquations, turn: Turn, n: int) -> tuple[Matrix, Matrix]:
     """(T, T') of all coordinates: 1 and 0 for those that are no part of the quaternion."""
     scope = system.scope
     places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]
@@ -112,7 +111,9 @@ def _turned(four: tuple[Node, ...], w: list[Any], e: list[Any], time: Any) -> di
     x, y, z = (s * k for k in w)
     e0, e1, e2, e3 = e
     product_ = (
-        e0 * c - e1 * x - e2 * y - e3 * z, e0 * x + e1 * c + e2 * z - e3 * y,
-        e0 * y - e1 * z + e2 * c + e3 * x, e0 * z + e1 * y - e2 * x + e3 * c,
-    )  # fmt: skip
+        e0 * c - e1 * x - e2 * y - e3 * z,
+        e0 * x + e1 * c + e2 * z - e3 * y,
+        e0 * y - e1 * z + e2 * c + e3 * x,
+        e0 * z + e1 * y - e2 * x + e3 * c,
+    )
     return dict(zip(four, product_, strict=True))

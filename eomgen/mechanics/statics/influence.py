@@ -150,8 +150,10 @@ class _Travelling:
             return self._over_nodes(along)
         spans = list(self._over_bodies(along)) if along else self._chosen()
         if not spans:
-            raise UsageError("influence line: there is no way for the load",
-                             mend='name the bodies or nodes that it passes: "reaction_y(A): I, II"')  # fmt: skip
+            raise UsageError(
+                "influence line: there is no way for the load",
+                mend='name the bodies or nodes that it passes: "reaction_y(A): I, II"',
+            )
         return spans
 
     def _chosen(self) -> Sequence[Span]:

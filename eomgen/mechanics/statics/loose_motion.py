@@ -99,7 +99,10 @@ def _named(block: Block) -> str:
     """Its bodies; of trusses its members, or its nodes."""
     members = [member for _, member in block.members]
     kinds: list[tuple[str, str, Sequence[str]]] = [
-        ("body", "bodies", block.bodies), ("member", "members", members), ("node", "nodes", block.nodes)]
+        ("body", "bodies", block.bodies),
+        ("member", "members", members),
+        ("node", "nodes", block.nodes),
+    ]
     return " and ".join(_of_kind(one, many, names) for one, many, names in kinds if names)
 
 
@@ -138,5 +141,3 @@ def _direction(plan: Plan, vector: Vector) -> str:
 
 def _tuple(scalars: Iterable[Scalar]) -> str:
     return f"({', '.join(to_text(x) for x in scalars)})"
-
-

@@ -151,8 +151,11 @@ def axis_of(motion: Motion, body: str, acting: Sequence[Vector], sizes: Sizes) -
     named = [points[name.rpartition(".")[2]] for name in part.line or _own_points(part)]
     places = _distinct(named if part.line else [*named, *_at_origin(acting), *acting], sizes)
     if len(places) < 2:
-        raise DerivationError(f"body '{body}' has no line along which it could be a beam", f"bodies.{body}",
-                              'give it points, or line = ["A", "B"]')  # fmt: skip
+        raise DerivationError(
+            f"body '{body}' has no line along which it could be a beam",
+            f"bodies.{body}",
+            'give it points, or line = ["A", "B"]',
+        )
     vertices = _distinct(named, sizes)
     if part.line or not _on_one_line(places, sizes):
         vertices = _corners(vertices if part.line else _distinct([*_at_origin(acting), *named], sizes), sizes)

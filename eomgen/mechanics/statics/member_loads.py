@@ -95,8 +95,11 @@ class MemberLoads:
 
     def _placed(self, effect: Effect, what: str) -> Effect:
         if effect.place is None:
-            raise DerivationError(f"{what} acts on '{self.body}' at no point: its section forces depend on where",
-                                  f"bodies.{self.body}", "give the couple its `point`")  # fmt: skip
+            raise DerivationError(
+                f"{what} acts on '{self.body}' at no point: its section forces depend on where",
+                f"bodies.{self.body}",
+                "give the couple its `point`",
+            )
         return effect
 
     def _at(self, effect: Effect) -> At:
@@ -118,8 +121,9 @@ class MemberLoads:
             if self._is_zero((*minus(self._weight(), inertia), field.e[2])):
                 return []
             what = f"how the mass of '{self.body}' is spread along it is not known"
-            raise DerivationError(what, f"bodies.{self.body}",
-                                  'give it the shape "rod", or no mass and a distributed load')  # fmt: skip
+            raise DerivationError(
+                what, f"bodies.{self.body}", 'give it the shape "rod", or no mass and a distributed load'
+            )
         first, last = ends
         r = minus(last, first)
         per_length = over(mass.m, sqrt(self.sizes.simple(dot(r, r))))

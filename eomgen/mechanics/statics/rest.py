@@ -50,14 +50,19 @@ def at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> Stat
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:
     """The dependent coordinates that the ties place, in closed form."""
     numbers: dict[Node, float] = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
-    numbers |= {node: value for node, value in zip(
-        (*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)}  # fmt: skip
+    numbers |= {
+        node: value
+        for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
+    }
     located = Located(numbers, positive_parameters(system.scope))
     found = places_of(substituted(gaps_of(system.ties), state), sought, located)
     missing = [q.name for q in sought if q not in found]
     if missing:
-        raise DerivationError(f"where the ties place '{missing[0]}' has no closed form here",
-                              f"coordinates.{missing[0]}", "give start values at which it has one")  # fmt: skip
+        raise DerivationError(
+            f"where the ties place '{missing[0]}' has no closed form here",
+            f"coordinates.{missing[0]}",
+            "give start values at which it has one",
+        )
     return found
 
 

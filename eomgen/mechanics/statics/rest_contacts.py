@@ -34,8 +34,11 @@ class Condition:
     @property
     def broken(self) -> str:
         """What happens where it is negative."""
-        return {"pushes": f"contact '{self.tie}' would have to pull", "pulls": f"'{self.tie}' would have to push",
-                "sticks": f"contact '{self.tie}' slides: it would need more friction than mu N"}[self.kind]  # fmt: skip
+        return {
+            "pushes": f"contact '{self.tie}' would have to pull",
+            "pulls": f"'{self.tie}' would have to push",
+            "sticks": f"contact '{self.tie}' slides: it would need more friction than mu N",
+        }[self.kind]
 
 
 def modes_at_rest(model: Model) -> Modes:

@@ -115,8 +115,11 @@ class SectionForces:
         """
         before = [p for p in self.pieces if self.sizes.sign(x - p.start) > 0 and self.sizes.sign(p.end - x) >= 0]
         after = [p for p in self.pieces if self.sizes.sign(x - p.start) >= 0 and self.sizes.sign(p.end - x) > 0]
-        found = {name: self.sizes.shortest(pieces[0].value(kind, x))
-                 for name, pieces in (("before", before), ("after", after)) if pieces}  # fmt: skip
+        found = {
+            name: self.sizes.shortest(pieces[0].value(kind, x))
+            for name, pieces in (("before", before), ("after", after))
+            if pieces
+        }
         if not found:
             ends = " to ".join(to_text(x) for x in self.axis.ends)
             raise DerivationError(f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}")
@@ -170,8 +173,11 @@ def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
     x = axis.distance(place)
     if x is None:
         where = ", ".join(to_text(component) for component in place[:2])
-        raise DerivationError(f"something acts on '{axis.body}' at ({where}), off the line along which it is a beam",
-                              f"bodies.{axis.body}", "let its points, or its `line`, follow the bar")  # fmt: skip
+        raise DerivationError(
+            f"something acts on '{axis.body}' at ({where}), off the line along which it is a beam",
+            f"bodies.{axis.body}",
+            "let its points, or its `line`, follow the bar",
+        )
     return x
 
 
@@ -183,8 +189,11 @@ def _spread(axis: MemberAxis, line: Line) -> Iterable[Spread]:
         a, b, length, line = b, a, -length, (line[1], line[0], line[3], line[2])
     r = minus(line[1], line[0])
     if not vanishes(axis.sizes.simple(dot(r, r) - length * length)):
-        raise DerivationError(f"a line load on '{axis.body}' cuts a corner of its axis", f"bodies.{axis.body}",
-                              "give a load for each straight part")  # fmt: skip
+        raise DerivationError(
+            f"a line load on '{axis.body}' cuts a corner of its axis",
+            f"bodies.{axis.body}",
+            "give a load for each straight part",
+        )
     slope = vector_of(axis.sizes.simple(over(y - x, length)) for x, y in zip(line[2], line[3], strict=True))
     yield Spread(a, b, line[2], slope)
 
@@ -207,14 +216,13 @@ def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Sprea
         piece = _piece(sizes, (start, end), leg, (R, T, q, slope))
         yield piece
         length = end - start
-        R = vector_of(sizes.simple(r + length * a + HALF * length * length * b)
-                      for r, a, b in zip(R, q, slope, strict=True))  # fmt: skip
+        R = vector_of(
+            sizes.simple(r + length * a + HALF * length * length * b) for r, a, b in zip(R, q, slope, strict=True)
+        )
         T = sizes.simple(-piece.value("bending_moment", end))
 
 
-def _piece(
-    sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]
-) -> Piece:
+def _piece(sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]) -> Piece:
     """N, V, M from the resultant R and moment T before, and the load q + slope s."""
     R, T, q, slope = acting
     t, n = leg.along, leg.left

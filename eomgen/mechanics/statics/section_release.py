@@ -56,8 +56,9 @@ class Cut:
 def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     """The released section: N shifts along t, V across, -n, M turns by 1."""
     if not 2 <= len(call.args) <= 3:
-        raise UsageError(f"influence line: {call}: a body and a place along it are asked for",
-                         mend=f'ask "{call.name}(body, x)"')  # fmt: skip
+        raise UsageError(
+            f"influence line: {call}: a body and a place along it are asked for", mend=f'ask "{call.name}(body, x)"'
+        )
     body, where, *side = call.args
     motion, names = structure.system.motion, structure.system.scope.names
     name = named(body)
@@ -105,8 +106,9 @@ def _power(structure: Structure, cut: Cut, effect: Effect, owner: str) -> Scalar
     place = place_of(structure.components, effect, owner)
     s = None if place is None else cut.axis.distance(place)
     if place is None or s is None:
-        raise DerivationError(f"'{owner}' acts on '{cut.axis.body}' off its axis: it has no section forces",
-                              f"bodies.{cut.axis.body}")  # fmt: skip
+        raise DerivationError(
+            f"'{owner}' acts on '{cut.axis.body}' off its axis: it has no section forces", f"bodies.{cut.axis.body}"
+        )
     if not cut.before(s):
         return 0
     position = structure.system.motion.position((cut.axis.body, place))

@@ -86,5 +86,8 @@ def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
     names = ", ".join(f"'{p.name}'" for p in balance.unknowns)
     freedoms = len(balance.system.symbols.u) - len(balance.system.ties.closing)
     how_many = f"; there are {freedoms} freedoms for {len(balance.unknowns)}" if freedoms > 0 else ""
-    return DerivationError(f"the bodies are not in balance at rest, whatever {names} may be{how_many}", "unknowns",
-                           "hold every freedom by a constraint or by an unknown in a load, or start in equilibrium")
+    return DerivationError(
+        f"the bodies are not in balance at rest, whatever {names} may be{how_many}",
+        "unknowns",
+        "hold every freedom by a constraint or by an unknown in a load, or start in equilibrium",
+    )

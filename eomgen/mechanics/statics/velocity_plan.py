@@ -1,7 +1,7 @@
 """Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.
 
-    v(P) = v_C + w x r_CP,   power of a force F at P: F . v(P),   of a couple M: M . w,
-    of a line load q: the integral of q(s) . v(s) ds
+v(P) = v_C + w x r_CP,   power of a force F at P: F . v(P),   of a couple M: M . w,
+of a line load q: the integral of q(s) . v(s) ds
 """
 
 from __future__ import annotations
@@ -207,4 +207,3 @@ class Plan:
         R = substituted([x for row in self.system.motion.link(body).pose.R for x in row], self.at)
         rotation = (vector_of(R[0:3]), vector_of(R[3:6]), vector_of(R[6:9]))
         return apply(rotation, vector)
-

@@ -77,8 +77,12 @@ class WorkEquation:
 def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
     """Every load: forces, couples, line loads, weights at the mass centres, drives and springs of joints."""
     system = structure.system
-    found = [Acting(force.name, load) for force in system.loads.applied
-             for load in force.spread or force.loads if isinstance(load, (PointForce, Couple, SpreadLoad))]  # fmt: skip
+    found = [
+        Acting(force.name, load)
+        for force in system.loads.applied
+        for load in force.spread or force.loads
+        if isinstance(load, (PointForce, Couple, SpreadLoad))
+    ]
     for force in system.loads.applied:
         for load in force.loads:
             if isinstance(load, UniformField):
@@ -111,9 +115,7 @@ def unknown_by_virtual_work(structure: Structure, unknown: Node) -> WorkEquation
     return _equation(structure, unknown.name, {structure.index(unknown.name): 1}, 0)
 
 
-def _equation(
-    structure: Structure, name: str, combination: Mapping[int, Scalar], given: Scalar
-) -> WorkEquation | None:
+def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar], given: Scalar) -> WorkEquation | None:
     if not structure.determines(combination):
         return None
     plan = structure.released(combination)
@@ -122,7 +124,8 @@ def _equation(
     still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or are what is asked
     loads = loads_at_rest(structure)
     works = substituted(tuple(load.work(plan) for load in loads), still)
-    terms = tuple(Term(load, plan.simple(work)) for load, work in zip(loads, works, strict=True)
-                  if not plan.vanishes((work,)))  # fmt: skip
+    terms = tuple(
+        Term(load, plan.simple(work)) for load, work in zip(loads, works, strict=True) if not plan.vanishes((work,))
+    )
     total = sum((term.work for term in terms), start=0)
     return WorkEquation(name, plan, along, terms, given, plan.simple(over(-total, along) + given))

@@ -93,8 +93,11 @@ def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Finding]:
             what = f"'{joint.at}' is a point of the ground, but the joint of body '{name}' hangs on '{joint.on}'"
             yield Finding((*path, "at"), what, f'write on = "{joint.on}.point", or give coordinates in its axes')
     if space == "plane" and joint.kind in SPACE_ONLY:
-        yield Finding((*path, "kind"), f"a {joint.kind} joint needs space, but the model is in the plane",
-                      'use "revolute", "prismatic" or "free"')  # fmt: skip
+        yield Finding(
+            (*path, "kind"),
+            f"a {joint.kind} joint needs space, but the model is in the plane",
+            'use "revolute", "prismatic" or "free"',
+        )
     elif joint.kind in ("placed", "spherical", "free"):
         yield from _free(catalog, name, joint, path, space)
     elif joint.kind == "path":
@@ -124,8 +127,11 @@ def _orientation(catalog: Catalog, name: str, joint: Any, path: Path) -> Iterato
     if orientation is None:
         for key in ("angles", "quaternion"):
             if getattr(joint, key) is not None and (*path, "orientation") not in catalog.broken:
-                yield Finding(path, f"the joint of body '{name}' has '{key}' but no 'orientation'",
-                              f'orientation = "{"zxz" if key == "angles" else key}"')  # fmt: skip
+                yield Finding(
+                    path,
+                    f"the joint of body '{name}' has '{key}' but no 'orientation'",
+                    f'orientation = "{"zxz" if key == "angles" else key}"',
+                )
         return
     needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
     if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:

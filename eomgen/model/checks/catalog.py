@@ -34,8 +34,13 @@ class Catalog:
     @cached_property
     def symbols(self) -> dict[str, str]:
         """What each name of an expression is: {"m": "parameter", ...}."""
-        kinds = {"parameters": "parameter", "coordinates": "coordinate", "speeds": "speed", "inputs": "input",
-                 "unknowns": "unknown"}  # fmt: skip
+        kinds = {
+            "parameters": "parameter",
+            "coordinates": "coordinate",
+            "speeds": "speed",
+            "inputs": "input",
+            "unknowns": "unknown",
+        }
         named = {name: kinds[table] for table in reversed(SYMBOL_TABLES) for name in self.table(table)}
         return {**named, "t": "time", "pi": "constant"}
 
@@ -54,9 +59,14 @@ class Catalog:
         time = constant | {"t"}
         motion = time | q | rates | speeds | frozenset(self.table("inputs"))
         return {
-            PARAMETERS: constant, TIME: time, CONFIGURATION: time | q, RATES: time | q | rates,
-            SPEEDS: time | q | rates | speeds, MOTION: motion, "": motion | accelerations,
-        }  # fmt: skip
+            PARAMETERS: constant,
+            TIME: time,
+            CONFIGURATION: time | q,
+            RATES: time | q | rates,
+            SPEEDS: time | q | rates | speeds,
+            MOTION: motion,
+            "": motion | accelerations,
+        }
 
     @cached_property
     def expressions(self) -> tuple[tuple[Leaf, Expression], ...]:

@@ -115,5 +115,6 @@ def _inertia(path: Path, name: str, composite: Composite) -> Iterator[Finding]:
     if not possible(moments, size):
         told = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
-        yield Finding(path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of",
-                      key=True)  # fmt: skip
+        yield Finding(
+            path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of", key=True
+        )

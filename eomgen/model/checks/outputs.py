@@ -30,19 +30,34 @@ def _along(*names: str) -> tuple[str, ...]:
 AXES = ("x", "y", "z")
 _BY_SIGNATURE = (
     (Signature(("point", "body", "body"), 1), _along("*", "v*", "a*")),
-    (Signature(("point", "body"), 1),
-     ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius")),
-    (Signature(("point", "body", "body"), 2),
-     _along("transport_v*", "transport_a*", "coriolis_a*", "euler_a*", "centripetal_a*")),
-    (Signature(("point", "body"), 2),
-     ("transport_speed", "transport_acceleration", "coriolis_acceleration", "euler_acceleration",
-      "centripetal_acceleration")),
+    (
+        Signature(("point", "body"), 1),
+        ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius"),
+    ),
+    (
+        Signature(("point", "body", "body"), 2),
+        _along("transport_v*", "transport_a*", "coriolis_a*", "euler_a*", "centripetal_a*"),
+    ),
+    (
+        Signature(("point", "body"), 2),
+        (
+            "transport_speed",
+            "transport_acceleration",
+            "coriolis_acceleration",
+            "euler_acceleration",
+            "centripetal_acceleration",
+        ),
+    ),
     (Signature(("body",), 1), ("acceleration_pole_x", "acceleration_pole_y")),
     (Signature(("point", "point"), 2), ("least_speed",)),
-    (Signature(("body", "body"), 1),
-     ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y", *_along("omega_*", "epsilon_*"))),
-    (Signature(("reaction", "body"), 1),
-     ("reaction_n", "reaction_t", "reaction_s", "reaction_couple", *_along("reaction_*", "reaction_couple_*"))),
+    (
+        Signature(("body", "body"), 1),
+        ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y", *_along("omega_*", "epsilon_*")),
+    ),
+    (
+        Signature(("reaction", "body"), 1),
+        ("reaction_n", "reaction_t", "reaction_s", "reaction_couple", *_along("reaction_*", "reaction_couple_*")),
+    ),
     (Signature(("tie or truss", "any", "any"), 1), ("tension",)),
     (Signature(("tie",), 1), ("multiplier",)),
     (Signature(("body", "number", "side"), 2), ("axial_force", "shear_force", "bending_moment")),
@@ -58,7 +73,7 @@ _BY_SIGNATURE = (
     (Signature(("coordinate or speed",), 1), ("momentum",)),
     (Signature(("coordinate", "coordinate"), 2), ("mass", "damping", "stiffness")),
     (Signature(("number",), 1), ("frequency",)),
-)  # fmt: skip
+)
 SIDES = ("before", "after")
 FUNCTIONS = {name: signature for signature, names in _BY_SIGNATURE for name in names}
 """The functions of the motion, by name."""
@@ -163,10 +178,13 @@ def _names_in(catalog: Catalog, expression: Expression, column: int) -> tuple[st
 
 def _known(catalog: Catalog, kind: str) -> list[str]:
     tables = {
-        "body": ("bodies",), "body or force": ("bodies", "forces"), "coordinate": ("coordinates",),
-        "coordinate or speed": ("coordinates", "speeds"), "tie": ("constraints",),
+        "body": ("bodies",),
+        "body or force": ("bodies", "forces"),
+        "coordinate": ("coordinates",),
+        "coordinate or speed": ("coordinates", "speeds"),
+        "tie": ("constraints",),
         "tie or truss": ("constraints", "trusses"),
-    }[kind]  # fmt: skip
+    }[kind]
     names = [name for table in tables for name in catalog.table(table)]
     return [*names, "ground"] if kind == "body" else names
 

@@ -88,7 +88,7 @@ def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
         what = f"joint of body '{body}' hangs on a body that was never declared: '{owner}'"
         mend = nearest(owner, [b for b in catalog.table("bodies") if b != body])
         if owner == "ground" or owner in catalog.table("points"):
-            mend = "leave out 'on' for the ground" + ("" if owner == "ground" else f", and write at = \"{owner}\"")
+            mend = "leave out 'on' for the ground" + ("" if owner == "ground" else f', and write at = "{owner}"')
         yield Finding(leaf.path, what, mend, 0, len(owner))
     elif dot:
         yield from _told(leaf, _missing_own(catalog, owner, name, len(owner) + 1))

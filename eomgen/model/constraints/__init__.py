@@ -17,6 +17,18 @@ from eomgen.model.constraints.support import Support
 ALL = (Pin, Support, Clamp, Guide, Slider, Link, Rolling, Skate, String, Gear, Equation, Motion)
 
 __all__ = [
-    "ALL", "Clamp", "Constraint", "Equation", "Gear", "Guide", "Link", "Motion", "Pin", "Rolling", "Skate", "Slider",
-    "String", "Support",
-]  # fmt: skip
+    "ALL",
+    "Clamp",
+    "Constraint",
+    "Equation",
+    "Gear",
+    "Guide",
+    "Link",
+    "Motion",
+    "Pin",
+    "Rolling",
+    "Skate",
+    "Slider",
+    "String",
+    "Support",
+]

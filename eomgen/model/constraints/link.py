@@ -46,6 +46,9 @@ class Link(Constraint):
         square = scene.start(dot(r, r))
         if scene.worth(square) == 0 or scene.vanishes(square):
             ends = " and ".join(f"'{point}'" for point in self.points)
-            raise ModelError(f"{ends} are at one place at the start: the link has no length there", scene.where,
-                             "give its 'length', or use a pin")  # fmt: skip
+            raise ModelError(
+                f"{ends} are at one place at the start: the link has no length there",
+                scene.where,
+                "give its 'length', or use a pin",
+            )
         return sqrt(square)

@@ -1,8 +1,8 @@
 """Functions of points and bodies in an equation: what each is worth, and what pushes along it.
 
-    x(P), x(P, B)         e . p_P,  e . (p_P - p_B):  a force along e on P, its opposite at the same place on B
-    angle(A), angle(A, B)    a couple about z on A, its opposite on B
-    vx(P, B), omega_x(A, B)  the same pushes; e is an axis of the ground, or of the body B from which it is seen
+x(P), x(P, B)         e . p_P,  e . (p_P - p_B):  a force along e on P, its opposite at the same place on B
+angle(A), angle(A, B)    a couple about z on A, its opposite on B
+vx(P, B), omega_x(A, B)  the same pushes; e is an axis of the ground, or of the body B from which it is seen
 """
 
 from __future__ import annotations
@@ -59,8 +59,11 @@ class Measured:
         """x, y or z of the ground or of the body from which it is seen; in the plane a body turns about z."""
         k = "xyz".find(self.call.name[-1])
         if k < 0 and not self.scene.plane:
-            raise ModelError(f"'{self.call}': a body has no single angle in space", self.scene.where,
-                             "write omega_x, omega_y or omega_z, or the coordinate of its joint")  # fmt: skip
+            raise ModelError(
+                f"'{self.call}': a body has no single angle in space",
+                self.scene.where,
+                "write omega_x, omega_y or omega_z, or the coordinate of its joint",
+            )
         e = IDENTITY[k]
         return e if self._frame is None else apply(self.scene.orientation(self._frame), e)
 

@@ -55,8 +55,11 @@ class Members(Constraint):
         first, second = (scene.position(scene.place(point)) for point in ends)
         r = minus(second, first)
         if all(scene.vanishes(x) or scene.worth(x) == 0 for x in r):
-            raise ModelError(f"member '{member}' of truss '{self.truss}' has no length", scene.where,
-                             "its two nodes are at one place: move one of them, or make them one")  # fmt: skip
+            raise ModelError(
+                f"member '{member}' of truss '{self.truss}' has no length",
+                scene.where,
+                "its two nodes are at one place: move one of them, or make them one",
+            )
         (row,) = Link(points=ends).rows(scene)
         if scene.moves(r):
             return replace(row, part=member)

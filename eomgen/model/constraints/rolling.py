@@ -105,8 +105,11 @@ class Rolling(Constraint):
             return wheel_on_ball(scene, found, center, body)
         if isinstance(body, Ball):
             return on_curved(scene, found, center, body)
-        raise ModelError(f"'{self.body}' is no ball: where it touches something curved is not derived", scene.where,
-                         "let it roll on a plane, or leave out 'axis' and 'ellipsoid'")  # fmt: skip
+        raise ModelError(
+            f"'{self.body}' is no ball: where it touches something curved is not derived",
+            scene.where,
+            "let it roll on a plane, or leave out 'axis' and 'ellipsoid'",
+        )
 
     def _curved(self, scene: Scene) -> Curved:
         if self.circle is not None:

@@ -69,8 +69,11 @@ class Wheel:
         """
         a, rho = self._axle(scene), self.tilt(scene, n)
         if abs(_worth(scene, rho)) < FLAT:
-            raise ModelError(f"'{self.body}' lies flat at the start: its whole rim touches", scene.where,
-                             "start it upright or leaning; an axis along the normal has no lowest point")  # fmt: skip
+            raise ModelError(
+                f"'{self.body}' lies flat at the start: its whole rim touches",
+                scene.where,
+                "start it upright or leaning; an axis along the normal has no lowest point",
+            )
         down = times(over(-self.R, rho), cross(a, cross(n, a)))
         return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
 
@@ -84,8 +87,11 @@ class Wheel:
         """
         h, size = self._across(scene, out), self.distance(scene, out)
         if abs(_worth(scene, size)) < FLAT * abs(_worth(scene, self.R)):
-            raise ModelError(f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
-                             scene.where, "start it leaning")  # fmt: skip
+            raise ModelError(
+                f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
+                scene.where,
+                "start it leaning",
+            )
         return times(over(-side * self.R, size), h)
 
     def distance(self, scene: Scene, out: Vector) -> Scalar:

@@ -45,7 +45,9 @@ class Slider(Constraint):
         touch, sense = (Touch(place), Touch(line[0], arm)), 1
         if place[0] is None:
             touch, sense = (touch[1], touch[0]), -1
-        rows = [TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
-                for name, n in normals_of(scene, d)]  # fmt: skip
+        rows = [
+            TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
+            for name, n in normals_of(scene, d)
+        ]
         rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
         return tuple(rows)

@@ -130,8 +130,11 @@ def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
     rest = square if _zero(h) else square - h * h
     span = scene.worth(rest)
     if span is not None and span <= 0:
-        raise ModelError(f"there is no straight strand between {_names(first, second)} at the start", scene.where,
-                         "put them apart, or give the directions in 'strands'")  # fmt: skip
+        raise ModelError(
+            f"there is no straight strand between {_names(first, second)} at the start",
+            scene.where,
+            "put them apart, or give the directions in 'strands'",
+        )
     length = sqrt(rest)
     if _zero(h):
         return Strand(first, second, _over(D, length), length)
@@ -170,8 +173,11 @@ def _along(first: Stop, second: Stop) -> int:
     for sense in (1, -1):
         if all(map(first.scene.vanishes, minus(first.axis, times(sense, second.axis)))):
             return sense
-    raise ModelError(f"the axes of {_names(first, second)} are not parallel", first.scene.where,
-                     "lead the string over an eyelet, a point, between them")  # fmt: skip
+    raise ModelError(
+        f"the axes of {_names(first, second)} are not parallel",
+        first.scene.where,
+        "lead the string over an eyelet, a point, between them",
+    )
 
 
 def _refuse_out_of_plane(scene: Scene, first: Stop, second: Stop, d: Vector) -> None:
@@ -219,8 +225,11 @@ def side_rows(scene: Scene, strand: Strand) -> list[TieRow]:
             continue
         if not scene.moves((gap,)):
             what = f"the strand between {_names(first, second)} cannot have the direction given"
-            raise ModelError(f"{what}: its ends are not in line", scene.where,
-                             "move one of them across the strand, or exchange 'cw' and 'ccw'")  # fmt: skip
+            raise ModelError(
+                f"{what}: its ends are not in line",
+                scene.where,
+                "move one of them across the strand, or exchange 'cw' and 'ccw'",
+            )
         rows.append(TieRow((PointForce(first.place, n), PointForce(second.place, times(-1, n))), gap, component=name))
     return rows
 

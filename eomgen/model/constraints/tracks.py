@@ -126,8 +126,9 @@ def _apart(scene: Scene, track: Curved, R: Scalar) -> Scalar:
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
     if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
-        raise ModelError("the body is as large as the circle in which it should roll", scene.where,
-                         "give the circle a larger radius")  # fmt: skip
+        raise ModelError(
+            "the body is as large as the circle in which it should roll", scene.where, "give the circle a larger radius"
+        )
     return D
 
 

@@ -14,11 +14,31 @@ from eomgen.model.forces.torsion_damper import TorsionDamper
 from eomgen.model.forces.torsion_spring import TorsionSpring
 
 ALL = (
-    Gravity, PointForce, CoupleForce, Distributed, Spring, Damper, TorsionSpring, TorsionDamper, Between, Potential,
+    Gravity,
+    PointForce,
+    CoupleForce,
+    Distributed,
+    Spring,
+    Damper,
+    TorsionSpring,
+    TorsionDamper,
+    Between,
+    Potential,
     Generalized,
-)  # fmt: skip
+)
 
 __all__ = [
-    "ALL", "Between", "CoupleForce", "Damper", "Distributed", "Force", "Generalized", "Gravity", "PointForce",
-    "Potential", "Spring", "TorsionDamper", "TorsionSpring",
-]  # fmt: skip
+    "ALL",
+    "Between",
+    "CoupleForce",
+    "Damper",
+    "Distributed",
+    "Force",
+    "Generalized",
+    "Gravity",
+    "PointForce",
+    "Potential",
+    "Spring",
+    "TorsionDamper",
+    "TorsionSpring",
+]

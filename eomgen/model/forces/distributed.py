@@ -51,8 +51,11 @@ class Distributed(Force):
         length = _length(line)
         if is_zero(length) or scene.worth(length) == 0:
             ends = " and ".join(f"'{name}'" for name in self.between)
-            raise ModelError(f"{ends} are at one place: a load along a line needs a length", scene.where,
-                             "name two points, or put a force there")  # fmt: skip
+            raise ModelError(
+                f"{ends} are at one place: a load along a line needs a length",
+                scene.where,
+                "name two points, or put a force there",
+            )
         return (line,)
 
 

@@ -16,6 +16,20 @@ from eomgen.model.joints.universal import Universal
 ALL = (Fixed, Revolute, Prismatic, Cylindrical, Screw, Universal, Planar, Spherical, Free, Placed, Path)
 
 __all__ = [
-    "ALL", "Cylindrical", "Effort", "Fixed", "Free", "Joint", "Path", "PathPiece", "Placed", "Planar", "Prismatic",
-    "Revolute", "Screw", "Spherical", "Turned", "Universal",
-]  # fmt: skip
+    "ALL",
+    "Cylindrical",
+    "Effort",
+    "Fixed",
+    "Free",
+    "Joint",
+    "Path",
+    "PathPiece",
+    "Placed",
+    "Planar",
+    "Prismatic",
+    "Revolute",
+    "Screw",
+    "Spherical",
+    "Turned",
+    "Universal",
+]

@@ -140,10 +140,16 @@ class Path(Joint):
         """The same path with one of its pieces alone (from 0), which goes on before its beginning and after its end."""
         stretch = self.stretches(_itself)[number]
         kept = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
-        return made(OnePiece, kept | {
-            "along": _expression(self.along - stretch.start), "heading": _expression(stretch.heading),
-            "pieces": (self.pieces[number],), "begin": tuple(_expression(x) for x in stretch.begin[:2]),
-        })  # fmt: skip
+        return made(
+            OnePiece,
+            kept
+            | {
+                "along": _expression(self.along - stretch.start),
+                "heading": _expression(stretch.heading),
+                "pieces": (self.pieces[number],),
+                "begin": tuple(_expression(x) for x in stretch.begin[:2]),
+            },
+        )
 
     def _begin(self, value: Value) -> Vector:
         return (0, 0, 0)

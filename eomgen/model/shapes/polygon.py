@@ -10,9 +10,7 @@ from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
 from eomgen.symbolic.expressions import Expression
 from eomgen.symbolic.functions import function, over
 
-Vertices = Annotated[
-    tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=2), least=3)
-]  # fmt: skip
+Vertices = Annotated[tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=2), least=3)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +56,13 @@ def _edge_sums(corners: list[tuple[Any, Any]]) -> tuple[Any, ...]:
     for (x1, y1), (x2, y2) in zip(corners, corners[1:] + corners[:1], strict=True):
         k = x1 * y2 - x2 * y1
         terms = (
-            k, (x1 + x2) * k, (y1 + y2) * k, (y1 * y1 + y1 * y2 + y2 * y2) * k, (x1 * x1 + x1 * x2 + x2 * x2) * k,
+            k,
+            (x1 + x2) * k,
+            (y1 + y2) * k,
+            (y1 * y1 + y1 * y2 + y2 * y2) * k,
+            (x1 * x1 + x1 * x2 + x2 * x2) * k,
             (x1 * y2 + 2 * x1 * y1 + 2 * x2 * y2 + x2 * y1) * k,
-        )  # fmt: skip
+        )
         sums = [total + term for total, term in zip(sums, terms, strict=True)]
     return tuple(sums)
 

@@ -13,7 +13,7 @@ from eomgen.symbolic.spatial import Vector, cross, dot, minus, vector_of
 
 Corners = Annotated[
     tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=3), least=4, most=4)
-]  # fmt: skip
+]
 
 
 @dataclass(frozen=True, kw_only=True)

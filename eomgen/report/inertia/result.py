@@ -41,8 +41,10 @@ from eomgen.symbolic.graph import is_zero
 from eomgen.symbolic.spatial import IDENTITY, Vector, minus
 from eomgen.symbolic.text import text_size, to_text
 
-TENSOR = Law("I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
-             r"I_{xx} = \int (y^{2} + z^{2})\,dm,\ I_{xy} = -\int x y\,dm")  # fmt: skip
+TENSOR = Law(
+    "I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
+    r"I_{xx} = \int (y^{2} + z^{2})\,dm,\ I_{xy} = -\int x y\,dm",
+)
 POLAR = Law("J_P = integral r^2 dm", r"J_{P} = \int r^{2}\,dm")
 PLANAR = Law("P_x = integral x^2 dm", r"P_{x} = \int x^{2}\,dm")
 TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
@@ -168,8 +170,14 @@ class _Report:
         scope = self.system.scope
         model = scope.model
         first = (setting_steps(self.system)[0], _conventions())
-        derivation = Derivation(model.name, model.about or "", model.source or "", model.space, "inertia",
-                                (*first, *(step for step, _, _ in made)))  # fmt: skip
+        derivation = Derivation(
+            model.name,
+            model.about or "",
+            model.source or "",
+            model.space,
+            "inertia",
+            (*first, *(step for step, _, _ in made)),
+        )
         values = {name: self._value(r) for name, r in named_results(results).items()}
         return Inertia(self.system, values, axes, derivation)
 
@@ -208,8 +216,11 @@ class _Report:
         """The bodies together about a point, and about an axis through it."""
         point, name, axis = self._point_and_axis()
         if silent := shapeless(self.system.motion, bodies):
-            raise ModelError(f"body '{silent[0]}' has a mass and no inertia", f"bodies.{silent[0]}",
-                             "give 'inertia' (0 for a point), or a shape; or leave it out: --body")  # fmt: skip
+            raise ModelError(
+                f"body '{silent[0]}' has a mass and no inertia",
+                f"bodies.{silent[0]}",
+                "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
+            )
         flat = bool(flat_bodies(self.system.motion, bodies))
         section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False)
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
@@ -248,8 +259,16 @@ def together_mass(system: System, body: str) -> Any:
 
 def _conventions() -> Step:
     words: Iterable[Any] = (
-        "I is the inertia tensor, ", TENSOR, ". The product of inertia of the textbooks has the other sign, ", TEXTBOOK,
-        "; ", Law("J_x = I_xx", "J_{x} = I_{xx}"), " is the moment about x, ", POLAR, " that about the point, ", PLANAR,
+        "I is the inertia tensor, ",
+        TENSOR,
+        ". The product of inertia of the textbooks has the other sign, ",
+        TEXTBOOK,
+        "; ",
+        Law("J_x = I_xx", "J_{x} = I_{xx}"),
+        " is the moment about x, ",
+        POLAR,
+        " that about the point, ",
+        PLANAR,
         " that about the plane across x. In SI units.",
-    )  # fmt: skip
+    )
     return Step("conventions", "Conventions", (Prose(tuple(words)),))

@@ -115,10 +115,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
         return
     count = 2 if section.plane else 3
     head: tuple[Cell, ...] = ("", lettered("m"), *(lettered(f"{axis}_C") for axis in AXES[:count]))
-    rows = [
-        (row.label, row.sign * row.mass.m, *row.mass.com[:count])
-        for row in section.sum.rows
-    ]
+    rows = [(row.label, row.sign * row.mass.m, *row.mass.com[:count]) for row in section.sum.rows]
     yield grid(section, head, rows)
 
 
@@ -144,8 +141,10 @@ def _plus(I: Matrix, i: int, j: int) -> Scalar:
     return I[i][j] if i == j else -I[i][j]
 
 
-STEINER = Law("J_x + m (d_y^2 + d_z^2), J_xy + m d_x d_y, and so on",
-              r"J_{x} + m (d_{y}^{2} + d_{z}^{2}),\ J_{xy} + m d_{x} d_{y}, \dots")  # fmt: skip
+STEINER = Law(
+    "J_x + m (d_y^2 + d_z^2), J_xy + m d_x d_y, and so on",
+    r"J_{x} + m (d_{y}^{2} + d_{z}^{2}),\ J_{xy} + m d_{x} d_{y}, \dots",
+)
 
 
 def _columns(section: Section) -> list[tuple[int, int]]:

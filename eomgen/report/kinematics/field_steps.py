@@ -146,8 +146,9 @@ def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> 
 
 def _in_plane(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
     yield from tabled(NUMBERS, [(m.body, shown(m.field.w[2]), shown(m.field.e[2])) for m in moving])
-    yield Prose(("From the origin of the body to its centre of rotation ", CENTER, ", to its pole of accelerations ",
-                 POLE, ":"))  # fmt: skip
+    yield Prose(
+        ("From the origin of the body to its centre of rotation ", CENTER, ", to its pole of accelerations ", POLE, ":")
+    )
     yield from tabled(PLACES, [(m.body, *_pair(m.center, shown), *_pair(m.pole, shown)) for m in moving])
     circles = tuple(row for m in moving for row in _inflection(m, shown))
     if circles:
@@ -164,8 +165,13 @@ def _inflection(motion: BodyMotion, shown: Shown) -> Iterator[tuple[Cell, ...]]:
 def _in_space(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
     rows = [(f"{m.body}, {AXES[i]}", shown(m.field.w[i]), shown(m.field.e[i])) for m in moving for i in range(3)]
     yield from tabled(VECTORS, rows)
-    yield Prose(("The two invariants of the field; the axis of the motion at this instant goes through the point ",
-                 CENTER, " from the origin of the body, the advance along it per radian is omega.v/omega.omega:"))
+    yield Prose(
+        (
+            "The two invariants of the field; the axis of the motion at this instant goes through the point ",
+            CENTER,
+            " from the origin of the body, the advance along it per radian is omega.v/omega.omega:",
+        )
+    )
     yield from tabled(INVARIANTS, [(m.body, *map(shown, m.invariants)) for m in moving])
 
 
@@ -222,9 +228,10 @@ def _payload(motion: BodyMotion, centrodes: Centrodes | None) -> dict[str, Any]:
         "center": _texts(motion.center),
         "pole": _texts(motion.pole),
         "least_speed": None if motion.slowest is None else to_text(motion.slowest[2]),
-        "centrodes": None if centrodes is None
+        "centrodes": None
+        if centrodes is None
         else {"fixed": _texts(centrodes.fixed), "moving": _texts(centrodes.moving)},
-    }  # fmt: skip
+    }
 
 
 def _texts(place: Vector | None) -> list[str] | None:

@@ -121,8 +121,15 @@ class _Panels:
                 places.setdefault((round(x, 9), round(y, 9)), []).append(center.name)
         for place, names in places.items():
             panel.plot(*place, marker="x", markersize=8, color=CENTER, zorder=8)
-            panel.annotate(" ".join(names).replace("$", r"\$"), place, xytext=(6, -11), textcoords="offset points",
-                           fontsize=8, color=CENTER, zorder=8)  # fmt: skip
+            panel.annotate(
+                " ".join(names).replace("$", r"\$"),
+                place,
+                xytext=(6, -11),
+                textcoords="offset points",
+                fontsize=8,
+                color=CENTER,
+                zorder=8,
+            )
         return far
 
     def _is_far(self, place: Place) -> bool:
@@ -152,8 +159,11 @@ class _Panels:
         """(colour, extent along the axis, slope, value at 0) of the velocity across the axis, of every moving block."""
         found = []
         for color, block, bodies in self._blocks():
-            places = [at[axis] for names, at, _ in self.points
-                      if any(each.partition(".")[0] in bodies for each in names.split(", "))]  # fmt: skip
+            places = [
+                at[axis]
+                for names, at, _ in self.points
+                if any(each.partition(".")[0] in bodies for each in names.split(", "))
+            ]
             c = self.mechanism.fields[block]
             w = self.number(c[2])
             line = (-w, self.number(c[1])) if axis else (w, -self.number(c[0]))

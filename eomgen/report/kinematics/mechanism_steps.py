@@ -22,10 +22,12 @@ LONGEST = 60  # characters of a value in a table
 LONGEST_NUMBER = 12
 DIGITS = 6
 PUSHES = {
-    "n": "the normal through '{}'", "tension": "the line of '{}'", "t": "the line of contact of '{}'",
+    "n": "the normal through '{}'",
+    "tension": "the line of '{}'",
+    "t": "the line of contact of '{}'",
     "couple": "the line at infinity, as '{}' lets nothing turn",
     POINT: "the line at infinity, as '{}' is a point that does not turn",
-}  # fmt: skip
+}
 
 
 def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
@@ -44,12 +46,19 @@ def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
 
 def _mechanism(state: KinematicState) -> Step:
     number, formula = state.formula
-    statements: list[Statement] = [Prose((
-        f"{count(state.freedoms, 'degree')} of freedom by the rank of the constraints {state.when}; ",
-        f"by count {formula} = {number}" if formula else "", "." if number == state.freedoms else
-        ": the count takes constraints for independent that are not." if number < state.freedoms else
-        ": the count does not see what coordinates hold by themselves.",
-    ))]  # fmt: skip
+    statements: list[Statement] = [
+        Prose(
+            (
+                f"{count(state.freedoms, 'degree')} of freedom by the rank of the constraints {state.when}; ",
+                f"by count {formula} = {number}" if formula else "",
+                "."
+                if number == state.freedoms
+                else ": the count takes constraints for independent that are not."
+                if number < state.freedoms
+                else ": the count does not see what coordinates hold by themselves.",
+            )
+        )
+    ]
     if state.given:
         statements.append(Prose(("Given: " + ", ".join(state.given) + ".",)))
     if state.symbol is not None:
@@ -86,8 +95,13 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
         "hinge is the centre of its two bodies; a force that a tie can bear between two bodies passes through theirs; "
         "the three centres of any three bodies are in one line."
     )
-    agree = (f"The drawing and the velocities DISAGREE on {state.disagreement}." if state.disagreement else
-             "The velocities below have the same centres." if state.found else "")  # fmt: skip
+    agree = (
+        f"The drawing and the velocities DISAGREE on {state.disagreement}."
+        if state.disagreement
+        else "The velocities below have the same centres."
+        if state.found
+        else ""
+    )
     words = (Prose((theory,)), Grid(("centre", lettered("x"), lettered("y"), "where"), rows))
     return Step("centers", "Centres of rotation", (*words, *((Prose((agree,)),) if agree else ())))
 
@@ -171,19 +185,27 @@ def _pair(pair: Pair) -> str:
 
 def _velocities(state: KinematicState) -> Step:
     sense = "counter-clockwise positive" if state.plane else "ground axes"
-    return Step("velocities", "Velocities", (
-        *_spins(state, f"Angular velocities, {sense}:", "omega", {n: f.w for n, f in state.turning.items()}),
-        Prose(("Velocities of points, ground axes:",)),
-        _vectors(state, "v", [(names, v) for names, _, v, _ in state.points]),
-    ))  # fmt: skip
+    return Step(
+        "velocities",
+        "Velocities",
+        (
+            *_spins(state, f"Angular velocities, {sense}:", "omega", {n: f.w for n, f in state.turning.items()}),
+            Prose(("Velocities of points, ground axes:",)),
+            _vectors(state, "v", [(names, v) for names, _, v, _ in state.points]),
+        ),
+    )
 
 
 def _accelerations(state: KinematicState) -> Step:
-    return Step("accelerations", "Accelerations", (
-        *_spins(state, "Angular accelerations:", "epsilon", {n: f.e for n, f in state.turning.items()}),
-        Prose(("Accelerations of points, ground axes:",)),
-        _vectors(state, "a", [(names, a) for names, _, _, a in state.points if a is not None]),
-    ))  # fmt: skip
+    return Step(
+        "accelerations",
+        "Accelerations",
+        (
+            *_spins(state, "Angular accelerations:", "epsilon", {n: f.e for n, f in state.turning.items()}),
+            Prose(("Accelerations of points, ground axes:",)),
+            _vectors(state, "a", [(names, a) for names, _, _, a in state.points if a is not None]),
+        ),
+    )
 
 
 def _spins(state: KinematicState, words: str, letter: str, spins: Mapping[str, Vector]) -> tuple[Statement, ...]:

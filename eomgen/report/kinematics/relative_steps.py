@@ -1,6 +1,6 @@
 """Composition -> the steps about the motion of a point on a moving body, and of a particle in a moving frame.
 
-    v = v_t + v_r,   a = a_t + a_r + a_C;      m a_r = F - m a_t - m a_C
+v = v_t + v_r,   a = a_t + a_r + a_C;      m a_r = F - m a_t - m a_C
 """
 
 from __future__ import annotations
@@ -30,16 +30,28 @@ ACCELERATION = Law(
 IN_FRAME = Law("m*a_r = F - m*a_t - m*a_C", r"m a_{r} = F - m a_{t} - m a_{C}")
 
 NAMES = {
-    "transport_velocity": Law("v_t", "v_{t}"), "relative_velocity": Law("v_r", "v_{r}"), "velocity": Law("v", "v"),
-    "origin": Law("a_O", "a_{O}"), "euler": Law("epsilon x r", r"\varepsilon \times r"),
+    "transport_velocity": Law("v_t", "v_{t}"),
+    "relative_velocity": Law("v_r", "v_{r}"),
+    "velocity": Law("v", "v"),
+    "origin": Law("a_O", "a_{O}"),
+    "euler": Law("epsilon x r", r"\varepsilon \times r"),
     "centripetal": Law("omega x (omega x r)", r"\omega \times (\omega \times r)"),
-    "transport_acceleration": Law("a_t", "a_{t}"), "relative_acceleration": Law("a_r", "a_{r}"),
-    "coriolis": Law("a_C", "a_{C}"), "acceleration": Law("a", "a"),
-}  # fmt: skip
+    "transport_acceleration": Law("a_t", "a_{t}"),
+    "relative_acceleration": Law("a_r", "a_{r}"),
+    "coriolis": Law("a_C", "a_{C}"),
+    "acceleration": Law("a", "a"),
+}
 FORCES = {"m*a_r": Law("m*a_r", "m a_{r}"), "-m*a_O": Law("-m*a_O", "-m a_{O}")}
 VELOCITIES = ("transport_velocity", "relative_velocity", "velocity")
-ACCELERATIONS = ("origin", "euler", "centripetal", "transport_acceleration", "relative_acceleration", "coriolis",
-                 "acceleration")  # fmt: skip
+ACCELERATIONS = (
+    "origin",
+    "euler",
+    "centripetal",
+    "transport_acceleration",
+    "relative_acceleration",
+    "coriolis",
+    "acceleration",
+)
 TRANSPORT = "the transport part is that of the point of the body which is passed, O the origin of the body"
 
 
@@ -53,14 +65,23 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
     parts = parts_of(system, point, body, readable)
     title = f"{point}, seen from {body}"
     steps = (
-        Step("relative velocity", f"Velocity of {title}", (
-            Prose((f"In the axes of {body}, ", VELOCITY, f"; {TRANSPORT}:")),
-            *_table(parts, VELOCITIES, letters, readable),
-        )),
-        Step("relative acceleration", f"Acceleration of {title}", (
-            Prose((f"In the axes of {body}, ", ACCELERATION, ":")), *_table(parts, ACCELERATIONS, letters, readable),
-        )),
-    )  # fmt: skip
+        Step(
+            "relative velocity",
+            f"Velocity of {title}",
+            (
+                Prose((f"In the axes of {body}, ", VELOCITY, f"; {TRANSPORT}:")),
+                *_table(parts, VELOCITIES, letters, readable),
+            ),
+        ),
+        Step(
+            "relative acceleration",
+            f"Acceleration of {title}",
+            (
+                Prose((f"In the axes of {body}, ", ACCELERATION, ":")),
+                *_table(parts, ACCELERATIONS, letters, readable),
+            ),
+        ),
+    )
     owner, _ = system.motion.place(point)
     return (*steps, *_in_frame(system, str(owner), body, readable)) if _is_particle(system, owner, point) else steps
 
@@ -109,14 +130,20 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
     m, letters = mass_properties(system.scope, particle).m, axes(system)
     ground = {
         "applied": applied_force(system, particle),
-        "-m*a_O": times(-m, parts.carrier.a), "Euler": times(-m, parts.euler),
-        "centrifugal": times(-m, parts.centripetal), "Coriolis": times(-m, parts.coriolis),
-    }  # fmt: skip
+        "-m*a_O": times(-m, parts.carrier.a),
+        "Euler": times(-m, parts.euler),
+        "centrifugal": times(-m, parts.centripetal),
+        "Coriolis": times(-m, parts.coriolis),
+    }
     forces = {"m*a_r": times(m, parts.relative[2])}
     forces |= {name: apply(transposed(parts.R), x) for name, x in ground.items()}
     rows = [(FORCES.get(name, name), *readable.vector(x)[: len(letters)]) for name, x in forces.items()]
-    words = (f"In the axes of {body}, ", IN_FRAME, ": F is what is applied, and the reactions of joints and ties; "
-             "of the rest, transport brings the Euler and the centrifugal force.")  # fmt: skip
+    words = (
+        f"In the axes of {body}, ",
+        IN_FRAME,
+        ": F is what is applied, and the reactions of joints and ties; "
+        "of the rest, transport brings the Euler and the centrifugal force.",
+    )
     statements: tuple[Statement, ...] = (Prose(words), *tabled(("force", *letters), rows))
     return (Step("moving frame", f"Equation of motion of {particle} in the frame of {body}", statements),)
 

@@ -73,7 +73,7 @@ class Kinematics(Shown):
         statements = tuple(
             Prose(tuple(self._within_line(piece) for piece in each.pieces)) if isinstance(each, Prose) else each
             for each in step.statements
-        )  # fmt: skip
+        )
         return replace(step, statements=statements)
 
     def _within_line(self, piece: Piece) -> Piece:
@@ -88,8 +88,11 @@ class Kinematics(Shown):
         return Law(written, written) if isinstance(written, str) else written
 
     def _seen(self) -> tuple[Step, ...]:
-        return tuple(step for point, body in self.relative
-                     for step in relative_steps(self.state.system, point, body, self.state.state))  # fmt: skip
+        return tuple(
+            step
+            for point, body in self.relative
+            for step in relative_steps(self.state.system, point, body, self.state.state)
+        )
 
     @property
     def picture(self) -> Picture:
@@ -122,7 +125,7 @@ class Kinematics(Shown):
             "bodies": field_payload(state.system, state.state, self.kinds) if self._has_bodies else {},
             "relative": [relative_payload(state.system, p, b, state.state) for p, b in self.relative],
             "steps": steps_as_dicts(self.derivation),
-        }  # fmt: skip
+        }
 
     @property
     def _has_bodies(self) -> bool:

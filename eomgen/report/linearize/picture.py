@@ -65,8 +65,11 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
     """How far it is swung out: so that no point of the drawing moves by more than a part of the drawing."""
     aside = {**values, **{q: values[q] + SMALL * x.real for q, x in mode.shape.items()}}
     there = Sketch(system, aside)
-    moved = [abs(b - a).max() for link in system.motion.links
-             for a, b in zip(here.lines(link), there.lines(link), strict=True)]  # fmt: skip
+    moved = [
+        abs(b - a).max()
+        for link in system.motion.links
+        for a, b in zip(here.lines(link), there.lines(link), strict=True)
+    ]
     largest = max(moved, default=0.0)
     return PART * here.extent * SMALL / largest if largest > 0 else 0.0
 

@@ -184,32 +184,53 @@ class Linearization(Shown):
         return {
             "name": self.model.name,
             "about": reference.about,
-            "state": {x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
-                      for x in (*reference.system.symbols.q, *reference.system.symbols.u)},
+            "state": {
+                x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
+                for x in (*reference.system.symbols.q, *reference.system.symbols.u)
+            },
             "family": self._family(reference.family),
-            "coordinates": list(self.coordinates), "speeds": list(self.speeds), "inputs": list(self.inputs),
+            "coordinates": list(self.coordinates),
+            "speeds": list(self.speeds),
+            "inputs": list(self.inputs),
             "left_out": [q.name for q in self.small.left_out],
             "second_order": self.small.is_second_order,
             "exact": self.is_exact,
-            **{name: self._matrix(getattr(equations, letter)) for name, letter in (
-                ("mass", "M"), ("rates", "C"), ("stiffness", "K"), ("input", "B"), ("kinematic_rates", "E"),
-                ("kinematic_places", "F"))},
-            **{name: self._matrix([[self.modes.tidy(x) for x in row] for row in parts[letter]]) for name, letter in (
-                ("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H")) if parts},
+            **{
+                name: self._matrix(getattr(equations, letter))
+                for name, letter in (
+                    ("mass", "M"),
+                    ("rates", "C"),
+                    ("stiffness", "K"),
+                    ("input", "B"),
+                    ("kinematic_rates", "E"),
+                    ("kinematic_places", "F"),
+                )
+            },
+            **{
+                name: self._matrix([[self.modes.tidy(x) for x in row] for row in parts[letter]])
+                for name, letter in (("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H"))
+                if parts
+            },
             "state_matrix": self.A.tolist() if self.valued else None,
             "input_matrix": self.B.tolist() if self.valued else None,
             "characteristic_polynomial": _polynomial(self.modes.polynomial),
             "conditions": [to_text(x) for x in self.modes.conditions.expressions],
             "conditions_for": self.modes.conditions.words or None,
             "transfer_functions": [
-                {"coordinate": f.coordinate.name, "input": f.input.name, "numerator": _polynomial(f.above),
-                 "denominator": _polynomial(f.below)} for f in self.modes.transfers],
+                {
+                    "coordinate": f.coordinate.name,
+                    "input": f.input.name,
+                    "numerator": _polynomial(f.above),
+                    "denominator": _polynomial(f.below),
+                }
+                for f in self.modes.transfers
+            ],
             "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
             "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
             "steps": steps_as_dicts(self.derivation),
-        }  # fmt: skip
+        }
 
     def _family(self, family: Family | None) -> dict[str, Any] | None:
         """The steady motions that this one belongs to; null where it was not sought, or cannot be written."""
@@ -220,10 +241,16 @@ class Linearization(Shown):
             "held": [x.name for x in (*family.zeros, *family.held)],
             "conditions": [to_text(x) for x in family.conditions],
             "formulas": {x.name: to_text(value) for x, value in family.formulas.items()},
-            "complete": family.complete, "where": family.where,
-            "motions": [{"state": {x.name: _state(closed.get(x), value, valued=True) for x, value in at.items()},
-                         "stability": stability or None} for at, closed, stability in motions],
-        }  # fmt: skip
+            "complete": family.complete,
+            "where": family.where,
+            "motions": [
+                {
+                    "state": {x.name: _state(closed.get(x), value, valued=True) for x, value in at.items()},
+                    "stability": stability or None,
+                }
+                for at, closed, stability in motions
+            ],
+        }
 
     def _matrix(self, A: Matrix) -> dict[str, Any]:
         if not self.is_exact:
@@ -242,9 +269,11 @@ class Linearization(Shown):
         return {
             "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
             "frequency": {"exact": None if exact is None else to_text(exact), "value": mode.frequency},
-            "hertz": mode.hertz, "damping_ratio": mode.damping_ratio, "kind": mode.kind,
+            "hertz": mode.hertz,
+            "damping_ratio": mode.damping_ratio,
+            "kind": mode.kind,
             "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()},
-        }  # fmt: skip
+        }
 
 
 def _state(exact: Scalar | None, number: float, *, valued: bool) -> dict[str, Any]:

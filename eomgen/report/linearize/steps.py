@@ -62,10 +62,23 @@ def _equations(modes: Modes) -> Step:
     small = modes.small
     e = small.exact or small.numbers
     tied = len(e.coordinates) < len(e.all) or bool(small.reference.system.ties.closing)
-    statements: list[Statement] = [Prose((
-        "The equations of motion ", Law("R = 0", "R = 0"), ", ", WHERE, ", to first order in the displacements ",
-        *listed(e.coordinates), " from it", ", along the ties" if tied else "", ": ", ALONG if tied else PLAIN, ".",
-    ))]  # fmt: skip
+    statements: list[Statement] = [
+        Prose(
+            (
+                "The equations of motion ",
+                Law("R = 0", "R = 0"),
+                ", ",
+                WHERE,
+                ", to first order in the displacements ",
+                *listed(e.coordinates),
+                " from it",
+                ", along the ties" if tied else "",
+                ": ",
+                ALONG if tied else PLAIN,
+                ".",
+            )
+        )
+    ]
     undamped = all(is_zero(x) for row in e.C for x in row)
     turns = tuple(q for q in e.coordinates if q not in e.all)
     if turns:
@@ -109,8 +122,11 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
         return _entries("C", e.C, e.speeds, e.speeds, symmetric=False)
     parts = {letter: [[modes.tidy(x) for x in row] for row in modes.symmetric_parts[letter]] for letter in "DG"}
     there = [letter for letter, A in parts.items() if not all(is_zero(x) for row in A for x in row)]
-    words = {"D": "C = D, of damping (symmetric).", "G": "C = G, gyroscopic (skew).",
-             "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew)."}  # fmt: skip
+    words = {
+        "D": "C = D, of damping (symmetric).",
+        "G": "C = G, gyroscopic (skew).",
+        "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew).",
+    }
     shown: list[Statement] = [Prose((words.get("".join(there), ""),))] if there else []
     for letter, A in parts.items():
         shown += _entries(letter, A, e.coordinates, e.coordinates, symmetric=letter == "D")
@@ -125,8 +141,9 @@ def _symmetric(modes: Modes, A: Matrix) -> bool:
     return all(is_zero(modes.tidy(A[i][j] - A[j][i])) for i in range(len(A)) for j in range(i))
 
 
-def _entries(letter: str, A: Matrix, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
-             ) -> list[Statement]:  # fmt: skip
+def _entries(
+    letter: str, A: Matrix, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
+) -> list[Statement]:
     """The entries that are not zero; of a symmetric matrix each once."""
     found: list[Statement] = []
     for i, row in enumerate(rows):
@@ -183,13 +200,18 @@ def _in_numbers(coefficients: np.ndarray) -> Law:
     """The highest power first."""
     n = len(coefficients) - 1
     largest = abs(coefficients).max()
-    terms = [(f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k) for k, x in enumerate(coefficients)
-             if abs(x) > 1e-12 * largest]  # fmt: skip
+    terms = [
+        (f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k)
+        for k, x in enumerate(coefficients)
+        if abs(x) > 1e-12 * largest
+    ]
     plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
     latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]
     one = (("1*s", "s"), ("1 s", "s"))
-    found = [[re.sub(rf"^(-?){re.escape(a)}", rf"\1{b}", x) for x in written]
-             for written, (a, b) in zip((plain, latex), one, strict=True)]  # fmt: skip
+    found = [
+        [re.sub(rf"^(-?){re.escape(a)}", rf"\1{b}", x) for x in written]
+        for written, (a, b) in zip((plain, latex), one, strict=True)
+    ]
     return Law(*(" + ".join(x).replace("+ -", "- ") for x in found))
 
 
@@ -229,8 +251,12 @@ def _frequencies(modes: Modes) -> Sequence[Frequency]:
 
 def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
     omega, hertz, ratio = mode.frequency, mode.hertz, mode.damping_ratio
-    return (str(k), _complex(mode.eigenvalue, pair=mode.pair), *("" if x is None else f"{x:.7g}" for x in
-            (omega, hertz, ratio)), mode.kind)  # fmt: skip
+    return (
+        str(k),
+        _complex(mode.eigenvalue, pair=mode.pair),
+        *("" if x is None else f"{x:.7g}" for x in (omega, hertz, ratio)),
+        mode.kind,
+    )
 
 
 def _complex(x: complex, *, pair: bool = False) -> Cell:

@@ -97,8 +97,16 @@ def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
         if abs(y) > SAME * largest and not twin:
             shown.append((x, y))
             up = (y > 0) != panel.yaxis_inverted()
-            panel.annotate(figures(y), (x, y), xytext=(0, 3 if up else -3), textcoords="offset points", fontsize=8,
-                           path_effects=halo(), ha="center", va="bottom" if up else "top")  # fmt: skip
+            panel.annotate(
+                figures(y),
+                (x, y),
+                xytext=(0, 3 if up else -3),
+                textcoords="offset points",
+                fontsize=8,
+                path_effects=halo(),
+                ha="center",
+                va="bottom" if up else "top",
+            )
     panel.margins(x=0.03, y=0.22)
     if not largest:
         panel.set_yticks([0])

@@ -120,12 +120,14 @@ def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
         "reactions": {
             each.named.name: {
                 "exact": to_text(each.value) if place.is_exact and each.value is not None else None,
-                "value": number, "unit": each.named.unit,
+                "value": number,
+                "unit": each.named.unit,
                 "message": None if each.value is not None else "statically indeterminate",
-            } for each, number in zip(reactions, numbers, strict=True)
+            }
+            for each, number in zip(reactions, numbers, strict=True)
         },
         "message": why or None,
-    }  # fmt: skip
+    }
 
 
 def _of(place: Equilibrium, node: Node) -> dict[str, Any]:
@@ -134,9 +136,12 @@ def _of(place: Equilibrium, node: Node) -> dict[str, Any]:
 
 def _stability(stability: Stability) -> dict[str, Any]:
     return {
-        "kind": stability.kind, "why": stability.why, "along": [q.name for q in stability.along],
-        "K": [[_entry(x) for x in row] for row in stability.K], "minors": [to_text(x) for x in stability.minors],
-    }  # fmt: skip
+        "kind": stability.kind,
+        "why": stability.why,
+        "along": [q.name for q in stability.along],
+        "K": [[_entry(x) for x in row] for row in stability.K],
+        "minors": [to_text(x) for x in stability.minors],
+    }
 
 
 def _entry(x: Scalar | float) -> str | float:

@@ -88,8 +88,11 @@ def _places(found: Equilibria) -> Step:
 def _how_many(found: Equilibria) -> str:
     where = f" ({found.where})" if found.where else ""
     if found.complete:
-        return f"There is {_places_in_words(len(found.found))}{where}." if len(found.found) == 1 else (
-            f"There are {_places_in_words(len(found.found))}{where}.")  # fmt: skip
+        return (
+            f"There is {_places_in_words(len(found.found))}{where}."
+            if len(found.found) == 1
+            else (f"There are {_places_in_words(len(found.found))}{where}.")
+        )
     many = _places_in_words(len(found.found))
     return f"Found: {many}{where}. That there are no others is not proved."
 
@@ -162,4 +165,3 @@ def _reaction_row(
     named = each.named
     exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
     return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit
-

@@ -187,8 +187,11 @@ class Scene:
         return self._middle(self.statics.system.motion.links[couple.effects[0].link].name)
 
     def _middle(self, body: str) -> Place:
-        places = [self.sketch.position((body, r)) for name, r in self.statics.system.motion.points[body].items()
-                  if name not in ("origin", "center")]  # fmt: skip
+        places = [
+            self.sketch.position((body, r))
+            for name, r in self.statics.system.motion.points[body].items()
+            if name not in ("origin", "center")
+        ]
         found = np.mean(places or [self.sketch.position((body, ZERO))], axis=0)
         return float(found[0]), float(found[1])
 
@@ -212,8 +215,9 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
         grid = figure.add_gridspec(len(heights), max(1, len(bodies)), height_ratios=heights)
         draw_structure(figure.add_subplot(grid[0, :]), scene)
         for column, forces in enumerate(bodies):
-            diagram_panels([figure.add_subplot(grid[1 + k, column]) for k in range(3)], forces, scene.sketch.values,
-                           scene.scale)  # fmt: skip
+            diagram_panels(
+                [figure.add_subplot(grid[1 + k, column]) for k in range(3)], forces, scene.sketch.values, scene.scale
+            )
         if line is not None:
             influence_panel(figure.add_subplot(grid[-1, :]), line, scene.sketch.values)
         if missing:
@@ -275,12 +279,20 @@ def _members(panel: Any, scene: Scene) -> None:
         turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
         small = abs(value) < NOTHING * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
-        panel.annotate("0" if small else scene.label(reaction.value), (a + b) / 2, rotation=turn,
-                       rotation_mode="anchor", ha="center", va="bottom", color=color, fontsize=8, zorder=8,
-                       path_effects=halo())  # fmt: skip
+        panel.annotate(
+            "0" if small else scene.label(reaction.value),
+            (a + b) / 2,
+            rotation=turn,
+            rotation_mode="anchor",
+            ha="center",
+            va="bottom",
+            color=color,
+            fontsize=8,
+            zorder=8,
+            path_effects=halo(),
+        )
         panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
         drawn = True
     if drawn:
         unit = f" [{scene.scale.unit('N')}]" if scene.known else ""
         panel.set_title(f"members{unit}: tension blue, compression red", fontsize=9, loc="right", color="#505050")
-

@@ -74,8 +74,10 @@ class Statics(Shown):
         if not names:
             return ()
         degree = self.found.structure.indeterminacy
-        return (f"the structure is statically indeterminate, to the degree {degree}: the balance of rigid bodies "
-                f"leaves {', '.join(names)} open; take a redundant tie away, or let something give",)  # fmt: skip
+        return (
+            f"the structure is statically indeterminate, to the degree {degree}: the balance of rigid bodies "
+            f"leaves {', '.join(names)} open; take a redundant tie away, or let something give",
+        )
 
     @cached_property
     def conditions(self) -> tuple[Condition, ...]:
@@ -122,20 +124,25 @@ class Statics(Shown):
         return {
             "name": self.model.name,
             "structure": {
-                "velocities": len(structure.columns), "reactions": len(structure.rows), "rank": structure.rank,
-                "mobility": structure.mobility, "indeterminacy": structure.indeterminacy,
-                "count": self.found.count[0], "formula": self.found.count[1],
+                "velocities": len(structure.columns),
+                "reactions": len(structure.rows),
+                "rank": structure.rank,
+                "mobility": structure.mobility,
+                "indeterminacy": structure.indeterminacy,
+                "count": self.found.count[0],
+                "formula": self.found.count[1],
             },
             "reactions": {reaction.name: self._reaction(reaction) for reaction in self.found.reactions},
-            "self_stresses": [{structure.names[j]: to_text(x) for j, x in stress.items()}
-                              for stress in structure.stresses],
+            "self_stresses": [
+                {structure.names[j]: to_text(x) for j, x in stress.items()} for stress in structure.stresses
+            ],
             "sections": section_payload(self.sections),
             "influence": None if self.influence is None else influence_payload(self.influence),
             "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
             "broken": list(self.broken),
             "agree": self.ok,
             "steps": steps_as_dicts(self.derivation),
-        }  # fmt: skip
+        }
 
     def _reaction(self, reaction: StaticReaction) -> dict[str, Any]:
         return {
@@ -225,5 +232,7 @@ def _refuse_for_resting(**asked: str | None) -> None:
     """
     for name, value in asked.items():
         if value is not None:
-            raise UsageError(f"--{name} is of structures that stand, and this system is free to move",
-                             mend="without it the places of rest are given")  # fmt: skip
+            raise UsageError(
+                f"--{name} is of structures that stand, and this system is free to move",
+                mend="without it the places of rest are given",
+            )

@@ -55,8 +55,10 @@ def sections_of(reactions: Reactions) -> Sections:
 
 def section_steps(sections: Sections) -> tuple[Step, ...]:
     """A step for each body, pieces as rows of a table; what has none, with the reason."""
-    steps = [Step(f"section_{body}", f"Section forces of {body}", tuple(_of_body(forces, number)))
-             for number, (body, forces) in enumerate(sections.found.items())]  # fmt: skip
+    steps = [
+        Step(f"section_{body}", f"Section forces of {body}", tuple(_of_body(forces, number)))
+        for number, (body, forces) in enumerate(sections.found.items())
+    ]
     if sections.reasons:
         words = [Prose((f"{reason}.",)) for reason in sections.reasons.values()]
         steps.append(Step("section_none", "Bodies without section forces", tuple(words)))
@@ -85,8 +87,14 @@ def _row(forces: SectionForces, piece: Piece, x: Node) -> dict[str, str]:
 def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
     x = _variable(forces)
     line = "its axis" if forces.axis.is_straight else f"its axis of {len(forces.axis.legs)} straight parts"
-    yield Prose((f"Along {line}, ", x, " from its start; all that acts before the section gives N, V and M. ",
-                 *((SIGNS, RELATIONS, ":") if number == 0 else (RELATIONS, ":"))))  # fmt: skip
+    yield Prose(
+        (
+            f"Along {line}, ",
+            x,
+            " from its start; all that acts before the section gives N, V and M. ",
+            *((SIGNS, RELATIONS, ":") if number == 0 else (RELATIONS, ":")),
+        )
+    )
     rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in KINDS)) for piece in forces.pieces]
     written = tuple(tuple(forces.sizes.shortest(cell) for cell in row) for row in rows)
     yield Grid(("from x", "to x", *map(lettered, "NVM")), written)
@@ -126,9 +134,17 @@ def influence_payload(line: InfluenceLine) -> dict[str, Any]:
     return {
         "of": line.name,
         "load": [to_text(x) for x in line.load[:2]],
-        "spans": [{"along": s.name, "from": _place(s.start), "to": _place(s.end), "start": to_text(s.at_start),
-                   "end": to_text(s.at_end)} for s in line.spans],
-    }  # fmt: skip
+        "spans": [
+            {
+                "along": s.name,
+                "from": _place(s.start),
+                "to": _place(s.end),
+                "start": to_text(s.at_start),
+                "end": to_text(s.at_end),
+            }
+            for s in line.spans
+        ],
+    }
 
 
 def _place(place: Sequence[Scalar]) -> list[str]:

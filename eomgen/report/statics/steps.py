@@ -30,9 +30,14 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
     model = statics.system.scope.model
     symbols = symbols_of_reactions(statics)
     steps = (
-        data_step(statics.system), structure_step(statics), *_open(statics, symbols),
-        reactions_step(statics, symbols, values), *_works(statics, symbols), *agreement_step(statics), *more,
-    )  # fmt: skip
+        data_step(statics.system),
+        structure_step(statics),
+        *_open(statics, symbols),
+        reactions_step(statics, symbols, values),
+        *_works(statics, symbols),
+        *agreement_step(statics),
+        *more,
+    )
     return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
 
 
@@ -82,16 +87,27 @@ def structure_step(statics: StaticReactions) -> Step:
     unknowns = len(structure.unknowns)
     besides = f" and {count(unknowns, 'unknown load')}" if unknowns else ""
     statements: list[Statement] = [
-        Prose((f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
-               "The count of freedoms, everything that holds taken as independent:",)),
+        Prose(
+            (
+                f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
+                "The count of freedoms, everything that holds taken as independent:",
+            )
+        ),
         Formula((_law(formula), number)),
-        Prose((f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
-               f"reactions forbid {structure.rank}. {_free(structure)}"
-               + (": the structure is statically determinate." if not structure.indeterminacy else
-                  f"; there {'is' if structure.indeterminacy == 1 else 'are'} "
-                  f"{count(structure.indeterminacy, 'reaction')} more than independent ones: the structure is "
-                  f"statically indeterminate, to the degree {structure.indeterminacy}."),)),
-    ]  # fmt: skip
+        Prose(
+            (
+                f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
+                f"reactions forbid {structure.rank}. {_free(structure)}"
+                + (
+                    ": the structure is statically determinate."
+                    if not structure.indeterminacy
+                    else f"; there {'is' if structure.indeterminacy == 1 else 'are'} "
+                    f"{count(structure.indeterminacy, 'reaction')} more than independent ones: the structure is "
+                    f"statically indeterminate, to the degree {structure.indeterminacy}."
+                ),
+            )
+        ),
+    ]
     return Step("structure", "Structure", tuple(statements))
 
 
@@ -129,10 +145,15 @@ def _open(statics: StaticReactions, symbols: Symbols) -> tuple[Step, ...]:
             Prose(("To these at once may be added, with any number ", k, ", without a trace:")),
             Grid(("reaction", "added"), tuple((letters[j], share * k) for j, share in stress.items())),
         ]
-    ties = dict.fromkeys(statics.structure.components[j].owner for s in statics.structure.stresses for j in s
-                         if j < len(statics.structure.components))  # fmt: skip
-    statements.append(Prose((f"One tie too many for each of these is among: {', '.join(ties)}. "
-                             "What stays determinate is given.",)))  # fmt: skip
+    ties = dict.fromkeys(
+        statics.structure.components[j].owner
+        for s in statics.structure.stresses
+        for j in s
+        if j < len(statics.structure.components)
+    )
+    statements.append(
+        Prose((f"One tie too many for each of these is among: {', '.join(ties)}. What stays determinate is given.",))
+    )
     return (Step("indeterminate", "Self-stresses", tuple(statements)),)
 
 
@@ -156,10 +177,12 @@ def reactions_step(statics: StaticReactions, symbols: Symbols, values: Mapping[s
 
 
 SENSES = {
-    "reaction_x": ("to the right", "to the left"), "reaction_y": ("up", "down"),
-    "reaction_couple": ("counter-clockwise", "clockwise"), "tension": ("tension", "compression"),
+    "reaction_x": ("to the right", "to the left"),
+    "reaction_y": ("up", "down"),
+    "reaction_couple": ("counter-clockwise", "clockwise"),
+    "tension": ("tension", "compression"),
     "reaction_n": ("along the normal", "against the normal"),
-}  # fmt: skip
+}
 """Of a reaction in the plane that is positive, and of one that is negative."""
 
 
@@ -180,8 +203,9 @@ def meaning_of(balance: Reactions, reaction: StaticReaction) -> str:
 
 
 def _works(statics: StaticReactions, symbols: Symbols) -> tuple[Step, ...]:
-    return tuple(work_step(reaction, symbols[reaction.name]) for reaction in statics.reactions
-                 if reaction.work is not None)  # fmt: skip
+    return tuple(
+        work_step(reaction, symbols[reaction.name]) for reaction in statics.reactions if reaction.work is not None
+    )
 
 
 def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
@@ -195,10 +219,16 @@ def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
         text = f"The balance of forces and moments of every body gives the same {what}, as formulas of the parameters."
         return (Step("agreement", "Check by equilibrium", (Prose((text,)),)),)
     rows = [(r.name, _or_open(None if r.work is None else r.work.value), _or_open(r.balanced)) for r in wrong]
-    return (Step("agreement", "Check by equilibrium: FAILED", (
-        Prose(("The two ways do not agree; do not trust this result:",)),
-        Grid(("reaction", "by virtual work", "by equilibrium"), tuple(rows)),
-    )),)  # fmt: skip
+    return (
+        Step(
+            "agreement",
+            "Check by equilibrium: FAILED",
+            (
+                Prose(("The two ways do not agree; do not trust this result:",)),
+                Grid(("reaction", "by virtual work", "by equilibrium"), tuple(rows)),
+            ),
+        ),
+    )
 
 
 MARGINS = {"pushes": "its normal force", "pulls": "its tension", "sticks": "mu |N| less its friction"}
@@ -219,4 +249,3 @@ def contacts_step(conditions: Sequence[Condition], broken: Sequence[str]) -> tup
 
 def _or_open(value: Scalar | None) -> Cell:
     return "indeterminate" if value is None else value
-

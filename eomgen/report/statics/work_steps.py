@@ -37,8 +37,10 @@ def work_step(reaction: StaticReaction, symbol: Node) -> Step:
         statements += [Prose(("The loads do the virtual works:",)), _works(plan, equation.terms, delta)]
     else:
         statements.append(Prose(("No load does any work in this motion.",)))
-    statements += [Prose(("The principle of virtual work says", *_without(equation), ":")),
-                   *_equations(equation, symbol, delta)]  # fmt: skip
+    statements += [
+        Prose(("The principle of virtual work says", *_without(equation), ":")),
+        *_equations(equation, symbol, delta),
+    ]
     return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", tuple(statements))
 
 
@@ -53,8 +55,15 @@ def _released(plan: Plan, blocks: Sequence[Block], symbol: Node, delta: Node) ->
     still = resting(plan)
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
-    return Prose(("Released along ", symbol, f", the structure is a mechanism: {many} can move{rest}. "
-                  "Its virtual displacements, all by ", delta, ":"))  # fmt: skip
+    return Prose(
+        (
+            "Released along ",
+            symbol,
+            f", the structure is a mechanism: {many} can move{rest}. Its virtual displacements, all by ",
+            delta,
+            ":",
+        )
+    )
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -202,11 +211,9 @@ def _equations(equation: WorkEquation, symbol: Node, delta: Node) -> list[Statem
 
 def _narrow(head: Sequence[str], rows: Sequence[tuple[Cell, ...]]) -> Grid:
     """The table without columns in which nothing stands, or only zeros; centres keep both coordinates."""
-    kept = [k for k in range(len(head))
-            if any(not _is_nothing(row[k]) for row in rows) or head[k].startswith("centre")]  # fmt: skip
+    kept = [k for k in range(len(head)) if any(not _is_nothing(row[k]) for row in rows) or head[k].startswith("centre")]
     return narrow_grid(head, rows, kept)
 
 
 def _is_nothing(cell: Cell) -> bool:
     return cell == "" if isinstance(cell, str) else type(cell) is int and cell == 0
-
