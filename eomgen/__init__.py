@@ -27,7 +27,7 @@ from eomgen.version import __version__ as __version__
 
 _HOMES = {
     "answers": ("solve",),
-    "certificate": ("Certificate", "Check"),
+    "proof.check": ("Certificate", "Check"),
     "errors": (
         "DerivationError",
         "EomgenError",

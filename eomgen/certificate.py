@@ -8,47 +8,13 @@ every body and of the whole, the emitted code.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.friction import rubs
 from eomgen.mechanics.system import System
 from eomgen.proof import identities, trials
-from eomgen.proof.check import Check
+from eomgen.proof.check import Certificate
 from eomgen.symbolic.growing import growing
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """The proof that comes with the equations."""
-
-    checks: tuple[Check, ...]
-
-    @property
-    def ok(self) -> bool:
-        return all(check.ok for check in self.checks)
-
-    def __bool__(self) -> bool:
-        return self.ok
-
-    def __str__(self) -> str:
-        lines = [f"certificate: {'holds' if self.ok else 'FAILS'} ({len(self.checks)} checks)"]
-        for check in self.checks:
-            mark = "ok  " if check.ok else "FAIL"
-            lines.append(f"  {mark} {check.name} [{check.how}]" + (f": {check.detail}" if check.detail else ""))
-        return "\n".join(lines)
-
-    def _repr_markdown_(self) -> str:
-        rows = [f"| {'✓' if c.ok else '✗'} | {c.name} | {c.how} | {c.detail} |" for c in self.checks]
-        head = f"**Certificate: {'holds' if self.ok else 'FAILS'}**\n\n| | what | how | |\n|---|---|---|---|"
-        return "\n".join([head, *rows])
-
-    def as_dict(self) -> dict[str, Any]:
-        """For `--json`."""
-        rows = [{"name": c.name, "ok": c.ok, "how": c.how, "detail": c.detail} for c in self.checks]
-        return {"ok": self.ok, "checks": rows}
 
 
 @growing()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.certificate import Certificate, certify
+from eomgen.certificate import certify
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
@@ -24,6 +24,7 @@ from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate
 from eomgen.symbolic.evaluation import operations
 from eomgen.symbolic.growing import growing
 from eomgen.symbolic.normal_form import readable_all

@@ -15,10 +15,9 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen import equations, pipeline
-from eomgen.certificate import Certificate
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
-from eomgen.proof.check import Check
+from eomgen.proof.check import Certificate, Check
 from eomgen.shell import LATER
 from eomgen.version import __version__
 
@@ -358,7 +357,7 @@ def test_derive_shows_its_certificate_in_every_format():
 @pytest.mark.parametrize("format", ["text", "latex", "markdown", "json"])
 def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(format, monkeypatch):
     """The result is still there, and marked."""
-    failing = Certificate((Check("two and two are four", False, "fingers", "five"),))
+    failing = Certificate((Check("two and two are four", "fails", "fingers", "five"),))
     monkeypatch.setattr(equations, "certify", lambda *_: failing)
     result = run("derive", SEED, "--format", format)
     assert result.exit_code == 3

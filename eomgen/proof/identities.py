@@ -16,7 +16,7 @@ from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces, total
-from eomgen.proof.check import Check
+from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.derivative import gradient, jacobian, substituted, tangent
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.graph import Node, Scalar
@@ -29,9 +29,9 @@ def _compared(name: str, pairs: Pairs, labels: Sequence[str]) -> Check:
     try:
         verdict = equal_at_random_states(pairs)
     except DerivationError as error:
-        return Check(name, False, "no state found", error.what)
-    detail = "" if verdict.culprit is None else f"{labels[verdict.culprit]} differs"
-    return Check(name, verdict.equal, verdict.arithmetic, detail)
+        return unchecked(name, error.what, "no state found")
+    differs = "" if verdict.culprit is None else f"{labels[verdict.culprit]} differs"
+    return checked(name, differs, verdict.arithmetic)
 
 
 def rates(system: System, assembly: Assembly) -> Check:

@@ -20,7 +20,7 @@ from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
 from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
-from eomgen.proof.check import Check
+from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.dense import independent, scaled_condition, solution, weighted, without_rounding
 from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.graph import Node, Scalar
@@ -87,8 +87,8 @@ def _at_a_state(system: System, name: str, how: str, check: Callable[[State], st
             wrong = check(state)
         except (NoValue, ZeroDivisionError):
             continue
-        return Check(name, not wrong, how, wrong and wrong + remark)
-    return Check(name, False, how, f"no state with values was found in {TRIES} tries")
+        return checked(name, wrong and wrong + remark, how)
+    return unchecked(name, f"no state with values was found in {TRIES} tries", how)
 
 
 def twists(system: System) -> Check:

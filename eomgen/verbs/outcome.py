@@ -6,11 +6,12 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
 from eomgen.errors import RunFailed
+from eomgen.proof.check import Certificate
 
 SCHEMA_VERSION = 1
 
@@ -58,6 +59,42 @@ def told(found: Told, *, format: str, plot: str | None, failed: str = "") -> Out
     if format == "json":
         return Outcome("", found.as_dict(), failed)
     return Outcome(found.render(format), {}, failed)
+
+
+DISTRUST = "the certificate FAILS: do not trust this result"
+NOTHING_CHECKED = "warning: nothing of this result could be checked"
+
+
+def proven(outcome: Outcome, certificate: Certificate | None, format: str = "text") -> Outcome:
+    """A result with its certificate: a contradiction stands first and ends in exit 3; None: none was asked for.
+
+    Args:
+        format: text, latex, markdown or json, as the result is written.
+    """
+    if certificate is None:
+        return replace(outcome, payload={**outcome.payload, "certificate": None})
+    failed = DISTRUST if certificate.ok is False else ""
+    text = outcome.text and _with_proof(outcome.text, certificate, failed, format)
+    return replace(
+        outcome,
+        text=text,
+        payload={**outcome.payload, "certificate": certificate.as_dict()},
+        failed="; ".join(filter(None, (failed, outcome.failed))),
+        notes=(*outcome.notes, *((NOTHING_CHECKED,) if certificate.ok is None else ())),
+    )
+
+
+def _with_proof(text: str, certificate: Certificate, failed: str, format: str) -> str:
+    """The result and its proof: part of the text, a comment in LaTeX; a failure stands first, visibly."""
+    text, proof = text.rstrip("\n") + "\n", str(certificate)
+    if format == "latex":
+        comment = "".join(f"% {line}\n" for line in proof.splitlines())
+        visible = r"\begin{document}" + "\n" + r"\textbf{" + failed + "}\n"
+        return comment + (text.replace(r"\begin{document}" + "\n", visible, 1) if failed else text)
+    if format == "markdown":
+        proof = f"```\n{proof}\n```"
+        failed = f"**{failed}**" if failed else ""
+    return (f"{failed}\n\n" if failed else "") + f"{text}\n{proof}\n"
 
 
 def listed(names: Iterable[str]) -> str:

@@ -6,7 +6,7 @@ import pytest
 from random_systems import random_model
 
 import eomgen
-from eomgen.certificate import Certificate
+from eomgen.proof.check import Certificate
 
 
 @pytest.mark.parametrize("seed", range(30))
