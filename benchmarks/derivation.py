@@ -24,7 +24,7 @@ import sympy
 
 import eomgen
 from eomgen.codegen.reactions import determinate
-from eomgen.symbolic.evaluation import operations
+from eomgen.symbolic.expression.traversal import operations
 
 HERE = Path(__file__).parent
 MODELS = HERE.parent / "models"

@@ -34,12 +34,13 @@ from eomgen.report.answer import Answer
 from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.situation import Situation
-from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import text_size, to_text
-from eomgen.symbolic.transplant import transplanted
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.transplant import transplanted
+from eomgen.symbolic.print.text import text_size, to_text
 
 LONGEST = 20_000  # characters of an exact answer
 NO_VALUE = "it has no finite value {}"

@@ -14,7 +14,7 @@ from eomgen.mechanics.friction import rubs
 from eomgen.mechanics.system import System
 from eomgen.proof import identities, trials
 from eomgen.proof.check import Certificate
-from eomgen.symbolic.growing import growing
+from eomgen.symbolic.numeric.gc_pause import growing
 
 
 @growing()

@@ -25,10 +25,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
-from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.growing import growing
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.print.text import text_size
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
@@ -217,7 +217,7 @@ def _matrix(rows: tuple[tuple[Any, ...], ...], columns: int) -> Any:
     """Graph scalars as a sympy matrix: as a person writes them where they are few, else sub-expressions shared."""
     import sympy
 
-    from eomgen.symbolic.sympy_form import to_sympy
+    from eomgen.symbolic.print.sympy_form import to_sympy
 
     entries = [x for row in rows for x in row]
     written = _written(entries) if operations(entries).total <= FEW else entries

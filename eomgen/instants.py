@@ -18,9 +18,9 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.locating import Locating, Numbers, State, values_of
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that have none
 

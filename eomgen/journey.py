@@ -31,9 +31,9 @@ from eomgen.simulation.history import Passage, history
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Stepping
 from eomgen.situation import Situation, situation_of, start_of
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
 FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)

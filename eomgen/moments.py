@@ -13,9 +13,9 @@ from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.situation import Situation
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.transplant import transplanted
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.transplant import transplanted
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from eomgen.running import run
 from eomgen.simulation.course import modes_at_start
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
-from eomgen.symbolic.growing import growing
+from eomgen.symbolic.numeric.gc_pause import growing
 
 METHODS = ("lagrange", "projection", "kinetostatic")
 

@@ -37,7 +37,7 @@ from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
 
 STILL = 1e-9  # a rate or acceleration that is none, in SI
 CHOOSE = "declare other speeds"

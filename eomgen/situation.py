@@ -35,12 +35,12 @@ from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
-from eomgen.symbolic import linear
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import legible, readable_all
+from eomgen.symbolic.exact.normal_form import legible, readable_all
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve import linear
 
 WORK = 50_000  # products of terms for making one formula readable
 LONG = 400  # characters from which a formula is no easier to read than it came

@@ -24,10 +24,10 @@ from eomgen.model.parts import Given, Model
 from eomgen.moments import Moment, parameters_of
 from eomgen.report.kinematics.result import Kinematics
 from eomgen.situation import Situation, exact_numbers
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.expressions import Expression, parse_equation
-from eomgen.symbolic.graph import Node, is_zero
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import Expression, parse_equation
+from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.print.text import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
 

@@ -53,7 +53,7 @@ equations
 # %%
 import sympy
 
-from eomgen.symbolic.sympy_form import to_sympy
+from eomgen.symbolic.print.sympy_form import to_sympy
 
 hinge = sympy.Matrix(to_sympy(equations.reactions.force("rod")[:2]))
 hinge

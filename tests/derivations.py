@@ -15,10 +15,10 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unknowns import in_loads
 from eomgen.pipeline import METHODS, Equations, derive
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import Call, Reference, parse
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import Call, Reference, parse
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 MODELS = Path(__file__).parent.parent / "models"
 PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])

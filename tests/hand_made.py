@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from eomgen.mechanics.assembly import Assembly
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Graph, Scalar
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Graph, Scalar
+from eomgen.symbolic.expression.symbols import Symbols
 
 
 def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int = 0) -> Symbols:

@@ -12,9 +12,9 @@ import eomgen
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System, system_of
 from eomgen.proof.trials import real_state
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 State = dict[Node, Any]
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
-from eomgen.symbolic.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 
 NAMES = ("x", "y", "theta", "x'")
 POINT = {"x": 0.73, "y": 1.31, "theta": 0.42, "x'": -0.57}

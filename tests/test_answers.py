@@ -8,7 +8,7 @@ import pytest
 
 import eomgen
 from eomgen.report.answer import Answer
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expression.expressions import parse
 
 PENDULUM = """
 eomgen = 1

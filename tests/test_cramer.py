@@ -8,10 +8,10 @@ from random import Random
 import pytest
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.cramer import components, determinant, matching, solved
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import RATIONAL, evaluate
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import RATIONAL, evaluate
+from eomgen.symbolic.solve.cramer import components, determinant, matching, solved
 
 
 def random_system(seed: int, n: int, density: float):

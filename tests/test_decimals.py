@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eomgen.symbolic.decimals import decimal_of, number_text
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.print.decimals import decimal_of, number_text
 
 
 @pytest.mark.parametrize(

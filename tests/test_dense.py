@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.symbolic import dense, modular
-from eomgen.symbolic.dense import independent, scaled_condition, solution
-from eomgen.symbolic.evaluation import NoValue, fifty_digits
+from eomgen.symbolic.numeric import dense, modular
+from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution
+from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 
 SMALLEST = 1e-11
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
-from eomgen.symbolic.derivative import depends_on, derivative, gradient, jacobian, substituted, tangent
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Graph, Node
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 STEP = 1e-5
 

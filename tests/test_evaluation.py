@@ -10,20 +10,18 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, polynomials, smooth, values_at
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import (
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.traversal import Count, operations, order
+from eomgen.symbolic.numeric.evaluation import (
     FLOAT,
     PRIME,
     PRIME_FIELD,
     RATIONAL,
-    Count,
     NoMeaning,
     NoValue,
     evaluate,
     fifty_digits,
-    operations,
-    order,
 )
-from eomgen.symbolic.graph import Graph
 
 
 @pytest.fixture

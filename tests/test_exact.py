@@ -9,9 +9,9 @@ from hypothesis import given
 from random_expressions import on_graph, smooth, trigonometric
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import PRIME_FIELD, RATIONAL, NoMeaning, evaluate
-from eomgen.symbolic.exact import equal_at_random_states, exact_state
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, RATIONAL, NoMeaning, evaluate
 
 
 @pytest.fixture

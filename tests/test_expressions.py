@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expressions import (
+from eomgen.symbolic.expression.expressions import (
     Call,
     Expression,
     Reference,
@@ -20,7 +20,7 @@ from eomgen.symbolic.expressions import (
     parse,
     parse_equation,
 )
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.graph import Graph
 
 VALUES = {"x": Fraction(3), "y": Fraction(5), "z": Fraction(-7, 2)}
 
@@ -102,7 +102,7 @@ def test_the_same_text_serves_every_scalar():
     assert symbolic.has(sympy.sqrt(3)) and not symbolic.atoms(sympy.Float)
     assert float(symbolic.subs(sympy.Symbol("x"), sympy.Rational(17, 10))) == pytest.approx(number, rel=1e-14)
 
-    from eomgen.symbolic.evaluation import FLOAT, evaluate
+    from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
     graph = Graph()
     x = graph.symbol("x")

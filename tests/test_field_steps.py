@@ -15,8 +15,8 @@ from eomgen.report.kinematics.field_steps import field_payload, field_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.statements import Derivation
 from eomgen.situation import Situation
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.normal_form import equal
+from eomgen.symbolic.exact.normal_form import equal
+from eomgen.symbolic.expression.expressions import parse
 
 TURNTABLE = """
 eomgen = 1

@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from eomgen.symbolic.expressions import Expression, as_expression, parse
-from eomgen.symbolic.functions import chosen, cos, sin
+from eomgen.symbolic.expression.expressions import Expression, as_expression, parse
+from eomgen.symbolic.expression.functions import chosen, cos, sin
 
 A, B = parse("x + 2*y"), parse("-x/y^2")
 VALUES = {"x": Fraction(3, 7), "y": Fraction(-5, 2), "pi": 3}

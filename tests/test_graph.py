@@ -9,10 +9,10 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.functions import function
-from eomgen.symbolic.graph import Graph, Node, collected, linear_terms
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Graph, Node, collected, linear_terms
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
 
 
 @pytest.fixture

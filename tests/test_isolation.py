@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from eomgen.symbolic.descent import Descent
-from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.functions import NAMES
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.intervals import INTERVALS
-from eomgen.symbolic.isolation import can_isolate, isolated
+from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.numeric.intervals import INTERVALS
+from eomgen.symbolic.numeric.isolation import can_isolate, isolated
+from eomgen.symbolic.numeric.newton import Descent
 
 graph = Graph()
 x, y = graph.symbol("x"), graph.symbol("y")

@@ -13,9 +13,9 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.kinematics import slide_of, velocity_of
 from eomgen.mechanics.loads import SystemScene
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.spatial import ZERO, apply
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.spatial import ZERO, apply
 
 DRIVEN = """
 [parameters]

@@ -22,10 +22,10 @@ from eomgen.report.payload import equations_payload
 from eomgen.report.reaction_names import Lettered
 from eomgen.report.reaction_steps import letters_of
 from eomgen.report.statements import Derivation, Formula
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 GOLDEN = Path(__file__).parent / "golden"
 

@@ -19,8 +19,8 @@ from eomgen.report.latex_math import Setter
 from eomgen.report.latex_names import escaped, notation, symbol_latex
 from eomgen.report.markdown import escaped as escaped_markdown
 from eomgen.report.statements import Omitted
-from eomgen.symbolic.functions import cos, sin, sqrt
-from eomgen.symbolic.graph import Graph, Scalar
+from eomgen.symbolic.expression.functions import cos, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph, Scalar
 
 GOLDEN = Path(__file__).parent / "golden"
 MATHEMATICS = set(

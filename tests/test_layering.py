@@ -29,6 +29,7 @@ CHAIN = (
     ("cli",),
     ("__main__",),
 )
+FOLDERS = {"symbolic": ("expression", "numeric", "print", "exact", "solve")}  # of rooms that are divided further
 RANK = {room: rank for rank, rooms in enumerate(CHAIN) for room in rooms}
 
 
@@ -116,6 +117,21 @@ def test_every_module_stands_in_a_room(imports):
 def test_a_module_imports_only_from_rooms_to_its_left(imports):
     """errors < symbolic < model < mechanics < codegen < simulation < report < certificate, answers < pipeline < cli."""
     assert wrong_ways(imports) == []
+
+
+@pytest.mark.parametrize("divided", FOLDERS)
+def test_a_folder_of_a_room_imports_only_from_folders_to_its_left(imports, divided):
+    """expression < numeric < print < exact < solve, and so for every room that is divided."""
+    rank = {folder: k for k, folder in enumerate(FOLDERS[divided])}
+    folders = {name: name.split(".")[2] for name in imports if name.startswith(f"eomgen.{divided}.")}
+    assert set(folders.values()) == rank.keys()
+    wrong = [
+        f"{name} imports {target}"
+        for name, folder in folders.items()
+        for target in imports[name] & folders.keys()
+        if rank[folders[target]] > rank[folder]
+    ]
+    assert wrong == []
 
 
 def test_no_modules_import_one_another_in_a_ring(imports):

@@ -7,9 +7,9 @@ from math import isnan
 import numpy as np
 import pytest
 
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.layers import Layers
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.batch_evaluation import Layers
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 
 def formulas():

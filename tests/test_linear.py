@@ -6,12 +6,12 @@ from fractions import Fraction
 
 import pytest
 
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Graph, Node
-from eomgen.symbolic.linear import solved
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import solved
 
 
 def system(rows, right, unknowns, **how):

@@ -9,10 +9,8 @@ from hypothesis import given, settings
 from random_expressions import on_graph, polynomials, smooth, trigonometric
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.derivative import gradient, tangent
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Graph, Node
-from eomgen.symbolic.normal_form import (
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import (
     TooLarge,
     cancelled,
     collected_in,
@@ -23,7 +21,9 @@ from eomgen.symbolic.normal_form import (
     readable_all,
     simplest,
 )
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.print.text import to_text
 
 HALF = Fraction(1, 2)
 
@@ -347,8 +347,8 @@ def test_equations_of_a_chain_agree_with_themselves_read(graph):
 
 def test_constants_without_a_graph_are_taken_in(the):
     """sqrt(2) and cos(3/10) of the table of functions meet expressions of any graph."""
-    from eomgen.symbolic.functions import cos as cos_of
-    from eomgen.symbolic.functions import sqrt as sqrt_of
+    from eomgen.symbolic.expression.functions import cos as cos_of
+    from eomgen.symbolic.expression.functions import sqrt as sqrt_of
 
     (x,) = the("x")
     assert readable_all((sqrt_of(2), x * (x + 1)))[0] is x.graph.sqrt(2)

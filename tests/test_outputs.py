@@ -15,10 +15,10 @@ from eomgen.mechanics.outputs import COMPONENTS, LINEARIZED, MAGNITUDES, OF_MOTI
 from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.system import system_of
 from eomgen.model.checks.outputs import FUNCTIONS
-from eomgen.symbolic.derivative import derivative
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.spatial import apply, cross, dot, minus, plus, transposed
+from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, transposed
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 PLANE = """
 eomgen = 1

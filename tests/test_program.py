@@ -15,9 +15,10 @@ from eomgen.codegen.rhs import compiled
 from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits, operations
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Graph, is_zero
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Graph, is_zero
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 
 
 def tree_mass_matrix(parents: list[int]):

@@ -7,11 +7,12 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
 
 POSITIVE = ("m1", "m2", "M", "g", "h", "l", "R", "v0", "mu")
 

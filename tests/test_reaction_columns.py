@@ -26,8 +26,8 @@ from eomgen.model.values import numeric_parameters
 from eomgen.proof.trials import accelerations_at
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 MODELS = Path(__file__).parent.parent / "models"
 UNPLACED = {"balancing_robot": "ahead", "delta_robot": "platform", "foucault_pendulum": "weight"}

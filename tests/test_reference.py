@@ -18,8 +18,8 @@ from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.part import slots_of
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
-from eomgen.symbolic.functions import NAMES
-from eomgen.symbolic.units import UNITS
+from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.units import UNITS
 
 ROOT = Path(__file__).parent.parent
 REFERENCE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.reacting.release import released, stays_straight
 from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.ties import rows_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """
 eomgen = 1

@@ -34,11 +34,11 @@ from eomgen.report.payload import equations_payload
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Derivation, Entry, Formula, Name, Partial, Prose, Rate, Step
 from eomgen.report.text import WIDTH, broken, formula_text
-from eomgen.symbolic.decimals import MOST_DIGITS
-from eomgen.symbolic.derivative import gradient, substituted
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.decimals import MOST_DIGITS
+from eomgen.symbolic.print.text import to_text
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL = tuple(name for name in derivable() if name not in LARGE)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from eomgen.symbolic.derivative import gradient, tangent
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.functions import cos, sin, sqrt
-from eomgen.symbolic.graph import Graph, Scalar
-from eomgen.symbolic.roots import is_root_of_sum, readable_over, rooted
-from eomgen.symbolic.terms import TooLarge
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.roots import is_root_of_sum, readable_over, rooted
+from eomgen.symbolic.exact.terms import TooLarge
+from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.functions import cos, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph, Scalar
+from eomgen.symbolic.print.text import to_text
 
 LIMIT = 2000
 

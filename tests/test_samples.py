@@ -18,11 +18,11 @@ from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.samples import samples
 from eomgen.simulation.solvers import METHODS
-from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.splines import Sampled, number_of, spline_of
-from eomgen.symbolic.sympy_form import to_sympy
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.splines import Sampled, number_of, spline_of
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.print.sympy_form import to_sympy
+from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.follow import following
 
 ARM = """

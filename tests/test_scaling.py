@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.functions import sin, sqrt
-from eomgen.symbolic.graph import Graph, Node
-from eomgen.symbolic.scaling import monomial, scaled, solved
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.functions import sin, sqrt
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.scaling import monomial, scaled, solved
 
 
 def values(scalars):

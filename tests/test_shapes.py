@@ -21,7 +21,7 @@ from eomgen.model.shapes import (
     Sphere,
     Triangle,
 )
-from eomgen.symbolic.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph, Node
 
 EXAMPLES = {
     "particle": {"mass": 3},

@@ -7,14 +7,14 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import has_period, roots
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import has_period, roots
 
 NAMES = "x a b c g l m v".split()
 

@@ -16,8 +16,8 @@ from eomgen.codegen.targets.base import layout
 from eomgen.codegen.targets.parts import LONG, parts_of
 from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.assembly import Assembly
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import is_zero
 
 each_target = pytest.mark.parametrize("target", [target.name for target in ALL])
 

@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 import sympy
 
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Inertia,
@@ -32,6 +31,7 @@ from eomgen.symbolic.spatial import (
     transposed,
     vector_of,
 )
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
 class Exact:

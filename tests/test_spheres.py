@@ -7,12 +7,12 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.gathered import gathered, with_squares
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.normal_form import equal, readable
-from eomgen.symbolic.spheres import of_one_degree, with_square_replaced
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.collect import gathered, with_squares
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import equal, readable
+from eomgen.symbolic.exact.spheres import of_one_degree, with_square_replaced
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.print.text import to_text
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from random import Random
 
 from sympy import QQ, ring
 
-from eomgen.symbolic.squares import holds_no_square
+from eomgen.symbolic.exact.squares import holds_no_square
 
 R, *GENERATORS = ring("x y z", QQ)
 

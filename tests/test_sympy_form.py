@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from random_expressions import POINT, on_graph, smooth, trigonometric, with_floats
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.sympy_form import Rate, from_sympy, symbol, to_sympy
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.print.sympy_form import Rate, from_sympy, symbol, to_sympy
 
 
 @pytest.fixture

@@ -26,8 +26,8 @@ from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import REACTIONS, Description
 from eomgen.codegen.vectors import outputs_at, vectors
 from eomgen.errors import DerivationError, RunFailed, UsageError
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 GOLDEN = Path(__file__).parent / "golden"
 MODELS = Path(__file__).parent.parent / "models"

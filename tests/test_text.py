@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Graph, Node
-from eomgen.symbolic.layout import factors, terms
-from eomgen.symbolic.text import named_parts, text_size, to_text, with_definitions
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.layout import factors, terms
+from eomgen.symbolic.print.text import named_parts, text_size, to_text, with_definitions
 
 
 class Names(defaultdict):

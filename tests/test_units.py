@@ -8,9 +8,9 @@ from fractions import Fraction
 import pytest
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Graph
-from eomgen.symbolic.units import UNITS, parse_unit
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.units import UNITS, parse_unit
 
 
 @pytest.mark.parametrize(

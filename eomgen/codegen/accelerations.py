@@ -16,7 +16,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
-from eomgen.symbolic.dense import of_one_length
+from eomgen.symbolic.numeric.dense import of_one_length
 
 DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
 SHARE = 1e-6  # of a multiplier in a combination that vanishes

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
 LONGEST_INLINE = 60

@@ -11,8 +11,8 @@ from typing import Any
 
 from eomgen.codegen.sparsity import mask_of, members
 from eomgen.errors import DerivationError
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 Row = Sequence[Scalar]
 

@@ -62,7 +62,7 @@ class InverseDynamics:
         Raises:
             DerivationError: too many ties hang together for formulas, or they share their forces.
         """
-        from eomgen.symbolic.sympy_form import to_sympy
+        from eomgen.symbolic.print.sympy_form import to_sympy
 
         return dict(zip(self.names, to_sympy(self.graph.explicit()), strict=True))
 

@@ -14,10 +14,10 @@ from eomgen.codegen import factorization
 from eomgen.codegen.sparsity import Places, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FREE, Count, order
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.expression.traversal import FREE, Count, order
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 Row = tuple[Scalar, ...]

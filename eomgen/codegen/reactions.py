@@ -14,7 +14,7 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import named_reactions
 from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from eomgen.mechanics.explicit import by_determinants, regular_rows
 from eomgen.mechanics.reacting.balance_solution import values_at_a_state
 from eomgen.mechanics.reacting.reduced import FEW, by_independent
 from eomgen.mechanics.system import System
-from eomgen.symbolic import cramer, linear
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve import cramer, linear
 
 
 def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[Node, Scalar]:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 Row = Sequence[Scalar]
 Places = tuple[tuple[int, ...], ...]

@@ -14,8 +14,8 @@ from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.codegen.targets.base import Vector
 from eomgen.errors import DerivationError
-from eomgen.symbolic.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
 
 TOLERANCE = 1e-12
 WORST = 1e-9  # an ill-conditioned state proves nothing

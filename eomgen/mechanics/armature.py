@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from eomgen.mechanics.kinematics import Link, Motion
-from eomgen.symbolic.derivative import derivative, symbols_of
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import derivative, symbols_of
+from eomgen.symbolic.expression.graph import Scalar
 
 
 def joint_row(motion: Motion, body: str, variable: int) -> dict[int, Scalar]:

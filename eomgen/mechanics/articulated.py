@@ -19,9 +19,9 @@ from eomgen.mechanics.recursion import applied_wrenches, inertia_wrench, rate_ma
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import Branch, branches_of
 from eomgen.mechanics.work import joint_forces, placeless_forces
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.symbols import Symbols
 
 if TYPE_CHECKING:
     from eomgen.mechanics.system import System

@@ -12,8 +12,8 @@ from typing import Any
 
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.friction import Resistance
-from eomgen.symbolic.functions import function
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.scope import Scope
 from eomgen.model.joints.orientation import rate_matrix_of
 from eomgen.model.quaternions import quaternions_of
-from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import depends_on, jacobian, substituted, symbols_of
-from eomgen.symbolic.functions import combined, inner
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
+from eomgen.symbolic.expression.functions import combined, inner
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve import cramer
 
 Rows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
 

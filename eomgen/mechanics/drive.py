@@ -22,10 +22,10 @@ from eomgen.mechanics.ties import Row, Ties, holds_identically
 from eomgen.model.driven import driving_ties
 from eomgen.model.part import altered
 from eomgen.model.table import Table
-from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import derivative, substituted
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.transplant import transplanted
+from eomgen.symbolic.expression.derivative import derivative, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.transplant import transplanted
+from eomgen.symbolic.solve import cramer
 
 
 def drive(system: System, coordinate: str) -> Scalar:

@@ -12,8 +12,8 @@ from eomgen.mechanics.assembly import Assembly, Row
 from eomgen.mechanics.loops.freedom import redundant_rows
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import massless_motions
-from eomgen.symbolic import cramer
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve import cramer
 
 MOST = 6  # unknowns that are written out for a reader
 

@@ -23,11 +23,11 @@ from eomgen.mechanics.reacting.components import Component, joint_friction, norm
 from eomgen.mechanics.round_contacts import LEAST, sizes
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
-from eomgen.symbolic import cramer, linear
-from eomgen.symbolic.derivative import gradient, substituted
-from eomgen.symbolic.functions import function
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.linear import Solution
+from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.solve import cramer, linear
+from eomgen.symbolic.solve.linear import Solution
 
 
 @dataclass(frozen=True)

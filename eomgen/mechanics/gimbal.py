@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.mechanics.kinematics import Motion
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)

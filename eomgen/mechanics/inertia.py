@@ -15,8 +15,8 @@ from eomgen.mechanics.kinematics import Link, Motion, spin_between
 from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.scope import Scope
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
 
 HALF = Fraction(1, 2)
 

@@ -25,12 +25,13 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
 from eomgen.mechanics.work import joint_forces, placeless_forces
 from eomgen.model.findings import nearest
-from eomgen.symbolic import cramer, dense
-from eomgen.symbolic.derivative import depends_on, gradient, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import times
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import times
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 DEPENDENT = 1e-7  # what is left of a unit row that others make up
 NAME = "name the actuated coordinates or inputs, one for each degree of freedom"

@@ -20,10 +20,10 @@ from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.shortened import shorter
 from eomgen.model.joints.base import Z, oriented
-from eomgen.symbolic.derivative import jacobian, symbols_of
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Scalar, collected
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Scalar, collected
+from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
     Pose,

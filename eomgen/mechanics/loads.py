@@ -20,14 +20,14 @@ from eomgen.mechanics.scope import Scope, primitive
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
-from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 READABLE = 2000  # products of terms for a length or a direction
 

@@ -28,11 +28,11 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loads import body_wrench, weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import joint_forces, placeless_forces
-from eomgen.symbolic.dense import independent, solution, without_rounding
-from eomgen.symbolic.derivative import gradient
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.numeric.dense import independent, solution, without_rounding
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 REDUNDANT = 1e-11  # singular values below which a closing row follows from others
 

@@ -36,12 +36,12 @@ from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces
 from eomgen.model.forces.load import Place
-from eomgen.symbolic.derivative import derivative, substituted
-from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import derivative, substituted
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
 
 WORK = 20_000  # products of terms for making a component readable
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration

@@ -17,13 +17,13 @@ from fractions import Fraction
 from itertools import combinations
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import has_period, roots, vanishes
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.solving import has_period, roots, vanishes
 
 AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable

@@ -6,8 +6,8 @@ from eomgen.mechanics.scope import Scope
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Node
 
 
 def positive_parameters(scope: Scope) -> frozenset[Node]:

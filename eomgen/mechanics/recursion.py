@@ -15,8 +15,8 @@ from eomgen.mechanics.kinematics import GROUND
 from eomgen.mechanics.loads import Loads, body_wrench, in_ground_axes
 from eomgen.mechanics.tree import Branch, Column, Moments, origin_of
 from eomgen.model.forces.load import PointForce
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,

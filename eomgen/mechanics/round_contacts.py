@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from eomgen.symbolic.cramer import components
-from eomgen.symbolic.derivative import gradient, substituted
-from eomgen.symbolic.functions import chosen, function, inner, over, sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.functions import chosen, function, inner, over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve.cramer import components
 
 STEPS = 6  # of Newton's method; each doubles the number of right digits
 REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding

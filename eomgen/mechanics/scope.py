@@ -17,13 +17,13 @@ from eomgen.model.joints.orientation import spin_of_quaternion
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
-from eomgen.symbolic.derivative import depends_on, substituted, symbols_of, tangent
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.scalar_operations import through_samples
-from eomgen.symbolic.spatial import Vector, vector_of
-from eomgen.symbolic.splines import Sampled
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.scalar_operations import through_samples
+from eomgen.symbolic.expression.spatial import Vector, vector_of
+from eomgen.symbolic.expression.splines import Sampled
+from eomgen.symbolic.expression.symbols import Symbols
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def primitive(f: Scalar, x: Node) -> Scalar | None:
     from sympy import Integral
     from sympy.integrals.manualintegrate import manualintegrate
 
-    from eomgen.symbolic.sympy_form import from_sympy, to_sympy
+    from eomgen.symbolic.print.sympy_form import from_sympy, to_sympy
 
     expression, variable = to_sympy((f, x))
     found = manualintegrate(expression, variable)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import cancelled, readable
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import cancelled, readable
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.print.text import text_size
 
 LONGEST_ROW = 2000  # characters of a velocity row that is multiplied out
 LONGEST = 600  # characters of a scalar that is made readable

@@ -13,9 +13,9 @@ from eomgen.mechanics.constants.relations import relations_of
 from eomgen.mechanics.loops.free_speed import FreeSpeed
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 
 def rates_of(

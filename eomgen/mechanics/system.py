@@ -13,8 +13,8 @@ from eomgen.mechanics.scope import Scope, scope_of
 from eomgen.mechanics.shortened import shorter
 from eomgen.mechanics.ties import Ties, holds_identically, ties_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.symbols import Symbols
 
 
 @dataclass(frozen=True)

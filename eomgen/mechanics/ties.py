@@ -23,12 +23,12 @@ from eomgen.mechanics.shortened import shorter_row
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.symbolic.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import Wrench, apply, dot, times
-from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.print.text import text_size, to_text
 
 Push = PointForce | Couple
 

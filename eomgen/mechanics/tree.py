@@ -13,9 +13,9 @@ from fractions import Fraction
 
 from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, Link, Motion, shortened
-from eomgen.symbolic.derivative import symbols_of, tangent
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.derivative import symbols_of, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,

@@ -14,11 +14,11 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loops.closure import generic_state, number, scattered_state
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import from_potential
-from eomgen.symbolic.dense import of_one_length
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node, is_zero
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 
 REGULAR = 1e-9  # of the least eigenvalue of M, its diagonal 1: below it M is looked at closely
 FAINT = 1e-12  # of an entry of the diagonal of M, against the largest: it may be rounding

@@ -7,9 +7,9 @@ from eomgen.mechanics.inertia import spin_of
 from eomgen.mechanics.kinematics import Motion, slide_of
 from eomgen.mechanics.loads import Applied, JointEffort, Loads, in_body_axes, in_ground_axes, weights
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
-from eomgen.symbolic.derivative import gradient, jacobian
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, dot, vector_of
+from eomgen.symbolic.expression.derivative import gradient, jacobian
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, dot, vector_of
 
 
 def generalized_forces(loads: Loads) -> Row:

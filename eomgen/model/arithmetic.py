@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 Number = int | Fraction | float
 

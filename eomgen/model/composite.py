@@ -14,9 +14,9 @@ from typing import Any
 from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.shapes import MassProperties
 from eomgen.model.shapes.base import Value
-from eomgen.symbolic.functions import cos, over, sin
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.functions import cos, over, sin
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import (
     ZERO,
     Inertia,
     Matrix,

@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.model.friction import Resistance
 from eomgen.model.parts import Body, Model
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 
 @dataclass(frozen=True)

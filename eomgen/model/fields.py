@@ -12,8 +12,8 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, Path, article, nearest, shown, unknown_keys
-from eomgen.symbolic.expressions import Expression, as_expression, parse_equation
-from eomgen.symbolic.units import Unit, parse_unit
+from eomgen.symbolic.expression.expressions import Expression, as_expression, parse_equation
+from eomgen.symbolic.expression.units import Unit, parse_unit
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"

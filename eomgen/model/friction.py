@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from eomgen.model.fields import FormulaRule
 from eomgen.model.kinds import Friction
 from eomgen.model.part import Part, PartRule
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 Viscosity = Annotated[Expression, FormulaRule(None, "nonnegative")]  # -c N v: s/m
 

@@ -17,7 +17,7 @@ from eomgen.model.fields import (
     VectorRule,
 )
 from eomgen.model.samples import TimeLawRule
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 Vector = tuple[Expression, ...]
 

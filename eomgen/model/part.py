@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Union, get_args, get_origin
 from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, in_si
 from eomgen.model.findings import Finding, Path, nearest, shown, unknown_keys, whereabouts
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,8 @@ from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.units import Unit
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.units import Unit
 
 UnitText = Annotated[Unit, UNIT]
 ShapeField = Annotated[Shape, SeamRule("shape", shapes.ALL)]

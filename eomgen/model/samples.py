@@ -8,9 +8,9 @@ from typing import Any
 from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.fields import FormulaRule, TextRule
 from eomgen.model.findings import Finding, Path, shown, unknown_keys
-from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.scalar_operations import is_exact
-from eomgen.symbolic.splines import ENDS, WAYS, Sampled, spline_of
+from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.scalar_operations import is_exact
+from eomgen.symbolic.expression.splines import ENDS, WAYS, Sampled, spline_of
 
 MOST = 10_000  # samples of one function: more make code that is long to compile
 KEYS = ("samples", "between", "ends")

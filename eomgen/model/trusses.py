@@ -10,7 +10,7 @@ from eomgen.model.part import altered, made
 from eomgen.model.parts import Body, Model, Truss
 from eomgen.model.shapes.particle import Particle
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 
 def in_parts(model: Model) -> Model:

@@ -6,7 +6,7 @@ from eomgen.errors import DerivationError
 from eomgen.model.findings import Path
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 ASKED = ("given", "outputs", "unknowns")
 """Tables in which an unknown is asked for, or is one of the kinematics of an instant."""

@@ -9,7 +9,7 @@ from eomgen.model.arithmetic import Number, in_order
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.quaternions import quaternions_of
-from eomgen.symbolic.expressions import Expression, as_expression
+from eomgen.symbolic.expression.expressions import Expression, as_expression
 
 
 def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, Number]:
@@ -142,9 +142,9 @@ def _float(expression: Expression | None, values: Mapping[str, Any], where: str)
 
 def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
     """f'(0) of a given motion, by the exact derivative."""
-    from eomgen.symbolic.derivative import derivative
-    from eomgen.symbolic.evaluation import FLOAT, evaluate
-    from eomgen.symbolic.graph import Graph
+    from eomgen.symbolic.expression.derivative import derivative
+    from eomgen.symbolic.expression.graph import Graph
+    from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
     _float(motion, values, where)
     graph = Graph()

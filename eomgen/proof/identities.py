@@ -17,9 +17,9 @@ from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces, total
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.symbolic.derivative import gradient, jacobian, substituted, tangent
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 Pairs = list[tuple[Scalar, Scalar]]
 

@@ -21,10 +21,10 @@ from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.symbolic.dense import independent, scaled_condition, solution, weighted, without_rounding
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import apply, matrix_of, transposed, vector_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of
+from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution, weighted, without_rounding
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
 SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision

@@ -15,9 +15,9 @@ from eomgen.report.reaction_names import Lettered
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Formula, Law, Name, Omitted, Prose, Statement, Step
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.layout import terms
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.print.layout import terms
+from eomgen.symbolic.print.text import text_size
 
 BOOK = 12_000  # characters of the equations of all bodies together
 WORK = 2000  # products of terms for dividing a coefficient by the factor of friction

@@ -8,8 +8,8 @@ from eomgen.report.latex_names import escaped
 from eomgen.report.reading import Reader, omitted
 from eomgen.report.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement
 from eomgen.report.text import side_text
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.print.text import text_size
 
 WIDE = 96  # characters of a table, all columns beside one another
 PAGE = 5000  # characters of formulas in one step

@@ -22,9 +22,9 @@ from eomgen.report.reaction_steps import along_the_motion, letters_of, reactions
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Derivation, Law, Step
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.print.text import text_size
 
 LAGRANGE = Law(
     "d/dt(dT/dq_k') - dT/dq_k = Q_k",

@@ -20,10 +20,10 @@ from eomgen.model.trusses import is_node
 from eomgen.report.coil import coil
 from eomgen.report.figures import halo
 from eomgen.report.support_symbols import GROUNDED, Place, clamp, hinge, pin, rail, roller, weld
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Matrix, Pose, Vector, apply
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 BODY, LOAD, REACTION = "#2f5d8a", "#b03a2e", "#2e7d4f"
 FILL, PAPER = "#c9d8e8", "#ffffff"

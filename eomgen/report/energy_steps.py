@@ -14,8 +14,8 @@ from eomgen.report.motion_steps import Pair, axes, components
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Side, Statement, Step
-from eomgen.symbolic.derivative import gradient
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 T, V = Name("T"), Name("V")
 

@@ -24,13 +24,13 @@ from eomgen.report.reading import (
 )
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step
-from eomgen.symbolic.decimals import number_text
-from eomgen.symbolic.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.layout import factors, products_of
-from eomgen.symbolic.normal_form import cancelled, common_factor, readable, simple_constants
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import cancelled, common_factor, readable, simple_constants
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.print.decimals import number_text
+from eomgen.symbolic.print.layout import factors, products_of
+from eomgen.symbolic.print.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most

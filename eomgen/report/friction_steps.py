@@ -16,12 +16,12 @@ from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.report.statements import Formula, Omitted, Prose, Step
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.functions import function, sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import function, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size
 
 LONGEST = 240  # characters of an acceleration in print
 HALF = Fraction(1, 2)

@@ -17,10 +17,10 @@ from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Statement, Step
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size
 
 MOST_SPEEDS = 6  # of a system whose laws of motion are sought
 LONGEST_LAW = 400  # characters of a law that is printed

@@ -7,7 +7,7 @@ from typing import Any
 
 from eomgen.report.statements import Derivation, Formula, Grid, Prose, Statement
 from eomgen.report.text import cell_text, formula_text, prose_text, side_text
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.print.text import to_text
 
 name = "json"
 

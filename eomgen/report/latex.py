@@ -27,8 +27,8 @@ from eomgen.report.statements import (
     Table,
     parts_of,
 )
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
 
 name = "latex"
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from eomgen.report.latex_math import FUNCTIONS, Set, Setter, is_sum
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.layout import Product
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.layout import Product
 
 LINE = 87.0  # characters
 NARROW = 24.0  # a left side that stands before the alignment

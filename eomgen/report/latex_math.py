@@ -13,11 +13,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 from eomgen.report.latex_names import symbol_latex
-from eomgen.symbolic.decimals import decimal_of
-from eomgen.symbolic.graph import Node, Number, Scalar
-from eomgen.symbolic.layout import SUMS, Factor, Product, is_base, is_part_of_turn
-from eomgen.symbolic.printed import summands
-from eomgen.symbolic.splines import sampled_of
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.print.decimals import decimal_of
+from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.print.printed import summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}

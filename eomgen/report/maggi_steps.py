@@ -17,9 +17,9 @@ from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, closing, multiplier_forces, printed, readable_equations
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 MAGGI = Law(
     "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i) = sum_i N_ik*Q_i",

@@ -13,8 +13,8 @@ from eomgen.model.quaternions import quaternions_of
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Law, Meaning, Name, Prose, Rate, Side, Statement, Step, Table
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Vector, dot
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector, dot
 
 AXES = "xyz"
 ALONG = Law(

@@ -12,11 +12,11 @@ from typing import TypeGuard
 
 from eomgen.report.reading import LONGEST, NAMED_PART
 from eomgen.report.statements import Equation, Formula, Side, Statement, Step
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Graph, Node, Scalar
-from eomgen.symbolic.roots import is_root_of_sum
-from eomgen.symbolic.text import named_parts, text_size
+from eomgen.symbolic.exact.roots import is_root_of_sum
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import named_parts, text_size
 
 LONGEST_ROOT = 24  # characters of a root without a name
 

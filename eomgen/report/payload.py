@@ -17,8 +17,8 @@ from eomgen.report.json_form import VERSION, steps
 from eomgen.report.reaction_payload import reactions_payload
 from eomgen.report.reading import TRIED, Reader, without_cases
 from eomgen.report.statements import Derivation
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import text_size, to_text, with_definitions
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
 LARGEST = 16_000_000  # characters of all expressions together that are written out in full
 NAMED_PART = 200  # characters of a text in which long parts have names

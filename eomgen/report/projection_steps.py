@@ -11,7 +11,7 @@ from eomgen.report.motion_steps import Pair, at_rest, components, spins
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Entry, Formula, Law, Name, Prose, Step
-from eomgen.symbolic.graph import is_zero
+from eomgen.symbolic.expression.graph import is_zero
 
 BALANCE = Law(
     "m*a = F, I*epsilon + omega x I*omega = tau",

@@ -10,10 +10,10 @@ from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_react
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import LONGEST, Reader, length_in_print, without_cases
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.print.text import text_size, to_text
 
 SHORT = 600  # characters of a formula in which accelerations were replaced
 CLEARER = 3  # times as long as with accelerations: longer ones keep them

@@ -14,8 +14,8 @@ from eomgen.mechanics.ties import Row
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
 from eomgen.report.statements import Meaning, Table
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Vector
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector
 
 LETTERS = {"n": "N", "t": "F", "s": "S", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
 """label -> the letter of a symbol whose owner stands behind it; forces along axes have their owner in front."""

@@ -12,8 +12,8 @@ from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_react
 from eomgen.mechanics.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import Reader, readable_value, without_cases
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.text import text_size, to_text, with_definitions
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
 LARGEST = 2_000_000  # characters of all reactions together that are written out in full
 NAMED_PART = 200  # characters of a text in which long parts have names

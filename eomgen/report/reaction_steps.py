@@ -15,11 +15,11 @@ from eomgen.report.reaction_values import Readings, readings_of, shown_system
 from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print
 from eomgen.report.setting_steps import count, listed
 from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size
 
 PAGE = 6000  # characters of all reactions in print
 CLEARER = 1.5  # times as long as without accelerations: then the form with them is left out

@@ -18,10 +18,10 @@ from eomgen.mechanics.reacting.balance_solution import Combination
 from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, length_in_print, readable_value
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size
 
 LONGEST = 3000  # characters of accelerations that are put into reactions
 TOO_MANY = 2000  # components times equations, from which on one way must do

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.report.statements import Omitted
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import operations, order
-from eomgen.symbolic.functions import function
-from eomgen.symbolic.gathered import gathered, with_squares
-from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.layout import SUMS, factors
-from eomgen.symbolic.normal_form import TooLarge, common_factor, normal_form, simplest
-from eomgen.symbolic.roots import Rooted, readable_over, rooted
-from eomgen.symbolic.text import named_parts, text_size, to_text
+from eomgen.symbolic.exact.collect import gathered, with_squares
+from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form, simplest
+from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.print.layout import SUMS, factors
+from eomgen.symbolic.print.text import named_parts, text_size, to_text
 
 WORK = 2000  # products of terms that are multiplied out for one formula
 LONGEST = 1500  # characters of one formula in print

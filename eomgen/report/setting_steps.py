@@ -11,7 +11,7 @@ from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")

@@ -26,8 +26,8 @@ from eomgen.report.statements import (
     Statement,
     Table,
 )
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import to_text
 
 name = "text"
 

@@ -11,8 +11,8 @@ from eomgen.mechanics.system import System
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import parse, parse_equation
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.expressions import parse, parse_equation
+from eomgen.symbolic.expression.graph import Scalar
 
 Condition = Callable[[System], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a system."""

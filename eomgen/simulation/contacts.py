@@ -11,7 +11,7 @@ from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stretch import Stretch
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 MET = 1e-9  # of a condition's size, at which it holds
 

@@ -15,7 +15,7 @@ from eomgen.simulation.phases import Plan, passed
 from eomgen.simulation.stage import Stage, Values
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.stretch import Stretch
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 FINE = Stepping(rtol=1e-12, atol=1e-12)
 

@@ -22,8 +22,8 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.simulation.stage import RATE, Values, slack_name
-from eomgen.symbolic.derivative import jacobian, substituted
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import jacobian, substituted
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)

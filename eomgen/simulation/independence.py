@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.symbolic.dense import divisor
+from eomgen.symbolic.numeric.dense import divisor
 
 SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
 

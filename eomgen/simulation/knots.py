@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 NEAR = 1e-12  # of the time, within which an instant counts as reached
 

@@ -31,11 +31,11 @@ from eomgen.simulation.measures import nearness_of
 from eomgen.simulation.passages import PLACE
 from eomgen.simulation.projection import projection_of
 from eomgen.simulation.ways import Way
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.solving import roots, vanishes
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.solve.solving import roots, vanishes
 
 RESTING = 1e-11  # of the rates at the start, against those of a configuration nearby
 TOLERANCE = 1e-12  # of a given time

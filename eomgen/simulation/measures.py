@@ -14,7 +14,7 @@ from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
 from eomgen.simulation.independence import Independence
 from eomgen.simulation.nearness import Measure, Nearness
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 
 def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measure:

@@ -26,8 +26,8 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.loops.closure import gaps_of
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
-from eomgen.symbolic.dense import weighted, without_rounding
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.dense import weighted, without_rounding
 
 ITERATIONS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed

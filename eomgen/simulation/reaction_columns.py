@@ -24,8 +24,8 @@ from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.simulation.first_slide import begun
 from eomgen.simulation.peeling import SINGULAR, Step, solved, steps_of
 from eomgen.simulation.trajectory import Trajectory
-from eomgen.symbolic.dense import balanced
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.dense import balanced
 
 TRACELESS = 1e-6  # of an asked reaction's part in the null space
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once

@@ -15,8 +15,8 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.system import System
 from eomgen.simulation.solvers import Slope
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Scalar
 
 LONG = 60_000  # operations from which on differences are cheaper than the derivative
 SHORT = 400  # operations up to which a function is not worth a compiler

@@ -26,8 +26,8 @@ from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import Slope
 from eomgen.simulation.watching import Bound, Watch, stopped_below
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Scalar
 
 Values = Mapping[str, float]
 """Coordinates and rates by name, those of every phase alike: {"theta": 0.1, "theta'": 0}."""

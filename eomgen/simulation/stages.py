@@ -24,7 +24,7 @@ from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.stage import Stage, Values
 from eomgen.simulation.watching import Watch, sliding_velocity
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 OPEN = Mode(closed=False)
 

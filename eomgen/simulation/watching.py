@@ -24,8 +24,8 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
-from eomgen.symbolic.functions import function, sqrt
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.functions import function, sqrt
+from eomgen.symbolic.expression.graph import Scalar
 
 STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
 

@@ -1,0 +1,1 @@
+"""Formulas: expression < numeric < print < exact < solve; each folder imports only from those before it."""

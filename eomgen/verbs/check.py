@@ -7,7 +7,7 @@ from typing import Any
 from eomgen.mechanics.loops.freedom import Freedom
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.model.parts import Model, Truss
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.branch_lines import branch_lines
 from eomgen.verbs.checked import Checked, LoopStart, checked
 from eomgen.verbs.freedom_lines import freedom_lines

@@ -13,7 +13,7 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Input, Model
 from eomgen.model.samples import samples
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.verbs.given import assignments, nearest
 
 EXAMPLE = "--follow theta=run.csv"

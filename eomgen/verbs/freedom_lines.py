@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from eomgen.mechanics.loops.freedom import Freedom, RowName
 from eomgen.mechanics.loops.integrability import VelocityRow
 from eomgen.model.parts import Model
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.outcome import listed
 
 

@@ -29,7 +29,7 @@ from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expressions import Expression, parse, parse_equation
+from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
 from eomgen.verbs.given import assignments, nearest
 from eomgen.verbs.outcome import Outcome, listed
 

@@ -17,7 +17,7 @@ from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expression.expressions import parse
 from eomgen.verbs.given import assignments, nearest
 from eomgen.verbs.outcome import Outcome, prepared
 

@@ -11,10 +11,10 @@ from eomgen.mechanics.loads import body_wrench
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.constraints import ALL
-from eomgen.symbolic.derivative import gradient, tangent
-from eomgen.symbolic.evaluation import fifty_digits
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, apply, cross, plus
+from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, apply, cross, plus
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 PLANE, SPACE = "plane", "space"
 EXAMPLES = {

@@ -16,11 +16,11 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
-from eomgen.symbolic.derivative import gradient
-from eomgen.symbolic.evaluation import fifty_digits
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 PLANE, SPACE = "plane", "space"
 SLIDING = 'points = ["upper.R", "lower.M"]'  # M slides in its body

@@ -20,7 +20,7 @@ from eomgen.mechanics.system import System, system_of
 from eomgen.mechanics.tree import branches_of
 from eomgen.model.unbuilt import unbuilt
 from eomgen.proof.trials import accelerations_at
-from eomgen.symbolic.evaluation import NoValue
+from eomgen.symbolic.numeric.evaluation import NoValue
 
 MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}
 RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]

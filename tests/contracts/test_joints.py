@@ -12,8 +12,8 @@ from eomgen.mechanics.kinematics import Link, spin_between
 from eomgen.mechanics.system import System, system_of
 from eomgen.model.joints import ALL
 from eomgen.model.joints.orientation import SEQUENCES
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import apply, matrix_of, rotation, transposed
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import apply, matrix_of, rotation, transposed
 
 SEAT = 'at = [0.1, 0.2, 0.3], turned = { axis = [1, 1, 0], angle = "pi/3" }'
 QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'

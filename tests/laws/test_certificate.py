@@ -21,9 +21,9 @@ from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
 from eomgen.model.unknowns import in_loads
 from eomgen.proof.trials import accelerations_at, closed_state
-from eomgen.symbolic.evaluation import fifty_digits
-from eomgen.symbolic.graph import Scalar, linear_terms
-from eomgen.symbolic.spatial import times
+from eomgen.symbolic.expression.graph import Scalar, linear_terms
+from eomgen.symbolic.expression.spatial import times
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 MODELS = Path(__file__).parents[2] / "models"
 DERIVABLE = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))

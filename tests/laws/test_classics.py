@@ -14,9 +14,9 @@ import pytest
 
 import eomgen
 from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 MODELS = Path(__file__).parents[2] / "models"
 HEIGHT = "(L*sin(alpha) + R*(1 - cos(alpha)))"

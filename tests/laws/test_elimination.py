@@ -18,8 +18,8 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.loops import elimination
 from eomgen.mechanics.system import free_system_of, system_of
 from eomgen.proof import identities
-from eomgen.symbolic import cramer
-from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.solve import cramer
 
 HEAD = """
 eomgen = 1

@@ -13,7 +13,7 @@ from eomgen.mechanics.equilibria.holding import holding_of
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions
 from eomgen.verbs.statics import statics
 

@@ -31,12 +31,12 @@ from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.system import system_of
 from eomgen.situation import Situation, situation_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.graph import Node
-from eomgen.symbolic.spatial import Vector, cross, dot, minus, plus
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.print.text import to_text
 
 TOLERANCE = 1e-12
 

@@ -13,7 +13,7 @@ import eomgen
 from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
 from eomgen.mechanics.masses.principal import principal_of, values_of
 from eomgen.mechanics.system import System, system_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 
 def answers(**tables) -> dict[str, float]:

@@ -11,8 +11,8 @@ import eomgen
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.system import system_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
 
 HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
 

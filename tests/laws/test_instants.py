@@ -22,10 +22,10 @@ from eomgen.mechanics.places import Located, places_of
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.arrival import NeverReached, first_arrival
 from eomgen.situation import Situation, situation_of, start_of
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """
 eomgen = 1

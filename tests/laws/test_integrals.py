@@ -15,10 +15,10 @@ from eomgen.mechanics.constants.laws import laws_of_motion
 from eomgen.mechanics.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.situation import Situation, situation_of
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """
 eomgen = 1

@@ -16,9 +16,9 @@ from known_answers import CLASSICS, MODELS, OUTPUTS, SEEDS
 from newton_euler import inverse_dynamics, read_arm
 
 import eomgen
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 KNOWN = {name: (MODELS / f"{name}.toml", known) for name, known in CLASSICS.items()} | {
     name: (MODELS / "seeds" / f"{name}.toml", known) for name, known in SEEDS.items()

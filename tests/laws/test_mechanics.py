@@ -13,10 +13,10 @@ import eomgen
 from eomgen.equations import Equations
 from eomgen.model.unknowns import in_loads
 from eomgen.proof.trials import accelerations_at, closed_state, real_state
-from eomgen.symbolic.derivative import depends_on, gradient, substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.graph import Scalar, is_zero
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 MODELS = Path(__file__).parents[2] / "models"
 PATHS = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))

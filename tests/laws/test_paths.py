@@ -9,7 +9,7 @@ import pytest
 from moving import at
 from tied import GIVEN, R, l, system_with
 
-from eomgen.symbolic.evaluation import fifty_digits
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 PATH = """
 [bodies.P]

@@ -16,8 +16,8 @@ from eomgen.mechanics.drive import drive
 from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System, system_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 MOVED_INSIDE = ("S = ['l*", "A*t", 'kind = "placed"')  # seats and points that a coordinate moves: geometry, not bodies
 AT_COORDINATES = ('kind = "potential"', 'kind = "generalized"')  # at no place: no reactions follow

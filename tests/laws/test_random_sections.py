@@ -14,7 +14,7 @@ from eomgen.mechanics.statics.section_forces import KINDS, section_forces
 from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.statics.two_ways import static_reactions_of
 from eomgen.mechanics.system import system_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 FRAMES = [(1, 1), (2, 1), (3, 2), (4, 2), (5, 3), (6, 3), (7, 4), (8, 4)]
 

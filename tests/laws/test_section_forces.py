@@ -16,10 +16,10 @@ import eomgen
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import system_of
-from eomgen.symbolic.derivative import derivative, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.derivative import derivative, symbols_of
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import vanishes
 
 HEAD = 'eomgen = 1\nname = "beam"\nspace = "plane"\n'
 

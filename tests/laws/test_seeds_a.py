@@ -17,9 +17,9 @@ from seed_answers_a import ANSWERS, NUMBERS_ONLY, OTHER_NUMBERS
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import as_expression, parse
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.expressions import as_expression, parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 EXACT = [asked for asked in ASKED if asked not in NUMBERS_ONLY]

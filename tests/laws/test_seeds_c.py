@@ -15,9 +15,9 @@ from seed_oracle_c import DIGITS, ORACLES, OTHER, STATEMENT
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import as_expression, parse
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.expressions import as_expression, parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 SETS = ("statement", "other")

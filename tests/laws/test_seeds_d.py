@@ -15,9 +15,9 @@ from seed_answers_d import ANSWERS, AS_PRINTED
 from seed_oracle_d import ORACLES
 
 import eomgen
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import as_expression, parse
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.expressions import as_expression, parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 UNITS = (  # (system and output, as a pattern): the unit that is asked for

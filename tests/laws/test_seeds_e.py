@@ -14,9 +14,9 @@ from seed_answers_e import ANSWERS, UNITS
 from seed_oracle_e import ORACLES
 
 import eomgen
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import as_expression, parse
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.expressions import as_expression, parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]

@@ -14,10 +14,10 @@ from scipy.optimize import brentq
 
 import eomgen
 from eomgen.mechanics.small_motions.linearization import SmallMotions
-from eomgen.symbolic.derivative import derivative, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import parse
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.derivative import derivative, substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.print.text import to_text
 
 HEAD = 'eomgen = 1\nname = "small"\nspace = "plane"\n'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'

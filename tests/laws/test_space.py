@@ -10,7 +10,7 @@ from moving import equal
 
 import eomgen
 from eomgen.equations import Equations
-from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.exact.equality import equal_at_random_states
 
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = 'eomgen = 1\nname = "turning"\nspace = "space"\n'

@@ -485,7 +485,7 @@ def test_the_puma_has_the_inertias_and_weights_of_armstrong():
 
 
 def _at(q: np.ndarray, entries) -> np.ndarray:
-    from eomgen.symbolic.evaluation import FLOAT, evaluate
+    from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
     symbols = equations("puma560").graph.symbols
     state = dict(zip((*symbols.q, *symbols.u), (*q, *np.zeros(6)), strict=True))

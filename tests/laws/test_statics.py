@@ -16,8 +16,8 @@ from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.statics.two_ways import StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work, loads_at_rest
 from eomgen.mechanics.system import system_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
 
 MODELS = Path(__file__).parent.parent.parent / "models"
 

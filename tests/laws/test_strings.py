@@ -12,8 +12,8 @@ from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_veloci
 
 import eomgen
 from eomgen.mechanics.system import System
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
 @pytest.mark.parametrize("strands", ['\nstrands = ["up", "down"]', ""])

@@ -10,8 +10,8 @@ from lagrange import Frame, accelerations, numbers
 from textbook import SYSTEMS
 
 import eomgen
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import parse
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TOLERANCE = 1e-9  # relative to the largest of its kind; a loop near a dead centre magnifies rounding
 

@@ -10,7 +10,7 @@ from moving import at, state_of, written
 from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_velocity, g, l, m, particle, system_with, tie
 
 import eomgen
-from eomgen.symbolic.evaluation import fifty_digits
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 
 def test_a_wire_holds_the_weight_that_hangs_on_it():

@@ -621,7 +621,7 @@ def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
 
     found = check(model_of(rates("x' - R*theta'"), "plane"))
     (row,) = found.payload["velocity_rows"]
-    expression = eomgen.symbolic.expressions.parse(row["integral"])
+    expression = eomgen.symbolic.expression.expressions.parse(row["integral"])
     for x, theta, R in ((0.1, 0.4, 0.3), (1.7, 0.4 + 1.6 / 0.5, 0.5)):
         assert expression.evaluate({"x": x, "theta": theta, "R": R}) == pytest.approx(0, abs=1e-12)
     assert abs(expression.evaluate({"x": 1, "theta": 0, "R": 1})) > 0.1

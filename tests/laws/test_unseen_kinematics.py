@@ -10,7 +10,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.symbolic.graph import Graph
+from eomgen.symbolic.expression.graph import Graph
 
 PLANE = 'eomgen = 1\nspace = "plane"\n'
 

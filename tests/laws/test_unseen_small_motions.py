@@ -8,7 +8,7 @@ import pytest
 import sympy
 
 import eomgen
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.print.text import to_text
 
 MODELS = Path(__file__).parents[2] / "models"
 PARTICLE = 'shape = { kind = "particle", mass = "m" }'

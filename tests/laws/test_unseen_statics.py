@@ -20,7 +20,7 @@ from float_statics import Numbers, Structure
 
 import eomgen
 from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.expressions import as_expression
+from eomgen.symbolic.expression.expressions import as_expression
 
 MODELS = Path(__file__).parents[2] / "models"
 KNOWN: dict[str, Callable[[Numbers], Numbers]] = {}

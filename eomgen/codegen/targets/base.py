@@ -9,8 +9,8 @@ from typing import Any
 from eomgen.codegen.expressions import Call, used_once
 from eomgen.codegen.names import identifiers
 from eomgen.codegen.program import Assign, Program, Solve
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
 
 
 @dataclass(frozen=True)

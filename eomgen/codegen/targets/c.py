@@ -17,7 +17,7 @@ from eomgen.codegen.targets.c_self_test import self_test
 from eomgen.codegen.targets.c_solving import solving_text
 from eomgen.codegen.targets.parts import Parts, parts_of
 from eomgen.codegen.targets.samples import c_samples
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 _PLAIN = frozenset("sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split())
 _WRITTEN = {

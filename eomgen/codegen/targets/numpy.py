@@ -12,7 +12,7 @@ from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
 from eomgen.codegen.targets.samples import python_samples
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
 
 SCALARS = {
     **{name: f"math.{name}" for name in "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()},

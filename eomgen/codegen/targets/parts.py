@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eomgen.codegen.targets.base import Layout
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 LONG = 4000  # operations from which on a program is cut: in one function they take a compiler a second
 LENGTH = 600  # operations of a part

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from eomgen.codegen.targets.base import Layout
-from eomgen.symbolic.splines import Sampled, sampled_of
+from eomgen.symbolic.expression.splines import Sampled, sampled_of
 
 _PIECE_IN_C = """\
 static size_t piece_of(double t, size_t n, const double *bounds)

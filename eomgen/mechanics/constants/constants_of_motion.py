@@ -19,15 +19,26 @@ from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.kinematics import GROUND, velocity_of
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
 from eomgen.mechanics.system import System
-from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.exact import equal_at_random_states, exact_state, real_values
-from eomgen.symbolic.functions import inner, over
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.modular import follows
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, transposed, vector_of
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.functions import inner, over
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.modular import follows
+from eomgen.symbolic.print.text import text_size
 
 STATES = 2
 MOST_SPEEDS = 24  # of a system whose momenta are looked at

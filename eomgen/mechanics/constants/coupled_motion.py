@@ -16,9 +16,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.constants.linear_motion import Constants, waves
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve.solving import vanishes
 
 Matrix = Sequence[Sequence[Scalar]]
 Four = tuple[Scalar, ...]

@@ -8,9 +8,9 @@ from eomgen.mechanics.kinematics import velocity_of
 from eomgen.mechanics.loads import Applied, JointEffort, SystemScene, in_body_axes, in_ground_axes, joint_wrenches
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
-from eomgen.symbolic.derivative import depends_on, tangent
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import dot, times
+from eomgen.symbolic.expression.derivative import depends_on, tangent
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import dot, times
 
 
 def energy_of_motion(system: System, body: str | None = None) -> Scalar:

@@ -17,10 +17,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
-from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import readable
-from eomgen.symbolic.spatial import dot
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import dot
 
 WORK = 5_000  # products of terms for finding that a rate of momentum is a function of time
 

@@ -19,13 +19,13 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import integral_from_zero
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import depends_on, derivative, substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one law
 SEEN = 1e-3  # relative: a change that rounding does not make

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.scope import integral_from_zero
-from eomgen.symbolic.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.functions import function, over, sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
-from eomgen.symbolic.normal_form import readable
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.functions import function, over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
+from eomgen.symbolic.solve.solving import vanishes
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
 

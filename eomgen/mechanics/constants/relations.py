@@ -11,12 +11,12 @@ from eomgen.mechanics.constants.integrals import momentum_integrals
 from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
-from eomgen.symbolic import linear
-from eomgen.symbolic.derivative import depends_on, gradient, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.symbols import Symbols
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import linear
 
 LONGEST = 20_000  # products of terms for making a speed readable
 MOST_SPEEDS = 12  # of a system whose speeds are sought from its integrals

@@ -17,10 +17,10 @@ import numpy as np
 from eomgen.mechanics.equilibria.rest_places import place_near
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.mechanics.loops.consistency import is_guess
-from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.graph import Node
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.solve.solving import vanishes
 
 ASIDE = 0.01  # by which a place of rest beside the first is sought
 FOLLOWS = 1e-8  # of a column of the scaled A

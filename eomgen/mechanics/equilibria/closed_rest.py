@@ -19,13 +19,13 @@ from eomgen.mechanics.equilibria.static_equations import Row, StaticEquations
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.positive import positive_parameters
-from eomgen.symbolic.derivative import depends_on, gradient, jacobian, substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.linear import solved
-from eomgen.symbolic.normal_form import readable_all, simplest
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.linear import solved
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one value
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 SAME = 1e-6  # of V and of the eigenvalues of K, against the largest
 FLAT = 1e-8  # of an eigenvalue, below which it is 0

@@ -14,8 +14,8 @@ from eomgen.errors import UsageError
 from eomgen.mechanics.loads import start_value
 from eomgen.mechanics.system import System
 from eomgen.model.values import first_guesses, start_values
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import gradient
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import readable
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 WORK = 20_000  # products of terms for P
 ZERO = 1e-9  # of a derivative against its size nearby, below which it is 0

@@ -14,12 +14,12 @@ from eomgen.mechanics.equilibria.static_equations import StaticEquations, static
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import at_rest, values_of_parameters
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution, solved
-from eomgen.symbolic.normal_form import readable_all, simplest
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution, solved
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one value
 

@@ -18,9 +18,9 @@ import numpy as np
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.gimbal import Lock, locks_of
 from eomgen.mechanics.kinematics import Motion
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 LOCKED = 1e-6  # of the axes' determinant
 BESIDE = 1e-6  # how far from the place the moment is taken [rad]

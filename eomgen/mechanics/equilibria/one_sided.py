@@ -10,9 +10,9 @@ from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
 from eomgen.model.contacts import contacts_of
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 PULLS = -1e-9  # of a reaction against the largest of its kind and 1
 

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
-from eomgen.symbolic import cramer
-from eomgen.symbolic.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.descent import Descent
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.isolation import can_isolate, isolated
-from eomgen.symbolic.layers import Layers
-from eomgen.symbolic.normal_form import readable
-from eomgen.symbolic.solving import has_period
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.batch_evaluation import Layers
+from eomgen.symbolic.numeric.isolation import can_isolate, isolated
+from eomgen.symbolic.numeric.newton import Descent
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.solving import has_period
 
 MOST_ISOLATED = 3  # coordinates of equations whose roots are isolated
 REACH = 1000.0  # how far from the guess a coordinate that is no angle is sought, against its size and 1

@@ -12,9 +12,9 @@ from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import LIMIT, simplest
+from eomgen.symbolic.exact.normal_form import LIMIT, simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 WORK = 20_000  # products of terms for one value
 ROUNDED = 300  # for one coefficient where the place is known in numbers only, and so are the reactions

@@ -32,9 +32,9 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 NOTHING = 1e-25  # of a coordinate or multiplier, which is known to 50 digits
 

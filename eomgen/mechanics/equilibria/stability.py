@@ -24,14 +24,14 @@ from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
-from eomgen.symbolic import cramer, linear
-from eomgen.symbolic.dense import balanced, without_noise
-from eomgen.symbolic.derivative import jacobian, substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import jacobian, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.dense import balanced, without_noise
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer, linear
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one entry of K
 MOST_EXACT = 6  # freedoms of a K that is written exactly

@@ -24,14 +24,15 @@ from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
-from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.expressions import as_expression
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import as_expression
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 5_000  # products of terms for one equation
 RANK = 1e-9  # of the largest singular value of scaled rows, below which one is 0

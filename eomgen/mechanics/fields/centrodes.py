@@ -15,10 +15,10 @@ from eomgen.mechanics.fields.field import field_of, rotation_center
 from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
 from eomgen.mechanics.loops.freedom import freedoms
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import Vector, vector_of
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import Vector, vector_of
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.fields.possible import Possible
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import Vector, cross, dot, plus, times, vector_of
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, plus, times, vector_of
 
 WORK = 20_000  # products of terms for making one formula readable
 TRIED = (Fraction(0), Fraction(1), Fraction(1, 2), Fraction(2))  # values of what a constant does not depend on

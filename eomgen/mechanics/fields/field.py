@@ -13,11 +13,11 @@ from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.kinematics import Motion
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.functions import function, over, sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import function, over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.solve.solving import vanishes
 
 UP: Vector = (0, 0, 1)
 

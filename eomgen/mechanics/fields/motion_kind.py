@@ -19,10 +19,10 @@ from eomgen.mechanics.fields.field import Field, axis_point, field_of
 from eomgen.mechanics.fields.possible import Possible
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import Vector, apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector, apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.solve.solving import vanishes
 
 REST, TRANSLATION, ROTATION, PLANE = "rest", "translation", "rotation about a fixed axis", "plane motion"
 HELICAL, SLIDING = "helical motion", "rotation about a fixed axis and sliding along it"

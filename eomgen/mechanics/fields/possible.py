@@ -18,10 +18,10 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.loops.closure import State, generic_state, number
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import tangent
-from eomgen.symbolic.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import Vector, vector_of
+from eomgen.symbolic.expression.derivative import tangent
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector, vector_of
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 CORRECTIONS = 4  # each adds about 15 digits
 SEEDS = (1, 2)

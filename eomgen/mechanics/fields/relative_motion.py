@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from eomgen.mechanics.fields.field import Field, field_of
 from eomgen.mechanics.kinematics import Motion
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     Matrix,
     Vector,

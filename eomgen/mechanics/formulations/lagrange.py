@@ -14,9 +14,9 @@ from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces, per_speed
-from eomgen.symbolic.derivative import gradient, jacobian, substituted
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Scalar
 
 name = "lagrange"
 title = "Lagrange's equations"

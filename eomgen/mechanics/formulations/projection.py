@@ -12,8 +12,8 @@ from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import Loads, body_wrench, joint_wrenches, weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import placeless_forces
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import Inertia, Twist, Wrench, cross, plus
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Inertia, Twist, Wrench, cross, plus
 
 name = "projection"
 title = "projection of Newton-Euler"

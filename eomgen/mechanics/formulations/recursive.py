@@ -11,7 +11,7 @@ from eomgen.mechanics.recursion import applied_wrenches, bias_forces, mass_matri
 from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import Branch, branches_of
 from eomgen.mechanics.work import generalized_forces, joint_forces, placeless_forces
-from eomgen.symbolic.spatial import ZERO, times
+from eomgen.symbolic.expression.spatial import ZERO, times
 
 name = "recursive"
 title = "recursion over the tree"

@@ -19,12 +19,12 @@ from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import Vector, dot, minus, vector_of
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
+from eomgen.symbolic.print.text import text_size
 
 WORK = 10_000  # products of terms for making one formula readable
 LARGE = 8000  # characters of a formula that is not made readable

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.fields.field import Field, rotation_center
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector
+from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.solve.solving import vanishes
 
 Homogeneous = Vector
 """(x : y : w), a point of the plane; w = 0 at infinity."""

@@ -19,9 +19,9 @@ from eomgen.mechanics.reacting.components import Component, components_of
 from eomgen.mechanics.reacting.effects import Axes
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.part import leaves_of
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import Vector, cross, plus, vector_of
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import Vector, cross, plus, vector_of
 
 Pair = tuple[str, str]
 POINT = "point"

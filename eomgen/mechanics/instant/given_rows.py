@@ -16,13 +16,13 @@ from eomgen.mechanics.statics.rest import values_for, values_of_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
-from eomgen.symbolic.dense import independent_rows
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import solved
-from eomgen.symbolic.normal_form import collected_in, readable_all
+from eomgen.symbolic.exact.normal_form import collected_in, readable_all
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.dense import independent_rows
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import solved
 
 WORK = 50_000  # products of terms for one entry
 RANK = 1e-9  # of a row's distance from those before it, against its length

@@ -15,13 +15,13 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.worth import ROUNDED, Worth
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import ZERO_AT_50
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import Vector, dot, vector_of
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector, dot, vector_of
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
+from eomgen.symbolic.print.text import text_size
 
 WORK = 50_000  # products of terms for one value
 SHORT = 400  # characters of all values of a state that a reader can take

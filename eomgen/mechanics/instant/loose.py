@@ -16,9 +16,9 @@ from eomgen.model.part import PartRule, altered, made
 from eomgen.model.parts import Body, Coordinate, Model
 from eomgen.model.table import Table
 from eomgen.model.trusses import in_parts
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Matrix, Pose, apply, plus, product, rotation, transposed, vector_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, plus, product, rotation, transposed, vector_of
 
 SMALL = "xyz"  # the sequence of the three turns
 

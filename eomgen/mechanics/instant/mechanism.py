@@ -17,10 +17,10 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
 from eomgen.mechanics.worth import Worth
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.spatial import ZERO, Vector, minus, vector_of
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, vector_of
 
 WORK = 50_000  # products of terms for one coordinate of a centre
 

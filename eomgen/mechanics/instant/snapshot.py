@@ -35,11 +35,11 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.trusses import is_node
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.expressions import Expression, parse
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import legible
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size
 
 WORK = 50_000  # products of terms for one value
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas

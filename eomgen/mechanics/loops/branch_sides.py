@@ -13,8 +13,8 @@ from typing import Any
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import PointForce
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 IN_LINE = 1e-9  # of the triangle's area, against its longest sides
 

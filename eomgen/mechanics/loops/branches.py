@@ -23,10 +23,10 @@ from eomgen.mechanics.loops.elimination import dependent_coordinates
 from eomgen.mechanics.system import System
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.dense import independent_rows
-from eomgen.symbolic.derivative import jacobian, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.dense import independent_rows
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these

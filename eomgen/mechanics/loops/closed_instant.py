@@ -18,9 +18,9 @@ from eomgen.mechanics.places import Located, places_of
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.speeds import rates_of
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on, gradient, substituted, symbols_of
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
 LIMIT = 50_000  # products of terms for one value
 

@@ -15,10 +15,10 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues
 from eomgen.mechanics.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 STEPS = 60  # of the search
 CLOSED = 1e-28  # of a gap, against a size of 1

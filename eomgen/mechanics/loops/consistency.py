@@ -21,10 +21,10 @@ from eomgen.errors import EomgenError
 from eomgen.mechanics.loops.closure import CLOSED, closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.ties import Ties
 from eomgen.model.parts import Model
-from eomgen.symbolic.dense import balanced
-from eomgen.symbolic.derivative import depends_on, jacobian
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, jacobian
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.dense import balanced
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 ROUNDS = 12  # of walking along the ties towards the values given
 STILL = 1e-12  # of a step of such a walk, against a turn of 1 rad

@@ -8,7 +8,7 @@ from fractions import Fraction
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import SystemScene
 from eomgen.model.constraints.row import Edge
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 NEAR = 1e-5  # of what vanishes at an edge: a motion ends there
 

@@ -19,11 +19,12 @@ from eomgen.mechanics.loops.closure import generic_state, scattered_state
 from eomgen.mechanics.scope import Scope, with_speeds_named
 from eomgen.mechanics.shortened import shorter
 from eomgen.mechanics.ties import Ties, holds_identically
-from eomgen.symbolic import cramer
-from eomgen.symbolic.dense import independent
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import evaluate, fifty_digits, operations, order
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.numeric.dense import independent
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
 

@@ -17,10 +17,10 @@ import numpy as np
 
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.ties import Ties
-from eomgen.symbolic.dense import of_one_length
-from eomgen.symbolic.derivative import jacobian
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
 SHARE = 1e-6  # of a row in a combination that vanishes

@@ -20,13 +20,14 @@ from eomgen.mechanics.constants.relations import LONGEST, Relations, at_start
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.functions import function, over
-from eomgen.symbolic.graph import Node, Scalar, is_zero, linear_terms
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.functions import function, over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.solve.solving import vanishes
 
 STILL = 1e-9  # of the parts of 2 A u_s + B, below which it is 0
 

@@ -22,10 +22,10 @@ from eomgen.mechanics.scope import scope_of
 from eomgen.mechanics.ties import Ties, ties_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.symbolic.dense import independent_rows
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import Vector
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.dense import independent_rows
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 Columns = tuple[tuple[Vector, Vector], ...]
 RowName = tuple[str, int]  # of a tie, from 1

@@ -25,13 +25,13 @@ from eomgen.mechanics.loops.closure import State, generic_state
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import primitive
 from eomgen.mechanics.ties import Row, Ties, holds_identically
-from eomgen.symbolic import linear
-from eomgen.symbolic.derivative import gradient, jacobian, tangent
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import gradient, jacobian, tangent
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve import linear
 
 VANISHES = 1e-9  # of numbers from 50 digits, against their own size
 WORK = 5_000  # products of terms for making an integral readable

@@ -15,9 +15,9 @@ import numpy as np
 
 from eomgen.mechanics.loops.closure import gaps_of, movable, norms_of
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import jacobian, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
 
 TRIES = 12
 REACH = 1.5  # how far from the place others are tried [rad, m]

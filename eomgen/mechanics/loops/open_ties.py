@@ -13,9 +13,10 @@ from eomgen.mechanics.loops.nearest_miss import nearest_miss
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.own_units import in_own_unit
-from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits, order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
 NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so little is rounding

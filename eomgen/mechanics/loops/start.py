@@ -29,9 +29,9 @@ from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 
 ROUNDING = 1e-17  # of a coordinate or speed found by the ties, in SI: 0
 

@@ -23,10 +23,10 @@ from eomgen.mechanics.masses.made_of import made_of
 from eomgen.mechanics.masses.principal import principal_moments
 from eomgen.model.composite import about
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expressions import Call, Expression, Reference
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,

@@ -8,9 +8,9 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope
 from eomgen.model.composite import Composite, PlacedPiece, composite_of
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.spatial import matrix_of, vector_of
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import matrix_of, vector_of
 
 WORK = 20_000  # products of terms for making the pieces' formulas short
 

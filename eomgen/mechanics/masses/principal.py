@@ -19,15 +19,16 @@ from functools import cached_property, cmp_to_key
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.worth import known_parameters
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.functions import cos, function, over, sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import common_factor, simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import roots, vanishes
-from eomgen.symbolic.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import common_factor, simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.functions import cos, function, over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.solving import roots, vanishes
 
 WORK = 4_000  # products of terms for making one formula short
 TERMS = 60  # of a sum that is made short; a longer one nobody reads

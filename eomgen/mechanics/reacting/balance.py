@@ -22,9 +22,9 @@ from eomgen.mechanics.ties import holds_identically, slide_power
 from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
-from eomgen.symbolic.derivative import depends_on, gradient
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Vector, apply, cross, plus, times, vector_of
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector, apply, cross, plus, times, vector_of
 
 DIRECTIONS = ("x", "y", "z", "moment x", "moment y", "moment z")
 

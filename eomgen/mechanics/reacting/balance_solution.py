@@ -14,12 +14,12 @@ from eomgen.mechanics.reacting.ground_balance import along_ground
 from eomgen.mechanics.statics.unknown_loads import with_unknowns
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution
-from eomgen.symbolic.normal_form import LIMIT, readable_all
-from eomgen.symbolic.scaling import solved
+from eomgen.symbolic.exact.normal_form import LIMIT, readable_all
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.solve.scaling import solved
 
 TRIES = 20
 Combination = dict[int, Scalar]

@@ -14,9 +14,9 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, transposed, vector_of
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, transposed, vector_of
 
 EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 

@@ -14,8 +14,8 @@ from eomgen.mechanics.loads import JointEffort, in_ground_axes
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,

@@ -26,8 +26,8 @@ from eomgen.mechanics.reacting.effects import PLANE_ROWS, SPACE_ROWS, Effect, jo
 from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, plus, times
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, plus, times
 
 TOLERANCE = 1e-9  # against the sum of the sizes: the accelerations come from a solve in double precision
 

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Sequence
 
 from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.reacting.balance import Balance
-from eomgen.symbolic.evaluation import operations
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.normal_form import readable_all
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations
 
 WORK = 20_000  # products of terms for one equation
 Row = dict[int, Scalar]

@@ -14,10 +14,10 @@ from eomgen.mechanics.reacting.balance import Balance
 from eomgen.mechanics.reacting.components import Component
 from eomgen.mechanics.reacting.effects import Effect, efforts_of
 from eomgen.model.constraints.members import ends_asked
-from eomgen.symbolic.derivative import derivative
-from eomgen.symbolic.expressions import Call, Expression, Reference
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, apply, plus
+from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, plus
 
 FORCE, COUPLE = "N", "N*m"
 OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too

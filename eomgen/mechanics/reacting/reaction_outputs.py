@@ -13,8 +13,8 @@ from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.mechanics.system import System
 from eomgen.model.constraints.members import ends_asked
-from eomgen.symbolic.expressions import Call, Expression, Reference, parse
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _FORCES = {f"reaction_{axis}": i for axis, i in _AXES.items()}

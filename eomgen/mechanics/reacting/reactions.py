@@ -23,12 +23,12 @@ from eomgen.mechanics.statics.rest import at_rest
 from eomgen.mechanics.statics.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
 from eomgen.mechanics.system import System
 from eomgen.model.driven import driving_ties
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution
-from eomgen.symbolic.normal_form import LIMIT
-from eomgen.symbolic.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
+from eomgen.symbolic.exact.normal_form import LIMIT
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
+from eomgen.symbolic.solve.linear import Solution
 
 
 @dataclass(frozen=True)

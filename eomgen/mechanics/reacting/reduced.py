@@ -17,11 +17,11 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.loops.closure import State, generic_state
 from eomgen.mechanics.loops.start import begun_state
 from eomgen.mechanics.system import System
-from eomgen.symbolic import cramer
-from eomgen.symbolic.dense import independent_rows
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.dense import independent_rows
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 FEW = 3  # freedoms
 INDEPENDENT = 1e-7

@@ -18,12 +18,12 @@ from eomgen.model.forces.load import PointForce
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.table import Table
-from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, times, transposed, vector_of
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, times, transposed, vector_of
+from eomgen.symbolic.print.text import to_text
 
 DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip", "s": "slip"}
 """What a body can do along a row of forces that has ended."""

@@ -22,10 +22,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.trusses import called, declared_at
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.linear import Solution
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
 
 HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.small_motions.polynomial import LIMIT, Polynomial, factors_of
-from eomgen.symbolic import cramer
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expansion import Expansion
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.terms import TooLarge, content
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.terms import TooLarge, content
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 MOST_CONDITIONS = 6  # degree of a polynomial whose Hurwitz determinants are written
 MOST_EVEN = 4  # degree in s^2 of one whose coefficients are written as conditions

@@ -14,9 +14,9 @@ from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.symbolic import dense
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 WIDE = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
 MOST_BY_DIGITS = 30  # rows of a matrix whose eigenvalues are sought with more digits

@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 from dataclasses import field as dataclass_field
 from typing import Any, Protocol
 
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.functions import inner, over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import vanishes
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import inner, over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one entry
 

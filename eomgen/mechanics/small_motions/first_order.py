@@ -19,11 +19,11 @@ from eomgen.mechanics.small_motions.field import Matrix, Numbers, at
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.system import System
 from eomgen.mechanics.wellposed import refuse_massless
-from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on, jacobian, symbols_of
-from eomgen.symbolic.evaluation import fifty_digits
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 NOISE = 1e-14  # of a row, below which an entry is what is left of 0 at a place that is known in numbers
 RANK = 1e-9  # of balanced rows, below which one follows from others

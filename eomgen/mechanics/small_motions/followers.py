@@ -9,9 +9,9 @@ from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.reduction import dependent_speeds
 from eomgen.mechanics.small_motions.reference import Reference, in_closed_form
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import NoValue
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import NoValue
 
 MOST = 8  # dependent speeds that are taken out exactly
 

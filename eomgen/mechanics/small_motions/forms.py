@@ -18,7 +18,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Field, Matrix, negative, product, solved, total, turned
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.symbolic.dense import without_noise
+from eomgen.symbolic.numeric.dense import without_noise
 
 NOTHING = 1e-9  # of a coefficient, against the largest of its matrix and 1e-3 of it
 ROUNDING = 1e-12  # of an entry against the largest of its row and of its column, below which it is 0

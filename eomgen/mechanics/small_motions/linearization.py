@@ -36,8 +36,9 @@ from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.evaluation import NoValue, operations
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.evaluation import NoValue
 
 REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly

@@ -22,10 +22,10 @@ from eomgen.mechanics.small_motions.polynomial import (
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.statics.rest import values_of_parameters
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.print.text import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
 LONGEST = 6_000  # characters of a polynomial whose roots are written

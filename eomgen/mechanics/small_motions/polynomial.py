@@ -13,16 +13,16 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.forms import is_second_order
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.symbolic import cramer
-from eomgen.symbolic.circular_equations import wave_free
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.expansion import Expansion
-from eomgen.symbolic.factoring import factored, square_root
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import coefficients
-from eomgen.symbolic.terms import Terms, TooLarge, plus
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.factoring import factored, square_root
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.terms import Terms, TooLarge, plus
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.circular_equations import wave_free
+from eomgen.symbolic.solve.solving import coefficients
 
 MOST = 6  # rows of a determinant that is written out
 LIMIT = 50_000  # products of terms

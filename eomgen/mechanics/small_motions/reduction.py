@@ -35,8 +35,8 @@ from eomgen.mechanics.small_motions.field import (
     turned,
 )
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
-from eomgen.symbolic.functions import inner
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node
 
 REST = 1e-9  # of a force that nothing balances, against the largest
 NEAR = 1e-12  # displacement, speed or change of it in 1 s whose forces count as none, against what is there or 1

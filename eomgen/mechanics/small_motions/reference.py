@@ -23,9 +23,9 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 STILL = 1e-12  # of a rate, below which a coordinate stands still
 EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"

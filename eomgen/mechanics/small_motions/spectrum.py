@@ -18,7 +18,7 @@ from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
 
 STILL = 1e-9  # of a real part against the eigenvalue, below which a motion neither grows nor fades
 NOISE = 1e-12  # the same against the largest eigenvalue

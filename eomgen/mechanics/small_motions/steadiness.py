@@ -15,10 +15,11 @@ from eomgen.mechanics.small_motions.forms import NOTHING, carrying, floats, seen
 from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
-from eomgen.symbolic import dense
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import NoValue, fifty_digits, order
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 
 TIMES = (0.3717281828, 1.1931415926)  # later states of a steady motion, at which it must look the same [of one unit]
 CORNERS = frozenset(("abs", "sign", "min", "max", "select"))

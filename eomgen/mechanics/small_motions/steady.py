@@ -24,8 +24,8 @@ from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choic
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, dependent_speeds, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 STEPS = 40
 LONGEST = 0.3  # of one step, against what has moved or 1

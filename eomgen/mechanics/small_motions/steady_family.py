@@ -26,12 +26,13 @@ from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choic
 from eomgen.mechanics.small_motions.reduction import Reducing, dependent_speeds
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.small_motions.steady import Here
-from eomgen.symbolic.derivative import depends_on, substituted
-from eomgen.symbolic.evaluation import NoValue, operations
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one condition
 MOST_OPERATIONS = 600  # of the equations of motion that are written as conditions

@@ -16,13 +16,13 @@ from eomgen.mechanics.small_motions.polynomial import (
     polynomial_in,
 )
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.symbolic import cramer
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.expansion import Expansion
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, is_zero
-from eomgen.symbolic.quotient import reduced
-from eomgen.symbolic.terms import TooLarge
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.quotient import reduced
+from eomgen.symbolic.exact.terms import TooLarge
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import cramer
 
 ROUNDING = 1e-10  # of a coefficient in floats
 

@@ -19,8 +19,8 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.system import System
 from eomgen.model.quaternions import quaternions_of
-from eomgen.symbolic.evaluation import fifty_digits
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 NAME = "turn_"
 

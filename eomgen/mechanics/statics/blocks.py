@@ -11,10 +11,10 @@ from eomgen.mechanics.statics.velocity_plan import Center, Plan
 from eomgen.mechanics.system import System
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.evaluation import ZERO_AT_50
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
 
 
 @dataclass(frozen=True)

@@ -24,11 +24,11 @@ from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import Call, single_call
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector, dot, plus, vector_of
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import Call, single_call
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, plus, vector_of
+from eomgen.symbolic.solve.solving import vanishes
 
 Thing = TypeVar("Thing")
 Place = tuple[str, Vector]

@@ -10,10 +10,10 @@ from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.trusses import declared_at
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import Vector, cross, dot, times, vector_of
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, times, vector_of
+from eomgen.symbolic.print.text import to_text
 
 MOST_NAMES = 6  # of parts that move together
 SPRINGS = ("spring", "torsion_spring")

@@ -16,14 +16,14 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.statics.rest import values_of_parameters
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import readable, readable_all, simplest
-from eomgen.symbolic.signs import sign_of_terms
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one length
 NEGLIGIBLE = 1e-30  # of a number of 50 digits

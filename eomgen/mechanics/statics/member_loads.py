@@ -19,10 +19,10 @@ from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Sizes
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, plus, times, transposed, vector_of
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, plus, times, transposed, vector_of
+from eomgen.symbolic.solve.solving import vanishes
 
 
 def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vector | None:

@@ -17,9 +17,9 @@ from eomgen.mechanics.scope import Scope
 from eomgen.mechanics.system import System
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 TRIES = 20
 

@@ -13,8 +13,8 @@ from eomgen.mechanics.contacts import Mode, Modes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model
-from eomgen.symbolic.functions import function, sqrt
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.functions import function, sqrt
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)

@@ -21,11 +21,11 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.member_loads import Line, MemberLoads
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import ZERO, Vector, dot, minus, plus, times, vector_of
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, minus, plus, times, vector_of
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import vanishes
 
 KINDS = ("axial_force", "shear_force", "bending_moment")
 HALF, SIXTH = Fraction(1, 2), Fraction(1, 6)

@@ -21,11 +21,11 @@ from eomgen.mechanics.statics.member_loads import place_of
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.expressions import Call, Reference, parse
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import Call, Reference, parse
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.print.text import to_text
 
 
 @dataclass(frozen=True)

@@ -27,13 +27,13 @@ from eomgen.mechanics.statics.unknown_loads import slope
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
-from eomgen.symbolic.dense import sparse_rank
-from eomgen.symbolic.derivative import derivative, substituted, tangent
-from eomgen.symbolic.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution
-from eomgen.symbolic.normal_form import readable_all
-from eomgen.symbolic.scaling import solved
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.dense import sparse_rank
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.solve.scaling import solved
 
 WORK = 50_000  # products of terms for one velocity
 

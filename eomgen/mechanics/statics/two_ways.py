@@ -26,11 +26,11 @@ from eomgen.mechanics.statics.virtual_work import (
 )
 from eomgen.mechanics.system import System
 from eomgen.model.findings import nearest
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expressions import single_call
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.normal_form import simplest
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import single_call
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 WORK = 50_000  # products of terms for one value
 UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}

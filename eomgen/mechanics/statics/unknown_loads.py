@@ -12,10 +12,10 @@ from eomgen.mechanics.loops.closure import generic_state
 from eomgen.mechanics.reacting.balance import Balance, BodyEquation
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import holds_identically
-from eomgen.symbolic.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.linear import Solution
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
 
 CLOSED = 1e-20  # of what is left of the balance where the ties hold to 1e-28
 

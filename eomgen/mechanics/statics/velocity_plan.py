@@ -18,12 +18,12 @@ from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.reacting.effects import Axes, Effect
 from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.evaluation import ZERO_AT_50, evaluate, fifty_digits
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import readable_all, simplest
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, minus, vector_of
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, vector_of
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, evaluate, fifty_digits
 
 WORK = 20_000  # products of terms for one velocity
 SIXTH = Fraction(1, 6)

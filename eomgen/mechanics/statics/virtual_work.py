@@ -18,10 +18,10 @@ from eomgen.mechanics.statics.blocks import turning_by_one
 from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
-from eomgen.symbolic.derivative import substituted
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import times
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import times
 
 Load = PointForce | Couple | SpreadLoad
 

@@ -8,7 +8,7 @@ from typing import Any
 from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Equation, Leaf
 from eomgen.model.findings import Finding, Path
 from eomgen.model.part import leaves_of
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
 OBJECT_TABLES = ("bodies", "trusses", "constraints")

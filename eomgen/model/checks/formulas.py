@@ -7,8 +7,8 @@ from eomgen.model.arithmetic import in_order
 from eomgen.model.checks.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
 from eomgen.model.findings import Finding, Path, article, nearest, whereabouts
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.units import Unit, parse_unit
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.units import Unit, parse_unit
 
 LONGEST_TRAIL = 10  # names of a ring that are shown
 

@@ -10,7 +10,7 @@ from eomgen.model.checks.triangle import ROUNDING, possible
 from eomgen.model.composite import Composite, about, composite_of
 from eomgen.model.findings import Finding, Path
 from eomgen.model.part import leaves_of
-from eomgen.symbolic.expressions import Expression
+from eomgen.symbolic.expression.expressions import Expression
 
 
 def made(catalog: Catalog, values: Mapping[str, Number]) -> Iterator[Finding]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from eomgen.model.checks.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
 from eomgen.model.findings import Finding, one_of
-from eomgen.symbolic.expressions import is_name
+from eomgen.symbolic.expression.expressions import is_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
 _WORD = re.compile(r"\w+")

@@ -11,8 +11,8 @@ from eomgen.model.checks.made import made
 from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, Path, shown, whereabouts
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.spatial import cross, vector_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.spatial import cross, vector_of
 
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:

@@ -9,8 +9,8 @@ from eomgen.model.checks.references import missing_point
 from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, nearest, whereabouts
-from eomgen.symbolic.expressions import Call, Expression, Reference, parse
-from eomgen.symbolic.functions import NAMES
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
+from eomgen.symbolic.expression.functions import NAMES
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True, kw_only=True)

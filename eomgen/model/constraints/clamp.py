@@ -9,8 +9,8 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import PointName, Points
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import IDENTITY
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import IDENTITY
 
 
 @dataclass(frozen=True, kw_only=True)

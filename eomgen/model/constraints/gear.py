@@ -8,7 +8,7 @@ from eomgen.model.constraints.plane import Push, same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, Scalar, Scene
 from eomgen.model.kinds import Pure, TwoBodies
-from eomgen.symbolic.spatial import times
+from eomgen.symbolic.expression.spatial import times
 
 
 @dataclass(frozen=True, kw_only=True)

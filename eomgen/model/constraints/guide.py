@@ -9,8 +9,8 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import IDENTITY, dot
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import IDENTITY, dot
 
 
 @dataclass(frozen=True, kw_only=True)

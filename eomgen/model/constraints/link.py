@@ -9,8 +9,8 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Scalar, Scene, Vector
 from eomgen.model.kinds import Flag, Length, TwoPoints
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.spatial import dot, minus, times
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.spatial import dot, minus, times
 
 
 @dataclass(frozen=True, kw_only=True)

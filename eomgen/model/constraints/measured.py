@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Push, Touch, angle_of, opposite
 from eomgen.model.forces.load import Couple, Place, Scalar, Scene, Vector
-from eomgen.symbolic.expressions import Call, Reference
-from eomgen.symbolic.spatial import IDENTITY, ZERO, apply, dot, minus, times
+from eomgen.symbolic.expression.expressions import Call, Reference
+from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, apply, dot, minus, times
 
 GROUND = "ground"
 

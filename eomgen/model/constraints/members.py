@@ -12,11 +12,11 @@ from eomgen.model.containers import ListRule
 from eomgen.model.fields import NameRule
 from eomgen.model.forces.load import PointForce, Scalar, Scene, Vector
 from eomgen.model.kinds import Text
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.expressions import Call, Reference
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Node
-from eomgen.symbolic.spatial import dot, minus, times
+from eomgen.symbolic.expression.expressions import Call, Reference
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.spatial import dot, minus, times
+from eomgen.symbolic.expression.traversal import order
 
 
 def ends_asked(call: Call) -> tuple[str, str] | None:

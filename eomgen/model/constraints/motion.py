@@ -7,7 +7,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import CoordinateName, MotionLaw
-from eomgen.symbolic.expressions import as_expression
+from eomgen.symbolic.expression.expressions import as_expression
 
 
 @dataclass(frozen=True, kw_only=True)

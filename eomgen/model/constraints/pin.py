@@ -8,8 +8,8 @@ from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import IDENTITY, apply, cross, dot, matrix_of, minus, times, transposed
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import IDENTITY, apply, cross, dot, matrix_of, minus, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
-from eomgen.symbolic.spatial import ZERO, cross, times
+from eomgen.symbolic.expression.spatial import ZERO, cross, times
 
 Push = PointForce | Couple
 

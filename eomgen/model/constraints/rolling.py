@@ -23,7 +23,7 @@ from eomgen.model.forces.load import Scalar, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
-from eomgen.symbolic.spatial import minus
+from eomgen.symbolic.expression.spatial import minus
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 from eomgen.errors import ModelError
 from eomgen.model.forces.load import Scalar, Scene, Vector
 from eomgen.model.joints.base import unit
-from eomgen.symbolic.functions import cos, over, sin, sqrt
-from eomgen.symbolic.graph import Node
-from eomgen.symbolic.normal_form import readable
-from eomgen.symbolic.spatial import apply, cross, dot, minus, plus, times, transposed
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.print.text import text_size
 
 FLAT = 1e-6  # rho of a wheel that lies flat
 LONGEST, WORK = 400, 500  # characters and products of terms of a cosine that is multiplied out

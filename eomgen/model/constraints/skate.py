@@ -9,8 +9,8 @@ from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import apply, cross, dot, times
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.spatial import apply, cross, dot, times
 
 
 @dataclass(frozen=True, kw_only=True)

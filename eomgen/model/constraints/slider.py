@@ -10,7 +10,7 @@ from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
-from eomgen.symbolic.spatial import apply, dot, minus
+from eomgen.symbolic.expression.spatial import apply, dot, minus
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,8 +11,8 @@ from eomgen.model.constraints.plane import Push, angle_of, left
 from eomgen.model.constraints.row import TieRow, normals_of
 from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
 from eomgen.model.joints.base import Z
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.spatial import cross, dot, minus, plus, times
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.spatial import cross, dot, minus, plus, times
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
 BACKWARDS = -1e-9  # a strand that is shorter runs against its direction [m]

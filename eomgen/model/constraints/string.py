@@ -13,8 +13,8 @@ from eomgen.model.forces.load import Scene, Vector
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.spatial import apply
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.spatial import apply
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene, Vector
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
-from eomgen.symbolic.spatial import dot, minus
+from eomgen.symbolic.expression.spatial import dot, minus
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,8 +12,8 @@ from eomgen.model.forces.load import Place, Scalar, Scene, Vector
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import ZERO, apply, cross, dot, minus, plus, times
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.spatial import ZERO, apply, cross, dot, minus, plus, times
 
 
 @dataclass(frozen=True, kw_only=True)

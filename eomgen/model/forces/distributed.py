@@ -8,9 +8,9 @@ from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, SpreadLoad, Vector
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import dot, minus, plus, times
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import dot, minus, plus, times
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from typing import ClassVar
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, UniformField
 from eomgen.model.kinds import Acceleration, Bodies
-from eomgen.symbolic.spatial import dot, times
+from eomgen.symbolic.expression.spatial import dot, times
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.model.forces.load import Load, Place, PointForce, Scalar, Scene, Vector
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import dot, minus, times
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import dot, minus, times
 
 
 @dataclass(frozen=True)

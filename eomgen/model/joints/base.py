@@ -13,9 +13,9 @@ from eomgen.errors import NotYet
 from eomgen.model.containers import ListRule
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, over, sin, sqrt
-from eomgen.symbolic.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation
 
 Value = Callable[[Expression], Any]
 Scalars = tuple[Any, ...]

@@ -17,9 +17,9 @@ from eomgen.model.joints.base import (
     vector,
 )
 from eomgen.model.kinds import Angle, Displacement, Force, SpaceDirection, Torque
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Pose, Vector, rotation, times
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Pose, Vector, rotation, times
 
 
 @dataclass(frozen=True, kw_only=True)

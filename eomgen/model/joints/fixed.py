@@ -5,9 +5,9 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.kinds import ConstantAngle, SpaceDirection
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Pose, rotation
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Pose, rotation
 
 
 @dataclass(frozen=True, kw_only=True)

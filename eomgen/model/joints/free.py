@@ -8,8 +8,8 @@ from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y
 from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement
-from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.spatial import Pose, apply, transposed, vector_of
+from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.spatial import Pose, apply, transposed, vector_of
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 

@@ -13,9 +13,9 @@ from typing import Annotated, Any
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
 from eomgen.model.joints.base import Column, X, Y, Z, angular
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import IDENTITY, Matrix, Vector, apply, product, rotation, transposed
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, apply, product, rotation, transposed
 
 HALF = Fraction(1, 2)
 AXES = {"x": X, "y": Y, "z": Z}

@@ -9,9 +9,9 @@ from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn
 from eomgen.model.part import Part, PartRule, made, slots_of
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import chosen, cos, over, sin
-from eomgen.symbolic.spatial import Pose, Vector, plus
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import chosen, cos, over, sin
+from eomgen.symbolic.expression.spatial import Pose, Vector, plus
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
 from eomgen.model.kinds import Angle, SpaceDirection
-from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Matrix, Pose, apply, rotation, transposed
+from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

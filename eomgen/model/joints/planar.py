@@ -5,9 +5,9 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
 from eomgen.model.kinds import Angle, Displacement
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Pose, apply, rotation, transposed
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Pose, apply, rotation, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,9 +28,9 @@ from eomgen.model.kinds import (
     RestLength,
     RotorInertia,
 )
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Matrix, Pose, apply, rotation, times, transposed
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,9 +19,9 @@ from eomgen.model.joints.base import (
     vector,
 )
 from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Pose, rotation
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Pose, rotation
 
 
 @dataclass(frozen=True, kw_only=True)

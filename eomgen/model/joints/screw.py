@@ -18,9 +18,9 @@ from eomgen.model.joints.base import (
     vector,
 )
 from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Pose, Vector, rotation, times
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Pose, Vector, rotation, times
 
 Pitch = Annotated[Expression, FormulaRule("m")]
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
 from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
-from eomgen.symbolic.expressions import Expression, as_expression
-from eomgen.symbolic.spatial import Pose
+from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.spatial import Pose
 
 
 @dataclass(frozen=True, kw_only=True)

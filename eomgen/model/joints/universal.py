@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import cos, sin
-from eomgen.symbolic.spatial import Matrix, Pose, Vector, apply, cross, product, rotation, transposed
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply, cross, product, rotation, transposed
 
 TwoAxes = Annotated[
     tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule(), length=3, nonzero=True), 2, 2)

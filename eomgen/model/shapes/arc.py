@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, Opening
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, circle, diagonal, more_than_a_turn
-from eomgen.symbolic.functions import over, sin
+from eomgen.symbolic.expression.functions import over, sin
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Mass
 from eomgen.model.part import Part
-from eomgen.symbolic.expressions import Expression, parse
-from eomgen.symbolic.spatial import ZERO, Matrix, Vector, matrix_of
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
 
 Line = tuple[tuple[float, float], ...]
 Value = Callable[[Expression], Any]

@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)

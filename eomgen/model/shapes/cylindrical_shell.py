@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)

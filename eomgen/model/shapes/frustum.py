@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.functions import over
+from eomgen.symbolic.expression.functions import over
 
 
 @dataclass(frozen=True, kw_only=True)

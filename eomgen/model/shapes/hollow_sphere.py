@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import function, over
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import function, over
 
 Vertices = Annotated[tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=2), least=3)]
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, diagonal
 from eomgen.model.shapes.polygon import Polygon, Vertices
-from eomgen.symbolic.spatial import added
+from eomgen.symbolic.expression.spatial import added
 
 
 @dataclass(frozen=True, kw_only=True)

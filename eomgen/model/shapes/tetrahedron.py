@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.shapes.base import MassProperties, Shape, Value, tensor
-from eomgen.symbolic.expressions import Expression
-from eomgen.symbolic.functions import function
-from eomgen.symbolic.spatial import Vector, cross, dot, minus, vector_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
 
 Corners = Annotated[
     tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=3), least=4, most=4)

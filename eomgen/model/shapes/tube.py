@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO
 
 
 @dataclass(frozen=True, kw_only=True)

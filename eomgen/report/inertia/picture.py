@@ -14,7 +14,7 @@ from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
 
 CENTER, AXIS = "#b03a2e", "#2e7d4f"
 

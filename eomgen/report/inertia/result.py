@@ -36,10 +36,10 @@ from eomgen.report.json_form import steps
 from eomgen.report.setting_steps import setting_steps
 from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
-from eomgen.symbolic.derivative import symbols_of
-from eomgen.symbolic.graph import is_zero
-from eomgen.symbolic.spatial import IDENTITY, Vector, minus
-from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import IDENTITY, Vector, minus
+from eomgen.symbolic.print.text import text_size, to_text
 
 TENSOR = Law(
     "I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",

@@ -13,9 +13,9 @@ from eomgen.mechanics.masses.principal import short_form, values_of
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.model.composite import about, scaled
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import (
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
     Pose,

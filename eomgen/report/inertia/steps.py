@@ -13,11 +13,11 @@ from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.report.inertia.rows import Sum
 from eomgen.report.latex_names import lettered
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement
-from eomgen.symbolic.evaluation import order
-from eomgen.symbolic.functions import over, sqrt
-from eomgen.symbolic.graph import Scalar, is_zero
-from eomgen.symbolic.spatial import Matrix, Vector
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Matrix, Vector
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size
 
 AXES = "xyz"
 LONGEST = 24  # characters of an exact entry of a table; where one is longer, all are numbers

@@ -13,9 +13,10 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.fields.centrodes import Centrodes
 from eomgen.mechanics.fields.field import field_of
 from eomgen.mechanics.system import System
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.evaluation import FLOAT, evaluate, order
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 STEPS = 240  # to each side
 FAR = 8.0  # sizes of the mechanism beyond which a centre is not drawn

@@ -12,12 +12,12 @@ from eomgen.mechanics.instant.body_motion import BodyMotion, body_motions
 from eomgen.mechanics.system import System
 from eomgen.report.bounded import tabled
 from eomgen.report.statements import Cell, Formula, Law, Name, Piece, Prose, Statement, Step
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.normal_form import simplest
-from eomgen.symbolic.solving import vanishes
-from eomgen.symbolic.spatial import Vector
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import vanishes
 
 AXES = "xyz"
 WORK = 5000  # products of terms for making one formula readable

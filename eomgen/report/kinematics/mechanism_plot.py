@@ -23,8 +23,8 @@ from eomgen.report.drawing import ARROW, REACTION, Sketch, draw_model
 from eomgen.report.figures import Picture
 from eomgen.report.kinematics.centrode_plot import centrode_panel
 from eomgen.report.support_symbols import Place
-from eomgen.symbolic.derivative import substituted, symbols_of
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
 
 SIZE, BELOW = (11.0, 8.0), 4.5  # of the mechanism, and the height of a row of centrodes below it [inches]
 MOST_CENTRODES = 6

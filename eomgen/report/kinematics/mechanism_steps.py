@@ -13,10 +13,11 @@ from eomgen.mechanics.worth import ROUNDED
 from eomgen.report.latex_names import lettered
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
-from eomgen.symbolic.evaluation import ZERO_AT_50, operations
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Vector
-from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
+from eomgen.symbolic.print.text import text_size, to_text
 
 LONGEST = 60  # characters of a value in a table
 LONGEST_NUMBER = 12

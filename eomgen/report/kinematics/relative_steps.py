@@ -16,10 +16,10 @@ from eomgen.mechanics.system import System
 from eomgen.report.bounded import tabled
 from eomgen.report.motion_steps import axes
 from eomgen.report.statements import Grid, Law, Prose, Statement, Step
-from eomgen.symbolic.functions import sqrt
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import ZERO, Vector, apply, dot, plus, times, transposed
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, plus, times, transposed
+from eomgen.symbolic.print.text import to_text
 
 VELOCITY = Law("v = v_t + v_r, v_t = v_O + omega x r", r"v = v_{t} + v_{r}, \quad v_{t} = v_{O} + \omega \times r")
 ACCELERATION = Law(

@@ -21,9 +21,9 @@ from eomgen.report.kinematics.relative_steps import relative_payload, relative_s
 from eomgen.report.setting_steps import data_step
 from eomgen.report.shown import Shown
 from eomgen.report.statements import Cell, Derivation, Law, Piece, Prose, Step
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.spatial import Vector
-from eomgen.symbolic.text import text_size, to_text
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.print.text import text_size, to_text
 
 LINE = 80  # characters of a formula among the fields
 LONGEST = 20_000  # characters of an exact value

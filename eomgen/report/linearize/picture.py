@@ -12,7 +12,7 @@ from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.mechanics.system import System
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture, mathtext
-from eomgen.symbolic.graph import Node
+from eomgen.symbolic.expression.graph import Node
 
 MOST = 9  # modes that are drawn
 SIDE = 3.4  # of one panel [inches]

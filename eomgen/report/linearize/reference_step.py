@@ -7,8 +7,8 @@ from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY, Reference
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Prose, Statement, Step, narrow_grid
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.print.text import text_size
 
 LONG = 400  # characters of a condition or formula of a family
 SHORT = 90  # characters of a formula in a table

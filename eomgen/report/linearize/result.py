@@ -29,10 +29,10 @@ from eomgen.report.setting_steps import data_step
 from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
 from eomgen.simulation.course import modes_at_start
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.expressions import Call, Expression
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import to_text
 
 METHOD = "linearization"
 
@@ -86,7 +86,7 @@ class Linearization(Shown):
         """{"M": M, "C": C, "K": K, "B": B} as sympy matrices of the parameters; {} where only numbers are known."""
         import sympy
 
-        from eomgen.symbolic.sympy_form import to_sympy
+        from eomgen.symbolic.print.sympy_form import to_sympy
 
         letters = "MCKB" if self.is_exact else ""
         return {letter: sympy.Matrix([to_sympy(row) for row in getattr(self.equations, letter)]) for letter in letters}

@@ -18,10 +18,10 @@ from eomgen.report.linearize.reference_step import reference_step
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
 from eomgen.report.statements import Entry as Place
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.functions import over
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.text import text_size
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.text import text_size
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
 FREE = Law("M*q'' + C*q' + K*q = 0", r"M \ddot{q} + C \dot{q} + K q = 0")

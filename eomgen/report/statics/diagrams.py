@@ -11,8 +11,8 @@ from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, Extreme, Piece, SectionForces
 from eomgen.report.figures import halo
 from eomgen.report.quantities import Scale, figures
-from eomgen.symbolic.evaluation import FLOAT, evaluate
-from eomgen.symbolic.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 COLORS = {"axial_force": "#2457a6", "shear_force": "#2e7d4f", "bending_moment": "#b03a2e"}
 UNITS = {"axial_force": "N", "shear_force": "N", "bending_moment": "N m"}

@@ -21,9 +21,9 @@ from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
 from eomgen.report.statics.equilibrium_picture import resting_picture
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps
-from eomgen.symbolic.derivative import depends_on
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import to_text
 
 METHOD = "equilibrium"
 

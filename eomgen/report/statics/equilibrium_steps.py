@@ -14,7 +14,7 @@ from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count, listed
 from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Prose, Statement, Step, narrow_grid
-from eomgen.symbolic.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
 REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")

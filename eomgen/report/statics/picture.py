@@ -27,9 +27,9 @@ from eomgen.report.quantities import Scale, scale_of
 from eomgen.report.statics.diagrams import diagram_panels, influence_panel
 from eomgen.report.statics.section_steps import Sections
 from eomgen.report.support_symbols import Place
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.spatial import ZERO
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.print.text import to_text
 
 TENSION, COMPRESSION = "#2457a6", "#b03a2e"
 NOTHING = 1e-9  # of the largest force, below which none is drawn

@@ -34,8 +34,8 @@ from eomgen.report.statics.section_steps import (
     sections_of,
 )
 from eomgen.report.statics.steps import contacts_step, statics_derivation
-from eomgen.symbolic.graph import Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.print.text import to_text
 
 ROUNDING = 1e-9  # of a force that is 0 but for rounding
 

@@ -13,8 +13,8 @@ from eomgen.mechanics.statics.section_forces import KINDS, Piece, SectionForces,
 from eomgen.model.trusses import is_node
 from eomgen.report.latex_names import lettered
 from eomgen.report.statements import Formula, Grid, Law, Name, Prose, Side, Statement, Step
-from eomgen.symbolic.graph import Node, Scalar
-from eomgen.symbolic.text import to_text
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import to_text
 
 LETTERS = dict(zip(KINDS, ("N", "V", "M"), strict=True))
 SIGNS = (

@@ -14,7 +14,7 @@ from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step
 from eomgen.report.statements import Cell, Derivation, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
 from eomgen.report.statics.work_steps import work_step
-from eomgen.symbolic.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
 METHOD = "statics"
 Symbols = Mapping[str, Node]

@@ -14,8 +14,8 @@ from eomgen.mechanics.statics.virtual_work import Acting, Term, WorkEquation
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
 from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid
-from eomgen.symbolic.graph import Node, Scalar, is_zero
-from eomgen.symbolic.spatial import Vector, plus, times, vector_of
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector, plus, times, vector_of
 
 TURN, SHIFT = "δθ", "δs"
 """The virtual displacement of the block that sets the scale: the angle by which it turns, or how far it moves."""

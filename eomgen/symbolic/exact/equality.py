@@ -1,0 +1,276 @@
+"""Two expressions -> equal or not, decided at random exact states.
+
+A state gives every symbol a random value, and every sine and cosine values that belong together: with the half-angle
+tau of an angle, sin = 2 tau / (1 + tau^2) and cos = (1 - tau^2) / (1 + tau^2), and sums of angles by their addition
+theorems. Modulo a prime of 61 bits two different expressions agree there with a chance near degree / 2^61.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.expression.graph import Node, Number, Scalar, linear_terms
+from eomgen.symbolic.expression.traversal import order, united
+from eomgen.symbolic.numeric.evaluation import (
+    PRIME,
+    PRIME_FIELD,
+    Arithmetic,
+    NoMeaning,
+    NoValue,
+    evaluate,
+    fifty_digits,
+)
+
+TRIES = 12  # states of the prime field to be tried for one with a value
+REAL_TRIES = 60
+RANGES = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))  # of the symbols at a real state
+EXPONENTS = (-4, 2)  # of their sizes in every other later state: beside a length of 0.08 stands a radius of 0.03
+TOLERANCE = Fraction(1, 10**30)  # of a comparison at 50 digits, relative to the larger of the two and 1
+ALGEBRAIC = frozenset("symbol neg add sub mul div".split())
+
+
+@dataclass(frozen=True)
+class State:
+    """Values at which expressions can be evaluated exactly.
+
+    Args:
+        values: of every symbol, sine, cosine and function that the arithmetic cannot compute.
+        independent: the values obey every relation among their nodes, so that a difference here is a difference.
+    """
+
+    values: dict[Node, Any]
+    independent: bool
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether all pairs are equal.
+
+    Args:
+        equal: yes or no.
+        arithmetic: "prime field" (exact) or "50 digits".
+        culprit: index of the first pair that differs, or None.
+    """
+
+    equal: bool
+    arithmetic: str
+    culprit: int | None = None
+
+
+def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int = 1, states: int = 2) -> Verdict:
+    """Whether the two of each pair are the same function of the symbols.
+
+    In a prime field; where functions have no meaning there and the field cannot tell, at real states with 50 digits.
+
+    Args:
+        pairs: scalars of one graph.
+        seed: of the random states; the same seed gives the same verdict.
+        states: how many must agree.
+    Raises:
+        DerivationError: no real state was found at which the expressions have values.
+    """
+    _, flat = united([x for pair in pairs for x in pair])
+    rng, nodes = Random(seed), order(flat)
+    try:
+        for _ in range(states):
+            state, values = _valued(flat, nodes, rng)
+            culprit = _first_different(values)
+            if culprit is not None:
+                if state.independent:
+                    return Verdict(False, PRIME_FIELD.name, culprit)
+                raise NoMeaning("the field's values of dependent functions are independent")
+        return Verdict(True, PRIME_FIELD.name)
+    except NoMeaning:
+        return _at_fifty_digits(flat, rng, states)
+
+
+def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> State:
+    """A random state for the outputs in an exact arithmetic.
+
+    Angles are taken apart into numbers times atoms: symbols, or other nodes such as omega*t. An atom's sine is
+    independent of the atom's own value, as it is in algebra. Functions that the arithmetic cannot compute (exp, abs,
+    a comparison) get values of their own.
+
+    Args:
+        arithmetic: PRIME_FIELD or RATIONAL.
+    Raises:
+        NoMeaning: the root of something that is no constant (its sign would be lost), or the sine of pi/7.
+        NoValue: a constant's root is not there.
+    """
+    return _exact_state(order(outputs), rng, arithmetic)
+
+
+def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> State:
+    """The same for nodes in evaluation order."""
+    angles = {x.args[0]: linear_terms(x.args[0]) for x in nodes if x.op in ("sin", "cos")}
+    circle = _Circle(arithmetic, rng, angles.values())
+    values: dict[Node, Any] = {}
+    independent = all(atom is None or atom.op in ("symbol", "pi") for terms in angles.values() for atom in terms)
+    for x in nodes:
+        if x.op in ("sin", "cos"):
+            cosine, sine = circle.at(angles[x.args[0]])
+            values[x] = sine if x.op == "sin" else cosine
+        elif x.op == "symbol" or x.op == "pi":
+            values[x] = _random(arithmetic, rng)
+        elif x.op == "sqrt":
+            if type(x.args[0]) is Node:
+                raise NoMeaning("the sign of a root is lost")
+        elif x.op not in ALGEBRAIC and not (x.op == "pow" and type(x.args[1]) is int):
+            values[x] = _random(arithmetic, rng)
+            independent = False
+    for symbols in _spheres(nodes):
+        values |= zip(symbols, _unit_vector(arithmetic, rng, len(symbols)), strict=True)
+    return State(values, independent)
+
+
+def _spheres(nodes: Iterable[Node]) -> list[tuple[Node, ...]]:
+    """The sets of symbols among them whose squares add up to 1."""
+    graphs = {x.graph: None for x in nodes}
+    return [symbols for graph in graphs for symbols in graph.spheres]
+
+
+def _unit_vector(arithmetic: Arithmetic, rng: Random, size: int) -> list[Any]:
+    """A random point of the unit sphere: (1 - r.r, 2 r) / (1 + r.r)."""
+    f, one = arithmetic.functions, arithmetic.number(1)
+    r = [_random(arithmetic, rng) for _ in range(size - 1)]
+    square = arithmetic.number(0)
+    for x in r:
+        square = f["add"](square, f["mul"](x, x))
+    below = f["div"](one, f["add"](one, square))
+    return [f["mul"](f["sub"](one, square), below), *(f["mul"](f["add"](x, x), below) for x in r)]
+
+
+class _Circle:
+    """Points (cos, sin) of the unit circle for angles that are sums of numbers times atoms."""
+
+    def __init__(self, arithmetic: Arithmetic, rng: Random, angles: Iterable[dict[Node | None, Number]]) -> None:
+        self.arithmetic, self.rng = arithmetic, rng
+        self.denominators: dict[Node | None, int] = {}
+        for terms in angles:
+            for atom, c in terms.items():
+                self.denominators[atom] = lcm(self.denominators.get(atom, 1), c.denominator)
+        self.points: dict[tuple[Node | None, Number], tuple[Any, Any]] = {}
+
+    def at(self, terms: dict[Node | None, Number]) -> tuple[Any, Any]:
+        """(cos, sin) of the angle sum c atom."""
+        point = (self.arithmetic.number(1), self.arithmetic.number(0))
+        for atom, c in sorted(terms.items(), key=lambda item: -1 if item[0] is None else item[0].index):
+            point = self._turned(point, self._multiple(atom, c))
+        return point
+
+    def _multiple(self, atom: Node | None, c: Number) -> tuple[Any, Any]:
+        if (atom, c) not in self.points:
+            if atom is not None and atom.op == "pi":
+                self.points[atom, c] = self._of_pi(Fraction(c))
+            else:
+                whole = int(c * self.denominators[atom])
+                self.points[atom, c] = self._power(self._base(atom), whole)
+        return self.points[atom, c]
+
+    def _base(self, atom: Node | None) -> tuple[Any, Any]:
+        """The random point of atom / (common denominator of its multiples), by its half-angle."""
+        key = (atom, Fraction(1, self.denominators[atom]))
+        if key not in self.points:
+            f, one = self.arithmetic.functions, self.arithmetic.number(1)
+            tau = _random(self.arithmetic, self.rng)
+            square = f["mul"](tau, tau)
+            below = f["div"](one, f["add"](one, square))
+            self.points[key] = (f["mul"](f["sub"](one, square), below), f["mul"](f["add"](tau, tau), below))
+        return self.points[key]
+
+    def _of_pi(self, turn: Fraction) -> tuple[Any, Any]:
+        """The point of turn * pi, turn a multiple of 1/4 or 1/6."""
+        number, f = self.arithmetic.number, self.arithmetic.functions
+        if 2 % turn.denominator == 0:
+            return self._power((number(0), number(1)), int(2 * turn))
+        half = number(Fraction(1, 2))
+        if turn.denominator == 4:
+            diagonal = f["mul"](f["sqrt"](number(2)), half)
+            return self._power((diagonal, diagonal), int(4 * turn))
+        if 6 % turn.denominator == 0:
+            return self._power((f["mul"](f["sqrt"](number(3)), half), half), int(6 * turn))
+        raise NoMeaning(f"the sine of {turn}*pi")
+
+    def _power(self, point: tuple[Any, Any], n: int) -> tuple[Any, Any]:
+        if n < 0:
+            point, n = (point[0], self.arithmetic.functions["neg"](point[1])), -n
+        result = (self.arithmetic.number(1), self.arithmetic.number(0))
+        while n:
+            if n % 2:
+                result = self._turned(result, point)
+            point = self._turned(point, point)
+            n //= 2
+        return result
+
+    def _turned(self, a: tuple[Any, Any], b: tuple[Any, Any]) -> tuple[Any, Any]:
+        f = self.arithmetic.functions
+        add, sub, mul = f["add"], f["sub"], f["mul"]
+        return sub(mul(a[0], b[0]), mul(a[1], b[1])), add(mul(a[1], b[0]), mul(a[0], b[1]))
+
+
+def _random(arithmetic: Arithmetic, rng: Random) -> Any:
+    if arithmetic is PRIME_FIELD:
+        return rng.randrange(1, PRIME)
+    return arithmetic.number(Fraction(rng.randint(1, 40), rng.randint(1, 40)))
+
+
+def _valued(flat: Sequence[Scalar], nodes: Sequence[Node], rng: Random) -> tuple[State, list[Any]]:
+    """A state of the prime field at which everything has a value, and the values."""
+    for _ in range(TRIES):
+        try:
+            state = _exact_state(nodes, rng, PRIME_FIELD)
+            return state, evaluate(flat, state.values, PRIME_FIELD)
+        except NoMeaning:
+            raise
+        except (NoValue, ValueError):  # ValueError: 1 + tau^2 has no inverse
+            continue
+    raise NoMeaning("no state of the prime field has values")
+
+
+def _first_different(values: Sequence[Any]) -> int | None:
+    return next((i for i in range(len(values) // 2) if values[2 * i] != values[2 * i + 1]), None)
+
+
+def _at_fifty_digits(flat: Sequence[Scalar], rng: Random, states: int) -> Verdict:
+    arithmetic = fifty_digits()
+    tolerance = arithmetic.number(TOLERANCE)
+    for _ in range(states):
+        values = real_values(flat, rng, arithmetic)
+        for i in range(len(values) // 2):
+            a, b = values[2 * i], values[2 * i + 1]
+            if abs(a - b) > tolerance * max(1, abs(a), abs(b)):
+                return Verdict(False, arithmetic.name, i)
+    return Verdict(True, arithmetic.name)
+
+
+def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:
+    """Values at a random real state.
+
+    Symbols are positive (roots of parameters exist), rates of either sign; of one size at first, then each of its own
+    size, so that sqrt(l^2 - x^2) and sqrt(0.08^2 - r^2) exist, and some of them negative.
+    """
+    symbols = [x for x in order(flat) if x.op == "symbol"]
+    for attempt in range(REAL_TRIES):
+        values = {x: arithmetic.number(_real(x, rng, attempt)) for x in symbols}
+        for four in _spheres(symbols):
+            values |= zip(four, _unit_vector(arithmetic, rng, len(four)), strict=True)
+        try:
+            return evaluate(flat, values, arithmetic)
+        except NoValue:
+            continue
+    raise DerivationError("no real state was found at which the expressions to be compared have values")
+
+
+def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:
+    """A random value of a symbol for the attempt-th real state."""
+    low, high = RANGES[attempt] if attempt < len(RANGES) else rng.choice(RANGES)
+    either = symbol.name.endswith("'") or (attempt > REAL_TRIES // 3 and rng.random() < 0.3)
+    any_size = attempt > len(RANGES) and attempt % 2 == 1
+    size = 10 ** rng.uniform(*EXPONENTS) if any_size else rng.uniform(low, high)
+    return Fraction(rng.choice((-1, 1)) * size if either else size)

@@ -1,0 +1,276 @@
+"""Expressions -> their normal form: exact equality, and results as a person writes them.
+
+A function that is polynomial in sines, cosines, coordinates, rates and parameters has one form as a sum of monomials
+times cos(k . angles) or sin(k . angles); two of them are equal when the forms are. All work is bounded by `limit`,
+a number of products of terms; where it is not enough, what is readable stays as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.expansion import Expansion, expanded
+from eomgen.symbolic.exact.quotient import reduced
+from eomgen.symbolic.exact.radicals import one_root
+from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, scaled, tidy
+from eomgen.symbolic.exact.writing import Writer, is_rate
+from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
+from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.traversal import order, united
+from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
+from eomgen.symbolic.print.text import text_size
+
+LIMIT = 50_000
+CONSTANT = 1_000  # products of terms for a constant
+
+__all__ = [
+    "LIMIT",
+    "NormalForm",
+    "TooLarge",
+    "cancelled",
+    "collected_in",
+    "common_factor",
+    "equal",
+    "normal_form",
+    "readable",
+    "readable_all",
+    "simple_constants",
+    "simplest",
+]
+
+
+@dataclass(frozen=True)
+class NormalForm:
+    """The sum of coefficient * monomial * wave.
+
+    Args:
+        graph: the graph whose nodes the monomials and waves name by index.
+        terms: ((monomial, wave), coefficient), ascending.
+    """
+
+    graph: Graph = field(compare=False)
+    terms: tuple[tuple[Key, Number], ...]
+
+    @property
+    def is_zero(self) -> bool:
+        return not self.terms
+
+
+def normal_form(x: Scalar, limit: int = LIMIT) -> NormalForm:
+    """The normal form of x.
+
+    Raises:
+        TooLarge: more than `limit` products of terms.
+    """
+    expansion, (terms,) = expanded((x,), limit)
+    return NormalForm(expansion.graph, tuple(sorted(terms.items())))
+
+
+def equal(a: Scalar, b: Scalar, limit: int = LIMIT) -> bool:
+    """Whether a and b are the same function.
+
+    Decided by the normal form for rational functions of sines, cosines and symbols. Where roots or other functions are
+    left over, or the form is too large, at random states (exact in a prime field where that is possible).
+    """
+    difference = a - b
+    if type(difference) is not Node:
+        return difference == 0
+    try:
+        expansion, (terms,) = expanded((difference,), limit)
+        numerator, _ = expansion.cleared(terms)
+    except TooLarge:
+        return equal_at_random_states([(a, b)]).equal
+    if not numerator or not _has_relations(expansion):
+        return not numerator
+    return equal_at_random_states([(a, b)]).equal
+
+
+def _has_relations(expansion: Expansion) -> bool:
+    """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
+    nodes, pi = expansion.atoms.nodes, expansion.graph.pi.index
+    if any(sphere[0] in nodes for sphere in expansion.spheres):  # a power of e0 below a line
+        return True
+    return pi in nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
+
+
+def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+    """x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2).
+
+    Accelerations come first, then rates, then the rest, each in the order of declaration. x itself where that takes
+    more than `limit` products of terms.
+
+    Args:
+        positive: symbols that stand for positive numbers: sqrt(m^2*g) is then m*sqrt(g).
+    """
+    return readable_all((x,), limit, positive)[0]
+
+
+def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collection[Node] = ()) -> tuple[Scalar, ...]:
+    """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
+    graph, outputs = united(outputs)
+    expansion = Expansion(graph, limit, positive)
+    writer = Writer(expansion)
+    written = []
+    for x in outputs:
+        expansion.work = 0
+        try:
+            written.append(writer.sum(expansion.of(x)))
+        except TooLarge:
+            written.append(x)
+    return tuple(written)
+
+
+def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = LIMIT) -> dict[Node | None, Scalar]:
+    """x = sum of coefficient * symbol + rest, as {symbol: coefficient, None: rest}, readable; zeros are left out.
+
+    Raises:
+        DerivationError: x is not linear in the symbols.
+    """
+    try:
+        expansion, (terms,) = expanded((x,), limit)
+        parts = _linear_parts(expansion, terms, symbols)
+    except TooLarge:
+        return _linear_by_derivative(x, symbols)
+    writer = Writer(expansion)
+    return {symbol: writer.sum(part) for symbol, part in parts.items() if part}
+
+
+def _linear_parts(expansion: Expansion, terms: Terms, symbols: Sequence[Node]) -> dict[Node | None, Terms]:
+    by_index = {symbol.index: symbol for symbol in symbols}
+    inside = [a for opaque in expansion.atoms.opaque.values() for a in opaque.arguments]
+    if any(atom in by_index for a in inside for monomial, _ in a for atom, _ in monomial):
+        raise _not_linear(symbols)
+    parts: dict[Node | None, Terms] = {symbol: {} for symbol in (*symbols, None)}
+    for (monomial, w), c in terms.items():
+        held = [(atom, e) for atom, e in monomial if atom in by_index]
+        if len(held) > 1 or (held and held[0][1] != 1) or (w and any(angle in by_index for angle, _ in w[1])):
+            raise _not_linear(symbols)
+        symbol = by_index[held[0][0]] if held else None
+        parts[symbol][tuple(item for item in monomial if item not in held), w] = c
+    return parts
+
+
+def _linear_by_derivative(x: Scalar, symbols: Sequence[Node]) -> dict[Node | None, Scalar]:
+    coefficients = [tangent((x,), {symbol: 1})[0] for symbol in symbols]
+    if any(depends_on(coefficient, symbols) for coefficient in coefficients):
+        raise _not_linear(symbols)
+    rest = substituted((x,), dict.fromkeys(symbols, 0))[0]
+    found: dict[Node | None, Scalar] = {**dict(zip(symbols, coefficients, strict=True)), None: rest}
+    return {symbol: part for symbol, part in found.items() if type(part) is Node or part != 0}
+
+
+def _not_linear(symbols: Sequence[Node]) -> DerivationError:
+    return DerivationError(f"the expression is not linear in {', '.join(symbol.name for symbol in symbols)}")
+
+
+def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT, kept: Sequence[Node] = ()) -> tuple[Number, Scalar]:
+    """(number, product): the rational number and the powers of parameters and coordinates that every term holds.
+
+    M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by them leaves no fractions.
+    (1, 1) where the limit is reached or there is nothing to divide.
+
+    Args:
+        kept: symbols that are no part of it.
+    """
+    try:
+        expansion, forms = expanded(outputs, limit)
+    except TooLarge:
+        return 1, 1
+    together: Terms = {}
+    for terms in forms:
+        together |= {(monomial, ()): 1 for monomial, _ in terms}
+    if not together:
+        return 1, 1
+    stays = {symbol.index for symbol in kept}
+    common = tuple(
+        (atom, e) for atom, e in common_monomial(together) if atom not in stays and _is_still(expansion, atom)
+    )
+    writer = Writer(expansion)
+    return tidy(writer.content(*forms)), writer.factored(common, {ONE: 1})
+
+
+def _is_still(expansion: Expansion, atom: int) -> bool:
+    node = expansion.atoms.nodes[atom]
+    return node.op == "symbol" and not is_rate(node)
+
+
+def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+    """x as one readable quotient without common factors; x itself where that takes too much work.
+
+    Args:
+        positive: symbols that stand for positive numbers.
+    """
+    try:
+        expansion, (terms,) = expanded((x,), limit, positive)
+        writer = Writer(expansion)
+        return _quotients(expansion, writer, terms)[-1]
+    except TooLarge:
+        return x
+
+
+def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = (), most: int | None = None) -> Scalar:
+    """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside.
+
+    Args:
+        most: terms; a longer sum stays as it is.
+    """
+    try:
+        expansion, (terms,) = expanded((x,), limit, positive)
+        if most is not None and len(terms) > most:
+            return x
+        writer = Writer(expansion)
+        forms = [writer.sum(terms), *_quotients(expansion, writer, terms)]
+    except TooLarge:
+        return x
+    return rebuilt_as_written(min(forms, key=_length))
+
+
+def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) -> dict[Node, Scalar]:
+    """All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2."""
+    constant = set(parameters)
+    nodes = order(tuple(scalars))
+    for x in nodes:
+        if x.args and all(type(a) is not Node or a in constant for a in x.args):
+            constant.add(x)
+    carried = {x for x in scalars if type(x) is Node and x in constant}
+    carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
+    return {x: simplest(x, CONSTANT) for x in carried if x.args}
+
+
+def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Scalar:
+    """x at its simplest; as it came where that is more than `long` characters, and longer than it came."""
+    found = simplest(x, limit, positive)
+    size = text_size(found)
+    return x if size > long and text_size(x) < size else found
+
+
+def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
+    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
+    above, below = _whole(writer, *reduced(expansion, terms))
+    forms = [expansion.graph.div(writer.in_factors(above), writer.in_powers(below))]
+    common = common_monomial(above)
+    roots = tuple((atom, e) for atom, e in common if expansion.atoms.is_a(atom, "sqrt"))
+    if roots and len(above) * len(below) > 1:
+        found = [expansion.atoms.opaque[atom].arguments[0] for atom, _ in roots]
+        rest = {(tuple(item for item in monomial if item not in roots), w): c for (monomial, w), c in above.items()}
+        radical = one_root(expansion, rest, below, found)
+        forms += [] if radical is None else [writer.radical(radical)]
+    if len(below) == 1:
+        forms.append(writer.sum(expansion.product(above, expansion.reciprocal(below))))
+    return forms
+
+
+def _length(x: Scalar) -> float:
+    """Of the text; a quotient within a quotient counts as half as long again."""
+    return text_size(x) * (1.5 if has_nested_quotient(x) else 1)
+
+
+def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
+    """The same quotient with whole coefficients, without common number, the denominator's first term positive."""
+    above, below = writer.content(numerator), writer.content(denominator)
+    ratio = above / below
+    sign = -1 if writer.leads_with_minus(denominator) else 1
+    return scaled(numerator, sign * ratio.numerator / above), scaled(denominator, sign * ratio.denominator / below)

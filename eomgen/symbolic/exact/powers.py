@@ -1,0 +1,117 @@
+"""Waves as polynomials in the sines and cosines of a few axes, by de Moivre: cos(m a) + i sin(m a) = (c + i s)^m."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from functools import lru_cache
+from math import comb
+
+from eomgen.symbolic.exact.terms import Vector, Wave, common_number, tidy
+from eomgen.symbolic.expression.graph import Number
+
+Powers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
+Polynomial = dict[Powers, Number]
+
+LARGEST_DEGREE = 12  # of a wave to be written in powers
+KEPT = 20_000  # waves and sets of angles of which the form is remembered
+
+
+def power_form(waves: Mapping[Wave, Number], axes: tuple[Vector, ...]) -> Polynomial | None:
+    """The waves as a polynomial in the axes' cosines and sines, s^2 eliminated; None where that is too large."""
+    polynomial: Polynomial = {}
+    for w, c in waves.items():
+        multiples = _multiples(w[1], axes) if w else (0,) * len(axes)
+        if multiples is None or sum(abs(m) for m in multiples) > LARGEST_DEGREE:
+            return None
+        for powers, share in _wave_in_powers(w[0] if w else "cos", multiples).items():
+            polynomial[powers] = tidy(polynomial.get(powers, 0) + c * share)
+    polynomial = {powers: c for powers, c in polynomial.items() if c}
+    for axis in range(len(axes)):
+        polynomial = eliminated(polynomial, axis, "cos")
+    return polynomial
+
+
+def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
+    """Angles of which those of all waves are whole combinations.
+
+    Angles that always come in one proportion are one axis: sin(a) cos(b + c) has the axes a and b + c.
+    """
+    return _axes_of(tuple(w[1] for w in waves if w))
+
+
+@lru_cache(maxsize=KEPT)
+def _axes_of(angles: tuple[Vector, ...]) -> tuple[Vector, ...]:
+    rows = list(map(dict, angles))
+    groups: dict[tuple[Fraction, ...], list[tuple[int, Fraction]]] = {}
+    for angle in sorted({angle for row in rows for angle in row}):
+        column = [row.get(angle, 0) for row in rows]
+        lead = Fraction(next(c for c in column if c))
+        groups.setdefault(tuple(c / lead for c in column), []).append((angle, lead))
+    axes = []
+    for pattern, members in groups.items():
+        common = common_number(lead for _, lead in members)
+        unit = common_number([*(c * common for c in pattern if c), Fraction(1)])  # 1, or a fraction for half-angles
+        axes.append(tuple((angle, tidy(lead / common * unit)) for angle, lead in members))
+    return tuple(axes)
+
+
+@lru_cache(maxsize=KEPT)
+def _multiples(k: Vector, axes: tuple[Vector, ...]) -> tuple[int, ...] | None:
+    """k as whole multiples of the axes, or None."""
+    entries = dict(k)
+    multiples = []
+    for axis in axes:
+        angle, unit = axis[0]
+        multiple = Fraction(entries.get(angle, 0)) / unit
+        if multiple.denominator != 1:
+            return None
+        for member, c in axis:
+            if entries.pop(member, 0) != multiple * c:
+                return None
+        multiples.append(multiple.numerator)
+    return None if entries else tuple(multiples)
+
+
+@lru_cache(maxsize=KEPT)
+def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> Polynomial:
+    """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
+    real: Polynomial = {(): 1}
+    imaginary: Polynomial = {}
+    for m in multiples:
+        c_part, s_part = _one_axis(m)
+        real, imaginary = (
+            _joined((real, c_part, 1), (imaginary, s_part, -1)),
+            _joined((real, s_part, 1), (imaginary, c_part, 1)),
+        )
+    return real if kind == "cos" else imaginary
+
+
+def _one_axis(m: int) -> tuple[dict[tuple[int, int], int], dict[tuple[int, int], int]]:
+    """(cos(m a), sin(m a)) in powers of cos a and sin a, by de Moivre."""
+    n, sense = abs(m), 1 if m >= 0 else -1
+    cosine = {(n - j, j): (-1) ** (j // 2) * comb(n, j) for j in range(0, n + 1, 2)}
+    sine = {(n - j, j): sense * (-1) ** (j // 2) * comb(n, j) for j in range(1, n + 1, 2)}
+    return cosine, sine
+
+
+def _joined(*products: tuple[Polynomial, dict[tuple[int, int], int], int]) -> Polynomial:
+    total: Polynomial = {}
+    for left, right, sign in products:
+        for powers, c in left.items():
+            for pair, d in right.items():
+                total[(*powers, pair)] = total.get((*powers, pair), 0) + sign * c * d
+    return {powers: c for powers, c in total.items() if c}
+
+
+def eliminated(polynomial: Polynomial, axis: int, keep: str) -> Polynomial:
+    """With s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") used up for one axis."""
+    total: Polynomial = {}
+    for powers, coefficient in polynomial.items():
+        c, s = powers[axis]
+        kept, gone = (c, s) if keep == "cos" else (s, c)
+        for j in range(gone // 2 + 1):
+            pair = (kept + 2 * j, gone % 2) if keep == "cos" else (gone % 2, kept + 2 * j)
+            key = (*powers[:axis], pair, *powers[axis + 1 :])
+            total[key] = tidy(total.get(key, 0) + coefficient * comb(gone // 2, j) * (-1) ** j)
+    return {powers: c for powers, c in total.items() if c}

@@ -1,0 +1,25 @@
+"""Expressions -> their sign, where it is the sign of every term."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from eomgen.symbolic.exact.expansion import expanded
+from eomgen.symbolic.exact.terms import TooLarge
+from eomgen.symbolic.expression.graph import Node, Scalar
+
+LIMIT = 20_000
+
+
+def sign_of_terms(x: Scalar, positive: Collection[Node]) -> int | None:
+    """1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown."""
+    try:
+        expansion, (terms,) = expanded((x,), LIMIT, positive)
+    except TooLarge:
+        return None
+    if not terms:
+        return 0
+    for sign in (1, -1):
+        if expansion.all_positive({key: sign * c for key, c in terms.items()}):
+            return sign
+    return None

@@ -1,0 +1,165 @@
+"""Sums of monomials times one sine or cosine: the arithmetic of the normal form.
+
+A term is coefficient * monomial * wave. The monomial is a product of powers of atoms (symbols, roots, other
+functions), negative powers too; the wave is 1, cos(k . angles) or sin(k . angles) with a vector k of rational numbers
+whose first entry is positive. Products of waves become sums,
+
+    cos a cos b = (cos(a - b) + cos(a + b)) / 2,   and so on,
+
+so a function that is polynomial in sines, cosines and atoms has exactly one such sum, and s^2 = 1 - c^2 needs no rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import lru_cache
+from math import gcd, lcm
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.expression.graph import Number
+
+Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
+Vector = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian
+Wave = tuple[str, Vector] | tuple[()]  # ("cos", k), ("sin", k), or () for 1
+Key = tuple[Monomial, Wave]
+Terms = dict[Key, Number]
+
+ONE: Key = ((), ())
+HALF = Fraction(1, 2)
+
+
+class TooLarge(DerivationError):
+    """The work or the size asked for is beyond its limit."""
+
+
+def tidy(c: Number) -> Number:
+    """A whole number as int."""
+    return c.numerator if type(c) is Fraction and c.denominator == 1 else c
+
+
+def constant(c: Number) -> Terms:
+    """The number c."""
+    return {ONE: c} if c != 0 else {}
+
+
+def plus(a: Terms, b: Terms, factor: Number = 1) -> Terms:
+    """a + factor b"""
+    total = dict(a)
+    for key, c in b.items():
+        accumulate(total, key, factor * c)
+    return total
+
+
+def accumulate(total: Terms, key: Key, c: Number) -> None:
+    """total += c * (the term of this key), in place; a term that vanishes goes."""
+    c = tidy(total.get(key, 0) + c)
+    if c == 0:
+        total.pop(key, None)
+    else:
+        total[key] = c
+
+
+def scaled(a: Terms, c: Number) -> Terms:
+    """c a"""
+    return {key: tidy(c * value) for key, value in a.items()} if c != 0 else {}
+
+
+def times(a: Terms, b: Terms) -> Terms:
+    """a b; powers of roots of atoms are not reduced here (only those of numbers are)."""
+    total: Terms = {}
+    for (m, w), c in a.items():
+        for (n, v), d in b.items():
+            monomial, factor = monomial_product(m, n)
+            product = factor * c * d
+            if not w or not v:
+                accumulate(total, (monomial, w or v), product)
+                continue
+            for wave, share in wave_product(w, v):
+                accumulate(total, (monomial, wave), product * share)
+    return total
+
+
+@lru_cache(maxsize=200_000)
+def monomial_product(m: Monomial, n: Monomial) -> tuple[Monomial, int]:
+    """(monomial, factor) with m n = factor * monomial; sqrt(6) sqrt(2) = 2 sqrt(3)."""
+    if not m:
+        return n, 1
+    if not n:
+        return m, 1
+    if m[0][0] < 0 and n[0][0] < 0:
+        product, factor = monomial_product(m[1:], n[1:])
+        common = gcd(m[0][0], n[0][0])
+        inside = m[0][0] * n[0][0] // (common * common)
+        return (product if inside == 1 else ((-inside, 1), *product)), common * factor
+    exponents = dict(m)
+    for atom, e in n:
+        exponents[atom] = exponents.get(atom, 0) + e
+    return tuple(sorted((atom, e) for atom, e in exponents.items() if e)), 1
+
+
+@lru_cache(maxsize=200_000)
+def wave_product(w: Wave, v: Wave) -> tuple[tuple[Wave, Number], ...]:
+    """The product of two waves as a sum: ((wave, coefficient), ...)."""
+    if not w or not v:
+        return ((w or v, 1),)
+    (f, k), (g, l) = w, v
+    kind = "cos" if f == g else "sin"
+    difference, total = wave(kind, vector_sum(k, l, -1)), wave(kind, vector_sum(k, l, 1))
+    sign_difference = -1 if (f, g) == ("cos", "sin") else 1
+    sign_total = -1 if (f, g) == ("sin", "sin") else 1
+    pairs = ((difference[0], HALF * sign_difference * difference[1]), (total[0], HALF * sign_total * total[1]))
+    return tuple((x, c) for x, c in pairs if c != 0)
+
+
+def vector_sum(k: Vector, l: Vector, factor: Number) -> Vector:
+    """k + factor l"""
+    entries = dict(k)
+    for angle, c in l:
+        entries[angle] = entries.get(angle, 0) + factor * c
+    return tuple(sorted((angle, tidy(c)) for angle, c in entries.items() if c != 0))
+
+
+def wave(kind: str, k: Vector) -> tuple[Wave, int]:
+    """(wave, sign) with kind(k . angles) = sign * wave; sign 0 for sin(0)."""
+    if not k:
+        return (), 1 if kind == "cos" else 0
+    if k[0][1] > 0:
+        return (kind, k), 1
+    return (kind, tuple((angle, -c) for angle, c in k)), 1 if kind == "cos" else -1
+
+
+def common_number(numbers: Iterable[Number]) -> Fraction:
+    """The largest positive rational number of which all are whole multiples (1 for none)."""
+    numbers = list(numbers)
+    return Fraction(gcd(*(c.numerator for c in numbers)) or 1, lcm(*(c.denominator for c in numbers)))
+
+
+def content(a: Terms) -> Fraction:
+    """The common number of the coefficients."""
+    return common_number(a.values())
+
+
+def common_monomial(a: Terms) -> Monomial:
+    """The product of the lowest powers of every atom, over all terms (an atom missing in a term has power 0)."""
+    lowest: dict[int, int] | None = None
+    for monomial, _ in a:
+        exponents = dict(monomial)
+        if lowest is None:
+            lowest = exponents
+            continue
+        for atom in lowest.keys() | exponents.keys():
+            lowest[atom] = min(lowest.get(atom, 0), exponents.get(atom, 0))
+    return tuple(sorted((atom, e) for atom, e in (lowest or {}).items() if e and atom >= 0))
+
+
+def inverse(m: Monomial) -> tuple[Monomial, Fraction]:
+    """(monomial, factor) with 1/m = factor * monomial; 1/sqrt(6) = sqrt(6)/6."""
+    factor, inverted = Fraction(1), []
+    for atom, e in m:
+        if atom < 0:
+            factor /= -atom
+            inverted.append((atom, 1))
+        else:
+            inverted.append((atom, -e))
+    return tuple(inverted), factor

@@ -1,0 +1,246 @@
+"""Expressions -> their derivatives, on the same graph, so that they share their sub-expressions.
+
+Forward (one direction, all outputs) and reverse (one output, all symbols). No recursion: the loops run in
+evaluation order. The rules of the functions stand once, in PARTIALS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.splines import number_of, sampled_of
+from eomgen.symbolic.expression.traversal import order
+
+
+def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
+    """The derivative of the outputs along a direction: sum over x of (d output / dx) seeds[x].
+
+    With seeds {q: u, u: a, t: 1} it is the total time derivative.
+
+    Args:
+        outputs: scalars of one graph.
+        seeds: the direction's component along each symbol; symbols that are left out stay still.
+    """
+    moving = {x: rate for x, rate in seeds.items() if type(rate) is Node or rate != 0}
+    return _swept(outputs, moving, order(outputs), seeds) if moving else (0,) * len(outputs)
+
+
+def _swept(
+    outputs: Sequence[Scalar], moving: Mapping[Node, Scalar], nodes: Sequence[Node], seeds: Container[Node]
+) -> tuple[Scalar, ...]:
+    """The rates of the outputs, from what moves through the nodes in evaluation order; those of the seeds are given."""
+    rates = dict(moving)
+    for x in nodes:
+        if x in seeds or x.op == "symbol":
+            continue
+        for a in x.args:
+            if type(a) is Node and a in rates:
+                rate = _rate(x, [rates.get(a, 0) if type(a) is Node else 0 for a in x.args])
+                if type(rate) is Node or rate != 0:
+                    rates[x] = rate
+                break
+    return tuple(rates.get(x, 0) if type(x) is Node else 0 for x in outputs)
+
+
+def derivative(x: Scalar, symbol: Node) -> Scalar:
+    """dx/dsymbol."""
+    return tangent((x,), {symbol: 1})[0]
+
+
+def gradient(x: Scalar, symbols: Sequence[Node]) -> tuple[Scalar, ...]:
+    """(dx/dsymbol for each symbol), in one sweep from the result back to the symbols."""
+    if type(x) is not Node:
+        return (0,) * len(symbols)
+    active = _dependents(order((x,)), frozenset(symbols))
+    adjoint: dict[Node, Scalar] = {x: 1}
+    for y in reversed(active):
+        if y.op == "symbol" or y not in adjoint:
+            continue
+        for a, share in _shares(y, adjoint[y]):
+            if type(a) is Node:
+                adjoint[a] = adjoint[a] + share if a in adjoint else share
+    return tuple(adjoint.get(symbol, 0) for symbol in symbols)
+
+
+def jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[Scalar, ...], ...]:
+    """The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer."""
+    if len(outputs) < len(symbols):
+        return tuple(gradient(x, symbols) for x in outputs)
+    each = zip(symbols, _followers(order(outputs), symbols), strict=True)
+    columns = [_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each]
+    return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
+
+
+def substituted(outputs: Sequence[Scalar], replacements: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
+    """The outputs with nodes replaced by scalars of the same graph, all at once; what holds none of them is kept."""
+    known: dict[Node, Scalar] = dict(replacements)
+    for x in order(outputs, replacements):
+        if x in known or x.op == "symbol":
+            continue
+        if any(type(a) is Node and a in known for a in x.args):
+            known[x] = rebuilt(x, [known.get(a, a) if type(a) is Node else a for a in x.args])
+    return tuple(known.get(x, x) if type(x) is Node else x for x in outputs)
+
+
+def rebuilt(x: Node, args: Sequence[Scalar]) -> Scalar:
+    """x's operation on other arguments, folded as the graph folds."""
+    graph, op = x.graph, x.op
+    if op == "add":
+        return graph.add(args[0], args[1])
+    if op == "mul":
+        return graph.mul(args[0], args[1])
+    if op == "sub":
+        return graph.add(args[0], graph.neg(args[1]))
+    if op == "div":
+        return graph.div(args[0], args[1])
+    if op == "pow":
+        return graph.pow(args[0], args[1])
+    if op == "select":
+        return graph.select(args[0], args[1], args[2])
+    return graph.call(op, *args) if args else x
+
+
+def symbols_of(outputs: Iterable[Scalar]) -> tuple[Node, ...]:
+    """The symbols that the outputs hold, in the order of their making."""
+    return tuple(x for x in order(tuple(outputs)) if x.op == "symbol")
+
+
+def depends_on(x: Scalar, symbols: Iterable[Node]) -> bool:
+    """True where one of the symbols (or nodes) occurs in x."""
+    symbols = frozenset(symbols)
+    stack: list[Scalar] = [x]
+    seen: set[Node] = set()
+    while stack:
+        y = stack.pop()
+        if type(y) is not Node or y in seen:
+            continue
+        if y in symbols:
+            return True
+        seen.add(y)
+        if y.op != "symbol":
+            stack += y.args
+    return False
+
+
+def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
+    """Those of the nodes (in evaluation order) that depend on the symbols."""
+    found: list[Node] = []
+    active: set[Scalar] = set(symbols)
+    for x in nodes:
+        if x in symbols or (x.op != "symbol" and any(type(a) is Node and a in active for a in x.args)):
+            active.add(x)
+            found.append(x)
+    return found
+
+
+def _followers(nodes: Sequence[Node], symbols: Sequence[Node]) -> list[list[Node]]:
+    """For each symbol those of the nodes (in evaluation order) that depend on it."""
+    found: list[list[Node]] = [[] for _ in symbols]
+    on: dict[Scalar, int] = {}  # bit k: depends on symbol k
+    for k, symbol in enumerate(symbols):
+        on[symbol] = on.get(symbol, 0) | 1 << k
+    for x in nodes:
+        bits = on.get(x, 0)
+        for a in x.args if x.op != "symbol" else ():
+            bits |= on.get(a, 0) if type(a) is Node else 0
+        if bits:
+            on[x] = bits
+        while bits:
+            k = bits.bit_length() - 1
+            found[k].append(x)
+            bits ^= 1 << k
+    return found
+
+
+def _rate(x: Node, rates: Sequence[Scalar]) -> Scalar:
+    """The rate of x from the rates of its arguments."""
+    op = x.op
+    if op == "mul":
+        a, b = x.args
+        return 2 * (a * rates[0]) if a is b else rates[0] * b + a * rates[1]
+    if op == "add":
+        return rates[0] + rates[1]
+    if op == "sub":
+        return rates[0] - rates[1]
+    if op == "neg":
+        return -rates[0]
+    if op == "div":
+        return x.graph.div(rates[0] - x * rates[1], x.args[1])
+    if op == "select":
+        return x.graph.select(x.args[0], rates[1], rates[2])
+    partials = PARTIALS.get(op)
+    if partials is None:
+        return 0
+    rate: Scalar = 0
+    for partial, a_rate in zip(partials, rates, strict=True):
+        if type(a_rate) is Node or a_rate != 0:
+            rate = rate + partial(x.graph, x, *x.args) * a_rate
+    return rate
+
+
+def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
+    """What each argument a of x gets of x's adjoint w: (a, w dx/da)."""
+    op, graph = x.op, x.graph
+    if op == "mul":
+        a, b = x.args
+        return [(a, 2 * (a * w))] if a is b else [(a, w * b), (b, a * w)]
+    if op == "add":
+        return [(a, w) for a in x.args]
+    if op == "sub":
+        return [(x.args[0], w), (x.args[1], -w)]
+    if op == "neg":
+        return [(x.args[0], -w)]
+    if op == "div":
+        part = graph.div(w, x.args[1])
+        return [(x.args[0], part), (x.args[1], -(x * part))]
+    if op == "select":
+        condition, if_true, if_false = x.args
+        return [(if_true, graph.select(condition, w, 0)), (if_false, graph.select(condition, 0, w))]
+    return [
+        (a, partial(graph, x, *x.args) * w)
+        for partial, a in zip(PARTIALS.get(op, ()), x.args, strict=False)
+        if type(a) is Node
+    ]
+
+
+def _rate_of_sampled(g: Graph, t: Scalar, k: Scalar) -> Scalar:
+    rate = sampled_of(k).derivative()
+    return 0 if rate.spline.vanishes else g.call("sampled", t, number_of(rate))
+
+
+def _power_in_exponent(g: Graph, x: Node, a: Scalar, n: Scalar) -> Scalar:
+    return x * g.call("log", a)
+
+
+# op -> for each argument, the partial derivative as a function of (graph, the node itself, its arguments);
+# an op that is missing (sign and the comparisons) is constant almost everywhere.
+PARTIALS: dict[str, tuple[Callable[..., Scalar], ...]] = {
+    "sqrt": (lambda g, x, a: g.div(1, 2 * x),),
+    "sin": (lambda g, x, a: g.call("cos", a),),
+    "cos": (lambda g, x, a: -g.call("sin", a),),
+    "tan": (lambda g, x, a: 1 + x * x,),
+    "asin": (lambda g, x, a: g.div(1, g.sqrt(1 - a * a)),),
+    "acos": (lambda g, x, a: g.div(-1, g.sqrt(1 - a * a)),),
+    "atan": (lambda g, x, a: g.div(1, 1 + a * a),),
+    "sinh": (lambda g, x, a: g.call("cosh", a),),
+    "cosh": (lambda g, x, a: g.call("sinh", a),),
+    "tanh": (lambda g, x, a: 1 - x * x,),
+    "exp": (lambda g, x, a: x,),
+    "log": (lambda g, x, a: g.div(1, a),),
+    "abs": (lambda g, x, a: g.call("sign", a),),
+    "pow": (lambda g, x, a, n: n * g.pow(a, n - 1), _power_in_exponent),
+    "atan2": (
+        lambda g, x, y, z: g.div(z, y * y + z * z),
+        lambda g, x, y, z: -g.div(y, y * y + z * z),
+    ),
+    "sampled": (lambda g, x, t, k: _rate_of_sampled(g, t, k), lambda g, x, t, k: 0),
+    "min": (
+        lambda g, x, a, b: g.select(g.call("less_equal", a, b), 1, 0),
+        lambda g, x, a, b: g.select(g.call("less_equal", a, b), 0, 1),
+    ),
+    "max": (
+        lambda g, x, a, b: g.select(g.call("less_equal", b, a), 1, 0),
+        lambda g, x, a, b: g.select(g.call("less_equal", b, a), 0, 1),
+    ),
+}

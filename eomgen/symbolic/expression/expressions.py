@@ -1,0 +1,310 @@
+"""Text -> Expression: the grammar of the model file.
+
+    sum      = product (("+" | "-") product)*
+    product  = signed (("*" | "/") signed)*
+    signed   = ("-" | "+") signed | power
+    power    = value (("^" | "**") signed)?           right to left: -x^2 is -(x^2)
+    value    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+
+A Pratt parser that writes the tree in postfix order. Nothing is ever handed to Python's own evaluation.
+Length, depth and the size of exact numbers are bounded, so that a hostile text costs a millisecond.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from numbers import Rational
+from typing import Any
+
+from eomgen.errors import ExpressionError
+from eomgen.symbolic.expression import scalar_operations
+from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference, apply_operation, unknown
+from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.tokens import Token, is_name, number_of, reference_at, skip_space, token_at
+
+__all__ = ["Call", "Expression", "Reference", "as_expression", "is_name", "parse", "parse_equation", "unknown"]
+
+LONGEST = 10_000  # characters
+DEEPEST = 64  # parentheses, signs and powers inside one another
+
+# how strongly a sign binds to the value on its left, and to the one on its right
+_SIGNS = {"+": (10, 10), "-": (10, 10), "*": (20, 20), "/": (20, 20), "^": (40, 30), "**": (40, 30)}
+_SIGNED = 30  # a leading minus: looser than a power, tighter than a product
+_NO_NUMBERS = ("nan", "inf", "infinity")
+
+
+def parse(text: str, *, references: bool = False, longest: int = LONGEST) -> Expression:
+    """The expression that a text writes.
+
+    Args:
+        references: functions of the outputs (`speed(bar.end)`) are allowed, as calls.
+        longest: characters; more than the default only for a text of our own making.
+    Raises:
+        ExpressionError: it is none; column and length say where.
+    """
+    parser = _Parser(text, references, longest)
+    expression = parser.whole()
+    if parser.token.kind != "end":
+        raise parser.misplaced()
+    return expression
+
+
+def parse_equation(text: str, *, references: bool = True) -> tuple[Expression, Expression]:
+    """Both sides of `left = right`.
+
+    Raises:
+        ExpressionError: it is no equation; column and length say where.
+    """
+    parser = _Parser(text, references)
+    left = parser.whole()
+    if parser.token.kind == "end":
+        raise ExpressionError(f"'{text.strip()}' is no equation", 0, "write left = right", max(1, len(text)))
+    if parser.token.text != "=":
+        raise parser.misplaced()
+    parser.advance()
+    right = parser.whole()
+    if parser.token.kind != "end":
+        raise parser.misplaced()
+    return left, right
+
+
+def single_call(text: str) -> Call | None:
+    """The function of the outputs that a text asks for; None where it is another expression.
+
+    Raises:
+        ExpressionError: it is no expression.
+    """
+    expression = parse(text, references=True)
+    calls = tuple(expression.calls)
+    return calls[0] if len(calls) == 1 and len(expression.code) == 1 else None
+
+
+def as_expression(value: Any, *, references: bool = False) -> Expression:
+    """The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10).
+
+    Raises:
+        ExpressionError: nan, inf, a bool, or something else.
+    """
+    if isinstance(value, Expression):
+        return value
+    if isinstance(value, str):
+        return parse(value, references=references)
+    if isinstance(value, Rational) and not isinstance(value, bool):
+        return _exact_number(Fraction(int(value.numerator), int(value.denominator)))
+    if isinstance(value, (float, Decimal)):
+        if not math.isfinite(value):
+            raise ExpressionError(f"{value} is not a number that can be calculated with", length=len(str(value)))
+        return parse(repr(float(value)) if isinstance(value, float) else str(value))
+    raise ExpressionError(f"{value!r} is neither a number nor a text", mend="write a number or an expression")
+
+
+def _exact_number(value: Fraction) -> Expression:
+    try:
+        scalar_operations.bounded(value)
+    except scalar_operations.Undefined as error:
+        raise ExpressionError(str(error)) from error
+    return Expression.number(value)
+
+
+class _Parser:
+    """One pass over a text; `code` and `columns` grow in postfix order."""
+
+    def __init__(self, text: str, references: bool, longest: int = LONGEST) -> None:
+        if len(text) > longest:
+            raise ExpressionError(f"the expression is longer than {longest} characters", longest)
+        self.text, self.references, self.depth = text, references, 0
+        self.code: list[Instruction] = []
+        self.columns: list[int] = []
+        self.before = self.token = Token("end", "", 0)
+        self.advance()
+
+    def advance(self) -> Token:
+        """The present token; the next one takes its place."""
+        self.before, self.token = self.token, token_at(self.text, self.token.end)
+        return self.before
+
+    def emit(self, kind: str, what: Any, column: int) -> None:
+        self.code.append((kind, what))
+        self.columns.append(column)
+
+    def whole(self) -> Expression:
+        """One expression with code of its own."""
+        code, columns, self.code, self.columns = self.code, self.columns, [], []
+        start = self.token.start
+        self.operand(0)
+        made = Expression(self.text[start : self.before.end], tuple(self.code), tuple(self.columns))
+        self.code, self.columns = code, columns
+        _check_numbers(made)
+        return made
+
+    def operand(self, binding: int) -> None:
+        """A value and all signs after it that bind more strongly than `binding`."""
+        self.value()
+        while self.token.kind == "sign" and self.token.text in _SIGNS:
+            left, right = _SIGNS[self.token.text]
+            if left <= binding:
+                break
+            sign = self.advance()
+            if sign.text in ("^", "**"):
+                self.nested(sign, lambda: self.operand(_SIGNED))
+            else:
+                self.operand(right)
+            self.emit("^" if sign.text == "**" else sign.text, None, sign.start)
+
+    def nested(self, opening: Token, parse_inside: Callable[[], None]) -> None:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise ExpressionError(f"more than {DEEPEST} levels inside one another", opening.start)
+        parse_inside()
+        self.depth -= 1
+
+    def value(self) -> None:
+        token = self.token
+        if token.kind == "number":
+            self.emit("number", number_of(self.advance()), token.start)
+        elif token.kind == "name":
+            self.name_or_function()
+        elif token.text == "(":
+            self.advance()
+            self.nested(token, lambda: self.operand(0))
+            self.close(token)
+        elif token.text in ("-", "+"):
+            self.advance()
+            self.signed(token)
+        else:
+            raise self.nothing_there()
+
+    def signed(self, sign: Token) -> None:
+        """-x; of a number that is written there, the negative number."""
+        start = len(self.code)
+        self.nested(sign, lambda: self.operand(_SIGNED))
+        if sign.text == "+":
+            return
+        if len(self.code) == start + 1 and self.code[start][0] == "number":
+            self.code[start] = ("number", -self.code[start][1])
+        else:
+            self.emit("neg", None, sign.start)
+
+    def name_or_function(self) -> None:
+        token = self.advance()
+        if self.token.text == "(":
+            self.nested(token, lambda: self.function(token))
+        else:
+            self.emit("name", _checked_name(token), token.start)
+
+    def function(self, name: Token) -> None:
+        if name.text not in NAMES and self.references:
+            self.emit("call", Call(name.text, self.arguments_of_call(), name.start), name.start)
+            return
+        if name.text not in NAMES:
+            error = unknown("function", name.text, NAMES, name.start)
+            product = f"for a product write {name.text}*(...)"
+            raise ExpressionError(error.what, error.column, error.mend or product, error.length)
+        opening, count = self.advance(), 0
+        while self.token.text != ")" and (count == 0 or self.token.text == ","):
+            if count:
+                self.advance()
+            self.operand(0)
+            count += 1
+        self.close(opening)
+        _check_count(name, count)
+        self.emit("function", (name.text, count), name.start)
+
+    def arguments_of_call(self) -> tuple[Reference | Expression, ...]:
+        opening = self.token
+        args: list[Reference | Expression] = []
+        if token_at(self.text, opening.end).text == ")":
+            self.advance()
+        else:
+            args.append(self.argument())
+            while self.token.text == ",":
+                args.append(self.argument())
+        self.close(opening)
+        return tuple(args)
+
+    def argument(self) -> Reference | Expression:
+        """What stands after the present token, "(" or ","; the token after it becomes the present one."""
+        start = skip_space(self.text, self.token.end)
+        reference = reference_at(self.text, start)
+        if reference is None:
+            self.advance()
+            return self.whole()
+        self.token = Token("name", reference, start)
+        self.advance()
+        return Reference(reference, start)
+
+    def close(self, opening: Token) -> None:
+        if self.token.text == ")":
+            self.advance()
+        elif self.token.kind == "end":
+            raise ExpressionError("'(' is never closed", opening.start)
+        else:
+            raise self.misplaced()
+
+    def nothing_there(self) -> ExpressionError:
+        """The error where a value should stand and none does."""
+        token, before = self.token, self.before
+        if token.kind == "end" and not self.text.strip():
+            return ExpressionError("the expression is empty")
+        where = f"after '{before.text}'" if before.text else "at the beginning"
+        return ExpressionError(f"a value is missing {where}", max(0, token.start - (token.kind == "end")))
+
+    def misplaced(self) -> ExpressionError:
+        """The error for a token that cannot follow the value before it."""
+        token, before = self.token, self.before
+        length = len(token.text)
+        if token.text == ")":
+            return ExpressionError("')' closes nothing", token.start)
+        if token.kind == "sign" and token.text != "(":
+            return ExpressionError(f"'{token.text}' has no place here", token.start, length=length)
+        what = f"no sign between '{before.text}' and '{token.text}'"
+        if before.text in NAMES:
+            return ExpressionError(what, token.start, f"write {before.text}({token.text})", length)
+        opened = "(...)" if token.text == "(" else token.text
+        left = "(...)" if before.text == ")" else before.text
+        return ExpressionError(what, token.start, f"there is no implicit product: write {left}*{opened}", length)
+
+
+def _checked_name(token: Token) -> str:
+    bare = token.text.rstrip("'")
+    primes = len(token.text) - len(bare)
+    if bare.lower() in _NO_NUMBERS:
+        what = f"'{bare}' is not a number that can be calculated with"
+        raise ExpressionError(what, token.start, length=len(bare))
+    if primes > 2:
+        raise ExpressionError(f"more than two primes: {token.text}", token.start, length=len(token.text))
+    if primes and bare in ("pi", "t"):
+        raise ExpressionError(f"'{bare}' has no derivative", token.start, f"write {bare}", len(token.text))
+    return token.text
+
+
+def _check_count(name: Token, count: int) -> None:
+    least = NAMES[name.text]
+    if count == least or (name.text in ("min", "max") and count > least):
+        return
+    needed = ("two or more" if name.text in ("min", "max") else ("one", "two")[least - 1], "" if least == 1 else "s")
+    what = f"{name.text} takes {needed[0]} argument{needed[1]}, not {count}"
+    raise ExpressionError(what, name.start, length=len(name.text))
+
+
+def _check_numbers(expression: Expression) -> None:
+    """Refuses plain numbers without a value (1/0, 9^9^9) at once, where they are written."""
+    stack: list[Any] = []
+    for (kind, what), column in zip(expression.code, expression.columns, strict=True):
+        count = what[1] if kind == "function" else 1 if kind == "neg" else 0 if kind in _LEAVES else 2
+        operands = stack[len(stack) - count :]
+        del stack[len(stack) - count :]
+        if kind in _LEAVES or kind == "function" or not all(scalar_operations.is_exact(a) for a in operands):
+            stack.append(what if kind == "number" else None)
+            continue
+        try:
+            apply_operation(operands, kind, what, None)
+        except scalar_operations.Undefined as error:
+            raise ExpressionError(str(error), column) from error
+        stack.append(operands[0])
+
+
+_LEAVES = ("number", "name", "call")

@@ -1,0 +1,118 @@
+"""The elementary functions over any scalar: float, exact number, graph node, sympy expression.
+
+The laws of mechanics call these and never `math` or `sympy`, so one text of a law serves all scalars.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from eomgen.symbolic.expression.graph import CONSTANTS, Node, is_zero
+
+NAMES = {
+    "sin": 1,
+    "cos": 1,
+    "tan": 1,
+    "asin": 1,
+    "acos": 1,
+    "atan": 1,
+    "atan2": 2,
+    "sinh": 1,
+    "cosh": 1,
+    "tanh": 1,
+    "sqrt": 1,
+    "exp": 1,
+    "log": 1,
+    "abs": 1,
+    "sign": 1,
+    "min": 2,
+    "max": 2,
+}
+"""The functions of the model file's grammar and how many arguments each takes (min and max: two or more)."""
+
+
+def function(name: str, *args):
+    """The function of the table NAMES at its arguments, in the arithmetic of the arguments.
+
+    At exact numbers it stays exact: sqrt(4) is 2, sqrt(2) a node of the graph CONSTANTS.
+    """
+    for a in args:
+        if type(a) is Node:
+            return a.graph.call(name, *args)
+    if all(isinstance(a, (int, Fraction)) for a in args):
+        return CONSTANTS.call(name, *args)
+    if all(isinstance(a, (float, int, Fraction)) for a in args):
+        return _at_floats(name, *map(float, args))
+    own = getattr(type(args[0]), f"scalar_{name}", None)
+    if own is not None:
+        return own(*args)
+    return _sympy_function(name, *args)
+
+
+def _at_floats(name: str, *args: float) -> float:
+    if name in ("min", "max"):
+        return min(args) if name == "min" else max(args)
+    if name == "abs":
+        return abs(args[0])
+    if name == "sign":
+        return float((args[0] > 0) - (args[0] < 0))
+    return getattr(math, name)(*args)
+
+
+def _sympy_function(name: str, *args):
+    import sympy
+
+    names = {"abs": "Abs", "min": "Min", "max": "Max"}
+    return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
+
+
+def sin(a):
+    return 0 if type(a) is int and a == 0 else function("sin", a)
+
+
+def cos(a):
+    return 1 if type(a) is int and a == 0 else function("cos", a)
+
+
+def sqrt(a):
+    return function("sqrt", a)
+
+
+def over(a, b):
+    """a / b, exact when both are exact (Python's int / int would be a float)."""
+    if isinstance(a, int) and isinstance(b, int):
+        quotient = Fraction(a, b)
+        return quotient.numerator if quotient.denominator == 1 else quotient
+    return a / b
+
+
+def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
+    """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
+    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
+
+
+def combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any, ...]:
+    """The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row."""
+    total: list[Any] = []
+    for factor, row in zip(factors, rows, strict=True):
+        total = total or [0] * len(row)
+        if not is_zero(factor):
+            for i, x in enumerate(row):
+                if not is_zero(x):
+                    total[i] = total[i] + factor * x
+    return tuple(total)
+
+
+def chosen(a, bound, if_below, if_above):
+    """if_below where a <= bound, else if_above: a piecewise law over any scalar."""
+    for x in (a, bound):
+        if type(x) is Node:
+            return x.graph.select(x.graph.call("less_equal", a, bound), if_below, if_above)
+    if all(isinstance(x, (int, float, Fraction)) for x in (a, bound)):
+        return if_below if a <= bound else if_above
+    import sympy
+
+    return sympy.Piecewise((if_below, a <= bound), (if_above, True))

@@ -1,0 +1,75 @@
+"""Expressions -> their nodes, arguments before results; and how many operations that is.
+
+The loops run in the order of `Node.index`, never by recursion: a chain of 50 links is thousands of nodes deep.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.symbolic.expression.graph import CONSTANTS, Graph, Node, Scalar
+
+FREE = frozenset(("symbol", "pi", "neg"))
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many operations an evaluation takes.
+
+    Args:
+        total: at every call, once the parameters are fixed.
+        hoisted: apart from those, once for given parameters.
+    """
+
+    total: int
+    hoisted: int
+
+
+def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> list[Node]:
+    """Every node that the outputs need, arguments before results; what is `given` is not looked into."""
+    stack = [x for x in outputs if type(x) is Node]
+    seen: set[Node] = set()
+    while stack:
+        x = stack.pop()
+        if x in seen:
+            continue
+        seen.add(x)
+        if x.op != "symbol" and x not in given:
+            stack += [a for a in x.args if type(a) is Node]
+    return sorted(seen, key=_index)
+
+
+def united(outputs: Sequence[Scalar]) -> tuple[Graph, list[Scalar]]:
+    """(graph, outputs) with the constants that have no graph of their own taken into that of the others."""
+    home = next((x.graph for x in outputs if type(x) is Node and x.graph is not CONSTANTS), CONSTANTS)
+    return home, [home.adopted(x) for x in outputs]
+
+
+def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Count:
+    """The operations in the outputs, each sub-expression once.
+
+    Every + - * / power and function is one; signs, symbols, pi, and what depends on exact constants only are free.
+    What depends on `parameters` only is hoisted.
+    """
+    parameters = frozenset(parameters)
+    constant, fixed, moving = 0, 1, 2  # what a node depends on at most: exact constants, parameters, anything
+    kind: dict[Node, int] = {}
+    counts = [0, 0, 0]
+    for x in order(outputs):
+        if x.op == "symbol":
+            kind[x] = fixed if x in parameters else moving
+            continue
+        of = constant
+        for a in x.args:
+            if type(a) is Node and kind[a] > of:
+                of = kind[a]
+        kind[x] = of
+        if x.op not in FREE:
+            counts[of] += 1
+    return Count(total=counts[moving], hoisted=counts[fixed])
+
+
+def _index(x: Node) -> int:
+    return x.index

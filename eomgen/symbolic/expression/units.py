@@ -1,0 +1,207 @@
+"""Text -> Unit: an exact factor to SI and the dimension (m, kg, s); the radian is one, and remembered.
+
+deg = pi/180 rad,  rev = 2 pi rad,  kN = 1000 kg m/s^2
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from eomgen.errors import ExpressionError
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.tokens import skip_space
+
+LONGEST = 80  # characters
+LARGEST_EXPONENT = 9
+
+
+@dataclass(frozen=True)
+class Unit:
+    """factor * pi^pi_power, in units of SI.
+
+    Args:
+        text: as written (not compared: that is `fits`).
+        factor: exact, positive.
+        pi_power: of the pi in an angle: 1 for deg, -1 for 1/deg.
+        length, mass, time: exponents of m, kg, s.
+        angle: exponent of rad, which is 1 but tells rad/s from 1/s.
+        cycles: exponent of the Hz in it: a frequency counts cycles, an angular velocity radians.
+    """
+
+    text: str
+    factor: Fraction = Fraction(1)
+    pi_power: int = 0
+    length: int = 0
+    mass: int = 0
+    time: int = 0
+    angle: int = 0
+    cycles: int = 0
+
+    def __str__(self) -> str:
+        return self.text
+
+    @property
+    def dimension(self) -> tuple[int, int, int]:
+        """The exponents of m, kg, s."""
+        return self.length, self.mass, self.time
+
+    def fits(self, other: Unit) -> bool:
+        """True where a value in this unit can be given in the other.
+
+        Angles are numbers (rad/s fits 1/s), but Hz does not fit rad/s: between them lies 2 pi.
+        """
+        hertz_for_radians = self.cycles != other.cycles and (self.angle or other.angle)
+        return self.dimension == other.dimension and not hertz_for_radians
+
+    def to_si(self, value: Any, pi: Any) -> Any:
+        """A value in this unit, in SI; in the arithmetic of value and pi."""
+        return value * self._size(pi)
+
+    def from_si(self, value: Any, pi: Any) -> Any:
+        """A value in SI, in this unit; in the arithmetic of value and pi."""
+        return over(value, self._size(pi))
+
+    def _size(self, pi: Any) -> Any:
+        factor = self.factor.numerator if self.factor.denominator == 1 else self.factor
+        return factor * pi**self.pi_power if self.pi_power else factor
+
+    @property
+    def si(self) -> str:
+        """The SI unit of the same kind, as text: m for cm, rad/s for deg/s."""
+        if self.factor == 1 and not self.pi_power:
+            return self.text
+        if self.dimension in _SI_NAMES:
+            return _SI_NAMES[self.dimension]
+        powers = (("rad", min(self.angle, 1)), ("kg", self.mass), ("m", self.length), ("s", self.time))
+        above = [name if n == 1 else f"{name}^{n}" for name, n in powers if n > 0]
+        below = [name if n == -1 else f"{name}^{-n}" for name, n in powers if n < 0]
+        under = f"/({'*'.join(below)})" if len(below) > 1 else f"/{below[0]}" if below else ""
+        return ("*".join(above) or "1") + under
+
+    def expression_in_si(self, expression: Expression) -> Expression:
+        """What a user wrote in this unit, in SI: 40 cm is 2/5, 90 deg is 1/2*pi."""
+        return expression.scaled(self.factor, self.pi_power)
+
+    def raised(self, n: int) -> Unit:
+        """The n-th power."""
+        return self._made(self.factor**n, *(n * e for e in self._exponents()))
+
+    def times(self, other: Unit) -> Unit:
+        """The product."""
+        return self._made(
+            self.factor * other.factor, *(a + b for a, b in zip(self._exponents(), other._exponents(), strict=True))
+        )
+
+    def _exponents(self) -> tuple[int, ...]:
+        return self.pi_power, self.length, self.mass, self.time, self.angle, self.cycles
+
+    def _made(self, factor: Fraction, *exponents: int) -> Unit:
+        return Unit(self.text, factor, *exponents)
+
+
+_SI_NAMES = {(1, 1, -2): "N", (2, 1, -3): "W", (-1, 1, -2): "Pa"}
+
+
+def _table() -> dict[str, Unit]:
+    def unit(name: str, factor: str | int = 1, m: int = 0, kg: int = 0, s: int = 0) -> tuple[str, Unit]:
+        return name, Unit(name, Fraction(factor), 0, m, kg, s)
+
+    entries = [
+        unit("1"),
+        *(unit(n, f, m=1) for n, f in (("m", 1), ("km", 1000), ("dm", "0.1"), ("cm", "0.01"), ("mm", "0.001"))),
+        *(unit(n, f, m=1) for n, f in (("um", "1e-6"), ("in", "0.0254"), ("ft", "0.3048"))),
+        *(unit(n, f, kg=1) for n, f in (("kg", 1), ("g", "0.001"), ("mg", "1e-6"), ("t", 1000), ("lb", "0.45359237"))),
+        *(unit(n, f, s=1) for n, f in (("s", 1), ("ms", "0.001"), ("us", "1e-6"), ("min", 60), ("h", 3600))),
+        *(unit(n, f, 1, 1, -2) for n, f in (("N", 1), ("mN", "0.001"), ("kN", 1000), ("MN", 10**6))),
+        *(unit(n, f, 2, 1, -2) for n, f in (("J", 1), ("mJ", "0.001"), ("kJ", 1000), ("MJ", 10**6))),
+        *(unit(n, f, 2, 1, -3) for n, f in (("W", 1), ("mW", "0.001"), ("kW", 1000), ("MW", 10**6))),
+        *(unit(n, f, -1, 1, -2) for n, f in (("Pa", 1), ("kPa", 1000), ("MPa", 10**6), ("GPa", 10**9), ("bar", 10**5))),
+    ]
+    table = dict(entries)
+    for name, factor in (("Hz", 1), ("kHz", 1000)):
+        table[name] = Unit(name, Fraction(factor), time=-1, cycles=1)
+    angles: tuple[tuple[str, str | int, int, int], ...] = (
+        ("rad", 1, 0, 0),
+        ("mrad", "0.001", 0, 0),
+        ("deg", "1/180", 1, 0),
+        ("rev", 2, 1, 0),
+        ("rpm", "1/30", 1, -1),
+    )
+    for name, size, pi_power, time in angles:
+        table[name] = Unit(name, Fraction(size), pi_power, time=time, angle=1)
+    return table
+
+
+UNITS = _table()
+"""Every unit by its name."""
+
+for _alias, _name in (("µm", "um"), ("μm", "um"), ("µs", "us"), ("μs", "us"), ("°", "deg")):
+    UNITS[_alias] = UNITS[_name]
+
+_SPOKEN = {"sec": "s", "second": "s", "meter": "m", "metre": "m", "degree": "deg", "degrees": "deg", "radian": "rad"}
+_SPOKEN |= {"radians": "rad", "newton": "N", "kilogram": "kg", "hr": "h", "hour": "h", "rps": "rev/s"}
+_PIECE = re.compile(
+    r"(?P<unit>[^\W\d_²³¹⁰⁴-⁹]+|°|1(?![0-9.]))"
+    r"(?:\s*(?:\^|\*\*)\s*(?P<power>[-+]?[0-9]+|\([-+]?[0-9]+\))|(?P<raised>⁻?[¹²³⁴]))?"
+)
+_RAISED = str.maketrans("⁻¹²³⁴", "-1234")
+
+
+def parse_unit(text: str) -> Unit:
+    """The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number.
+
+    Raises:
+        ExpressionError: there is no such unit; column and length say where, mend offers the nearest.
+    """
+    if not text.strip() or len(text) > LONGEST:
+        raise ExpressionError("a unit is missing" if not text.strip() else "the unit is too long", mend="write kg*m^2")
+    total, opened, group, direction, needed = Unit(text), -1, 1, 1, True
+    position = skip_space(text, 0)
+    while position < len(text):
+        character = text[position]
+        if needed and character == "(" and opened < 0:
+            opened, group, direction = position, direction, 1
+        elif not needed and character == ")" and opened >= 0:
+            opened, group = -1, 1
+        elif not needed and character in "*·/":
+            needed, direction = True, -1 if character == "/" else 1
+        elif piece := _PIECE.match(text, position):
+            total = total.times(_unit_of(piece).raised(group * direction * _power_of(piece)))
+            needed, direction, position = False, 1, piece.end() - 1
+        else:
+            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, "write kg*m^2")
+        position = skip_space(text, position + 1)
+    if needed or opened >= 0:
+        what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
+        raise ExpressionError(what, max(opened, 0) if opened >= 0 else len(text) - 1)
+    return total
+
+
+def _unit_of(piece: re.Match[str]) -> Unit:
+    name = piece.group("unit")
+    if name not in UNITS:
+        raise ExpressionError(f"there is no unit '{name}'", piece.start("unit"), _nearest(name), len(name))
+    return UNITS[name]
+
+
+def _power_of(piece: re.Match[str]) -> int:
+    written = piece.group("power") or (piece.group("raised") or "1").translate(_RAISED)
+    power = int(written.strip("()")) if len(written) <= 4 else LARGEST_EXPONENT + 1
+    if abs(power) > LARGEST_EXPONENT:
+        what = f"the exponent {written} is too large"
+        raise ExpressionError(what, piece.start("power"), length=len(written))
+    return power
+
+
+def _nearest(name: str) -> str:
+    same = [known for known in UNITS if known.lower() == name.lower()]
+    halves = [(name[:i], name[i:]) for i in range(1, len(name)) if name[:i] in UNITS and name[i:] in UNITS]
+    product = [f"{a}*{b}" for a, b in halves if UNITS[a]._exponents() != UNITS[b]._exponents()]  # cmm is not cm*m
+    spoken = [_SPOKEN[name.lower()]] if name.lower() in _SPOKEN else []
+    near = spoken or same or product or difflib.get_close_matches(name, UNITS, n=1, cutoff=0.5)
+    return f"did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,144 @@
+"""Linear systems of numbers -> solutions, where rows and columns have units of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, NoValue
+
+SWEEPS = 8  # of scaling; each takes the square root of what is left
+NOTHING = 1e-14  # of the longest row: so short is rounding
+
+
+def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
+    """A x = right: by elimination, whose error knows no units; where A is not regular, the least squares' x.
+
+    Args:
+        regular: whether A is (an x of least squares mixes units: milligrams beside tonnes would count as 0).
+        smallest: singular values of the scaled A below this part of the largest count as 0.
+    Raises:
+        NoValue: A was called regular and is not.
+    """
+    scaled, rows, columns = balanced(A)
+    if not regular:
+        return columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0]
+    try:
+        return columns * np.linalg.solve(scaled, rows * right)
+    except np.linalg.LinAlgError as error:
+        raise NoValue("the equations of motion are singular") from error
+
+
+def independent(J: np.ndarray, *, smallest: float) -> bool:
+    """Whether no row of J follows from the others."""
+    return rank(J, smallest=smallest) == len(J)
+
+
+def rank(A: np.ndarray, *, smallest: float) -> int:
+    """How many singular values of the scaled A are more than `smallest`."""
+    return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
+
+
+def of_one_length(A: np.ndarray) -> np.ndarray:
+    """The rows brought to length 1; those that are rounding are 0."""
+    brought: np.ndarray = A / divisor(np.linalg.norm(A, axis=1, keepdims=True))
+    return brought
+
+
+def divisor(lengths: np.ndarray) -> np.ndarray:
+    """The lengths of rows, to divide these by; infinite of rows that are rounding."""
+    return np.where(lengths > NOTHING * np.max(lengths, initial=0.0), lengths, np.inf)
+
+
+def without_noise(A: np.ndarray, share: float, axis: int | None = None) -> np.ndarray:
+    """The matrix; entries below that share of the largest, or with axis 1 of the largest in their row, are 0."""
+    sizes = abs(A)
+    return np.where(sizes > share * np.max(sizes, axis=axis, keepdims=True, initial=0.0), A, 0.0)
+
+
+def without_rounding(A: np.ndarray) -> np.ndarray:
+    """The matrix; rows that are rounding are 0."""
+    return np.where(np.any(of_one_length(A), axis=1, keepdims=True), A, 0.0)
+
+
+def weighted(M: np.ndarray, J: np.ndarray) -> np.ndarray:
+    """M + mean(M_ii) J^T J, rows of J of one length: with J a given it measures a alike, and M may be 0 along J."""
+    rows = of_one_length(J)
+    found: np.ndarray = M + np.trace(M) / max(len(M), 1) * rows.T @ rows
+    return found
+
+
+def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
+    """The rows that do not follow from those before them: what these leave of a row is more than `smallest` of it."""
+    found, Q = [], np.zeros((0, A.shape[1]))
+    for i, row in enumerate(of_one_length(A)):
+        left = row - Q.T @ (Q @ row)
+        left = left - Q.T @ (Q @ left)  # once more, for what rounding left
+        size = float(np.linalg.norm(left))
+        if size > smallest * float(np.linalg.norm(row)):
+            Q = np.vstack([Q, left / size])
+            found.append(i)
+    return found
+
+
+def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
+    """How many rows {column: number of 50 digits} are independent."""
+    left = [dict(row) for row in rows]
+    rank = 0
+    while left:
+        row = max(left, key=lambda line: max(map(abs, line.values()), default=0))
+        left.remove(row)
+        column = max(row, key=lambda k: abs(row[k]), default=None)
+        if column is None or abs(row[column]) < ZERO_AT_50:
+            break
+        rank += 1
+        for other in left:
+            if column in other:
+                factor = other.pop(column) / row[column]
+                for k, x in row.items():
+                    if k != column:
+                        other[k] = other.get(k, 0) - factor * x
+    return rank
+
+
+def follows(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
+    """Whether a row of numbers of 50 digits is a combination of others (`modular.follows` in the reals)."""
+    left, waiting = list(row), [list(each) for each in rows]
+    size = max(map(abs, left), default=0)
+    while waiting:
+        pivot = max(waiting, key=lambda line: max(map(abs, line)))
+        waiting.remove(pivot)
+        k = max(range(len(pivot)), key=lambda j: abs(pivot[j]))
+        if abs(pivot[k]) < ZERO_AT_50:
+            break
+        for other in (*waiting, left):
+            factor = other[k] / pivot[k]
+            other[:] = [x - factor * y for x, y in zip(other, pivot, strict=True)]
+        size = max(size, *map(abs, left))
+    return max(map(abs, left), default=0) <= ZERO_AT_50 * size
+
+
+def scaled_condition(M: np.ndarray) -> float:
+    """Condition number of M_ij / sqrt(M_ii M_jj): that of a mass matrix whatever the units of its coordinates."""
+    scale = _roots(abs(np.diagonal(M)))
+    return float(np.linalg.cond(M / np.outer(scale, scale)))
+
+
+def balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(D A E, D, E) with the largest entry of every row and column of D A E near 1.
+
+    Source: D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms, RAL-TR-2001-034.
+    """
+    rows, columns = np.ones(A.shape[0]), np.ones(A.shape[1])
+    for _ in range(SWEEPS):
+        size = abs(A * rows[:, None] * columns)
+        rows = rows / _roots(size.max(axis=1, initial=0))
+        columns = columns / _roots(size.max(axis=0, initial=0))
+    return A * rows[:, None] * columns, rows, columns
+
+
+def _roots(sizes: np.ndarray) -> np.ndarray:
+    """Square roots; 1 for what is zero."""
+    return np.sqrt(np.where(sizes > 0, sizes, 1))

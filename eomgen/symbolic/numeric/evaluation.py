@@ -1,0 +1,270 @@
+"""Expressions, values of their symbols -> values, in the arithmetic that one chooses."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, lru_cache
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.expression.graph import LARGEST_POWER, Node, Number, Scalar
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.traversal import order
+
+WAYS_KEPT = 16  # of evaluations that may come again
+PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
+
+
+class NoValue(ArithmeticError):
+    """This state has no value in this arithmetic (a root that is not there, a zero divisor): take another state."""
+
+
+class NoMeaning(NoValue):
+    """A function or constant has no meaning in this arithmetic at any state: take another arithmetic."""
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """Numbers of one kind.
+
+    Args:
+        name: for messages, "prime field".
+        number: turns an exact number into one of this kind.
+        functions: the operation of each op, "pi" as a function of nothing.
+        failed: the value of a node outside its domain; may raise NoValue instead.
+    """
+
+    name: str
+    number: Callable[[Number], Any]
+    functions: Mapping[str, Callable[..., Any]]
+    failed: Callable[[Node], Any]
+
+
+def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any]:
+    """The outputs' values.
+
+    Args:
+        outputs: scalars of one graph, exact numbers among them.
+        values: a value for every symbol in the outputs; any other node may be given too, and is then not computed.
+        arithmetic: FLOAT, RATIONAL, PRIME_FIELD or fifty_digits().
+    Raises:
+        DerivationError: a symbol without a value; all are named.
+        NoValue: outside the domain (floats give nan instead).
+    """
+    way = _way(tuple(outputs), frozenset(x for x in values if x.op != "symbol"))
+    missing = [x.name for x in way.symbols if x not in values]
+    if missing:
+        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}")
+    number, functions = arithmetic.number, arithmetic.functions
+    known = [number(x) for x in way.constants]
+    known += [values[x] for x in way.symbols]
+    known += [values[x] for x in way.given]
+    for x, op, places in way.steps:
+        try:
+            known.append(functions[op](*[known[i] for i in places]))
+        except (ValueError, ZeroDivisionError, OverflowError):
+            known.append(arithmetic.failed(x))
+    return [known[i] for i in way.outputs]
+
+
+@dataclass(frozen=True)
+class _Way:
+    """In which order values are found: constants, symbols, nodes given, then each step from the values before it.
+
+    Args:
+        steps: a node, its operation, and the places of its arguments among all values.
+        outputs: their places.
+    """
+
+    constants: tuple[Number, ...]
+    symbols: tuple[Node, ...]
+    given: tuple[Node, ...]
+    steps: tuple[tuple[Node, str, tuple[int, ...]], ...]
+    outputs: tuple[int, ...]
+
+
+@lru_cache(maxsize=WAYS_KEPT)
+def _way(outputs: tuple[Scalar, ...], given: frozenset[Node]) -> _Way:
+    """The way to the outputs, which is the same for all values."""
+    nodes = order(outputs, given)
+    symbols = tuple(x for x in nodes if x.op == "symbol")
+    known = tuple(x for x in nodes if x in given)
+    computed = [x for x in nodes if x.op != "symbol" and x not in given]
+    numbers = dict.fromkeys(a for x in computed for a in x.args if type(a) is not Node)
+    constants = tuple(numbers | dict.fromkeys(x for x in outputs if type(x) is not Node))
+    place: dict[Scalar, int] = {x: i for i, x in enumerate((*constants, *symbols, *known, *computed))}
+    steps = tuple((x, x.op, tuple(place[a] for a in x.args)) for x in computed)
+    return _Way(constants, symbols, known, steps, tuple(place[x] for x in outputs))
+
+
+# -- the arithmetics ------------------------------------------------------------------------------
+
+
+def _sign(a: Any) -> int:
+    return (a > 0) - (a < 0)
+
+
+def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
+    return if_true if condition else if_false
+
+
+_RING: dict[str, Callable[..., Any]] = {
+    "neg": operator.neg,
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+}
+_ORDERED: dict[str, Callable[..., Any]] = {
+    "abs": abs,
+    "sign": _sign,
+    "min": min,
+    "max": max,
+    "less": operator.lt,
+    "less_equal": operator.le,
+    "select": _select,
+}
+
+
+def _no_value(x: Node) -> Any:
+    raise NoValue(f"'{x.op}' outside its domain")
+
+
+def _meaningless(op: str, arithmetic: str) -> Callable[..., Any]:
+    def refuse(*_: Any) -> Any:
+        raise NoMeaning(f"'{op}' has no meaning in {arithmetic}")
+
+    return refuse
+
+
+def _refusing(ops: str, arithmetic: str) -> dict[str, Callable[..., Any]]:
+    return {op: _meaningless(op, arithmetic) for op in ops.split()}
+
+
+def _nearest(x: Number) -> float:
+    try:
+        return float(x)
+    except OverflowError:
+        return math.inf if x > 0 else -math.inf
+
+
+FLOAT = Arithmetic(
+    "floats",
+    _nearest,
+    _RING
+    | _ORDERED
+    | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}
+    | {"pow": math.pow, "pi": lambda: math.pi, "sampled": lambda t, k: sampled_of(k).at(t, float, math.pi)},
+    lambda x: math.nan,
+)
+
+
+def _rational_root(a: Fraction | int) -> Fraction:
+    a = Fraction(a)
+    if a < 0:
+        raise NoValue("the root of a negative number")
+    root = Fraction(math.isqrt(a.numerator), math.isqrt(a.denominator))
+    if root * root != a:
+        raise NoValue(f"{a} is not a square")
+    return root
+
+
+def _whole_power(a: Any, exponent: Any) -> Any:
+    if Fraction(exponent).denominator != 1 or abs(exponent) > LARGEST_POWER:
+        raise NoMeaning("a power that is not a small whole number")
+    return a ** int(exponent)
+
+
+def _rational_sample(t: Fraction, k: Fraction) -> Fraction:
+    if sampled_of(k).pi_power:
+        raise NoMeaning("pi is not rational")
+    return sampled_of(k).spline.at(t)
+
+
+RATIONAL = Arithmetic(
+    "rationals",
+    Fraction,
+    _RING
+    | _ORDERED
+    | {"sqrt": _rational_root, "pow": _whole_power, "sampled": _rational_sample}
+    | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "the rationals"),
+    _no_value,
+)
+
+
+@cache
+def _residue(c: Number) -> int:
+    return c.numerator * pow(c.denominator, -1, PRIME) % PRIME
+
+
+def _root_modulo(a: int) -> int:
+    """The root that is a square itself, so that sqrt(a) sqrt(b) = sqrt(a b) as over the positive reals."""
+    root = pow(a, (PRIME + 1) // 4, PRIME)
+    if root * root % PRIME != a % PRIME:
+        raise NoValue("not a square modulo the prime")
+    return root
+
+
+def _power_modulo(a: int, exponent: int) -> int:
+    if exponent > LARGEST_POWER:
+        raise NoMeaning("a power that is not a small whole number")
+    return pow(a, exponent, PRIME)
+
+
+def _quotient_modulo(a: int, b: int) -> int:
+    return a * pow(b, -1, PRIME) % PRIME  # ValueError where b is 0
+
+
+_MODULAR: dict[str, Callable[..., Any]] = {
+    "neg": lambda a: -a % PRIME,
+    "add": lambda a, b: (a + b) % PRIME,
+    "sub": lambda a, b: (a - b) % PRIME,
+    "mul": lambda a, b: a * b % PRIME,
+    "div": _quotient_modulo,
+    "sqrt": _root_modulo,
+    "pow": _power_modulo,
+}
+
+PRIME_FIELD = Arithmetic(
+    "prime field",
+    _residue,
+    _MODULAR
+    | _refusing("pi sin cos tan asin acos atan sinh cosh tanh exp log atan2", "a prime field")
+    | _refusing("abs sign min max less less_equal select sampled", "a prime field"),
+    _no_value,
+)
+
+
+ZERO_AT_50 = 1e-25  # below which a number of 50 digits that would be of the order of 1 is 0
+
+
+@cache
+def fifty_digits() -> Arithmetic:
+    """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue."""
+    from mpmath.ctx_mp import MPContext
+
+    mp = MPContext()
+    mp.dps = 50
+
+    def real(function: Callable[..., Any]) -> Callable[..., Any]:
+        def guarded(*arguments: Any) -> Any:
+            value = function(*arguments)
+            if isinstance(value, mp.mpc) or not mp.isfinite(value):
+                raise NoValue("no finite real value")
+            return value
+
+        return guarded
+
+    names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
+    functions = {op: real(getattr(mp, op)) for op in names}
+
+    def number(c: Number) -> Any:
+        return mp.mpf(c.numerator) / c.denominator
+
+    own: dict[str, Callable[..., Any]] = {"pow": real(mp.power), "pi": lambda: +mp.pi}
+    own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
+    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, _no_value)

@@ -1,0 +1,144 @@
+"""Equations, a box -> all their roots in the box, each isolated, and none is missed.
+
+Boxes are halved and examined. One is dropped where an equation cannot vanish in it; it holds one root and no other
+where Krawczyk's operator maps it into its own inside:
+
+    K(x) = m - C f(m) + (1 - C f'(x)) (x - m),      m the middle of the box, C the inverse of f'(m)
+
+Where f' is singular at a root, boxes about it stay undecided down to the smallest size.
+Source: Neumaier, Interval Methods for Systems of Equations (1990), sections 5.1 and 5.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import evaluate
+from eomgen.symbolic.numeric.intervals import INTERVALS, interval
+
+SMALLEST = 1e-7  # size of a box against the whole, below which it is not halved
+MOST_BOXES = 60_000  # examined in all
+WORK = 30_000_000  # operations in all, of long equations
+TOGETHER = 4096  # boxes of one evaluation
+HALF = 0.4837  # where a box is halved: roots at round numbers do not lie on borders
+JUMPS = frozenset(("sign", "select", "less", "less_equal"))
+
+
+@dataclass(frozen=True)
+class Isolation:
+    """The roots of equations in a box.
+
+    Args:
+        roots: the middle of a box about each root, roots x unknowns.
+        undecided: the middles of boxes that may hold roots.
+        finished: whether every box was examined.
+    """
+
+    roots: np.ndarray
+    undecided: np.ndarray
+    finished: bool
+
+
+def can_isolate(equations: Sequence[Scalar]) -> bool:
+    """Whether the equations have no jumps."""
+    return not any(node.op in JUMPS for node in order(equations))
+
+
+def isolated(
+    equations: Sequence[Scalar], unknowns: Sequence[Node], values: Mapping[Node, Any], low: np.ndarray, high: np.ndarray
+) -> Isolation:
+    """The roots of as many equations as unknowns in the box from `low` to `high`.
+
+    Args:
+        values: of every other symbol.
+    """
+    return _Boxes(tuple(equations), tuple(unknowns), dict(values), high - low).examined(low, high)
+
+
+@dataclass(frozen=True)
+class _Boxes:
+    equations: tuple[Scalar, ...]
+    unknowns: tuple[Node, ...]
+    values: Mapping[Node, Any]
+    size: np.ndarray
+
+    def examined(self, low: np.ndarray, high: np.ndarray) -> Isolation:
+        slopes = tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
+        roots, undecided = [np.zeros((0, len(low)))], [np.zeros((0, len(low)))]
+        lows, highs, seen = low[None, :], high[None, :], 0
+        most = min(MOST_BOXES, WORK // len(order((*self.equations, *slopes))))
+        while len(lows) and seen < most:
+            seen += len(lows[:TOGETHER])
+            a, b, rest_a, rest_b = lows[:TOGETHER], highs[:TOGETHER], lows[TOGETHER:], highs[TOGETHER:]
+            a, b = _kept(self._may_vanish(a, b), a, b)
+            a, b, alone, empty = self._krawczyk(slopes, a, b)
+            roots.append((a[alone] + b[alone]) / 2)
+            a, b = _kept(~alone & ~empty, a, b)
+            small = np.all(b - a <= SMALLEST * self.size, axis=1)
+            undecided.append((a[small] + b[small]) / 2)
+            a, b = self._halved(*_kept(~small, a, b))
+            lows, highs = np.concatenate([a, rest_a]), np.concatenate([b, rest_b])
+        return Isolation(np.concatenate(roots), np.concatenate(undecided), not len(lows))
+
+    def _at(self, scalars: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(lowest, highest) value of each scalar in each box, boxes x scalars."""
+        given = {node: interval(float(x), float(x)) for node, x in self.values.items()}
+        given |= {node: (a[:, k], b[:, k]) for k, node in enumerate(self.unknowns)}
+        found = evaluate(scalars, given, INTERVALS)
+        ends = [np.stack([np.broadcast_to(x[k], len(a)) for x in found], axis=1) for k in range(2)]
+        return ends[0].astype(float), ends[1].astype(float)
+
+    def _may_vanish(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        low, high = self._at(self.equations, a, b)
+        return np.all((low <= 0) & (high >= 0), axis=1)
+
+    def _krawczyk(
+        self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """(low, high) of each box made smaller, whether it holds one root alone, and whether it holds none."""
+        n = len(self.unknowns)
+        middle, radius = (a + b) / 2, (b - a) / 2
+        low, high = self._at(slopes, a, b)
+        bounded = np.all(np.isfinite(low) & np.isfinite(high), axis=1)
+        low, high = (np.where(bounded[:, None], x, np.eye(n).ravel()).reshape(-1, n, n) for x in (low, high))
+        center, spread = (low + high) / 2, (high - low) / 2
+        bounded &= _regular(center)
+        C = np.linalg.inv(np.where(bounded[:, None, None], center, np.eye(n)))
+        f_low, f_high = self._at(self.equations, middle, middle)
+        bounded &= np.all(np.isfinite(f_low) & np.isfinite(f_high), axis=1)
+        f_low, f_high = (np.where(bounded[:, None], x, 0.0) for x in (f_low, f_high))
+        K = middle - np.einsum("bij,bj->bi", C, (f_low + f_high) / 2)
+        left = np.abs(C) @ spread + np.abs(np.eye(n) - C @ center)
+        reach = np.einsum("bij,bj->bi", left, radius) + np.einsum("bij,bj->bi", np.abs(C), (f_high - f_low) / 2)
+        inside = np.all((K - reach > a) & (K + reach < b), axis=1)
+        new_a = np.where(bounded[:, None], np.maximum(a, K - reach), a)
+        new_b = np.where(bounded[:, None], np.minimum(b, K + reach), b)
+        empty = np.any(new_a > new_b, axis=1)
+        return np.minimum(new_a, new_b), new_b, bounded & inside, empty
+
+    def _halved(self, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Every box cut in two across its longest side."""
+        longest = np.argmax((b - a) / self.size, axis=1)[:, None]
+        cut = np.take_along_axis(a + HALF * (b - a), longest, axis=1)
+        left, right = b.copy(), a.copy()
+        np.put_along_axis(left, longest, cut, axis=1)
+        np.put_along_axis(right, longest, cut, axis=1)
+        return np.concatenate([a, right]), np.concatenate([left, b])
+
+
+def _kept(chosen: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return a[chosen], b[chosen]
+
+
+def _regular(matrices: np.ndarray) -> np.ndarray:
+    """Whether each of the matrices can be inverted without losing all digits."""
+    with np.errstate(all="ignore"):
+        condition = np.linalg.cond(matrices) if len(matrices) else np.zeros(0)
+    return np.isfinite(condition) & (condition < 1e10)

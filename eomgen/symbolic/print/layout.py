@@ -1,0 +1,287 @@
+"""Node -> the terms of its sum and the factors of its products, in the order in which a textbook writes them.
+
+Sums and products are flattened by multiplicity, each node opened once: an
+expression whose tree is exponentially large costs what its graph costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+from typing import Any
+
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.decimals import decimal_of
+
+SUMS = frozenset(("add", "sub", "neg"))
+SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
+
+Term = tuple[Number, "Node | None"]
+Factor = tuple[Node, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """coefficient * (product of base ^ exponent) / (product of base ^ exponent), exponents whole and positive."""
+
+    coefficient: Number
+    numerator: tuple[Factor, ...]
+    denominator: tuple[Factor, ...]
+
+
+def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
+    """x as a sum of number * term, the term None for a plain number.
+
+    The order is the one in which they were added. A positive number leads, a negative one comes last, and
+    the sum begins with a term without a minus where there is one: 1 - cos(theta), theta - pi/2.
+
+    Args:
+        named: nodes with a name of their own, which are not opened.
+    """
+    if not isinstance(x, Node):
+        return [(x, None)]
+    opened, leaves = _opened_sum(x, named)
+    share_opened: dict[Node, Number] = dict.fromkeys(opened, 0)
+    share: dict[Node, Number] = dict.fromkeys(leaves, 0)
+    (share_opened if opened else share)[x] = 1
+    number: Number = 0
+    for node in sorted(opened, key=_newest_first):
+        for factor, child in _summands(node):
+            part = factor * share_opened[node]
+            if not isinstance(child, Node):
+                number += part * child
+            elif node.op != "mul" and child in share_opened:
+                share_opened[child] += part
+            else:
+                share[child] += part
+    return _lead([(_tidy(c), leaf) for leaf, c in share.items() if c != 0], _tidy(number))
+
+
+def products_of(x: Scalar, named: Container[Node] = ()) -> list[Product]:
+    """x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)."""
+    products = []
+    for c, term in terms(x, named):
+        product = factors(1 if term is None else term, named)
+        products.append(_turned(Product(c * product.coefficient, product.numerator, product.denominator), named))
+    return plus_first(products)
+
+
+def plus_first(products: list[Product]) -> list[Product]:
+    """The products with the first positive one in front."""
+    first = next((i for i, product in enumerate(products) if product.coefficient > 0), 0)
+    return [products[first], *products[:first], *products[first + 1 :]]
+
+
+def _turned(product: Product, named: Container[Node]) -> Product:
+    """The product with the sign of a factor turned where it reads better: -(x - 1) is 1 - x, and l/r - 1 too."""
+    product = _turned_below(product, named)
+    for i, (base, exponent) in enumerate(product.numerator):
+        if exponent % 2 and base not in named and base.op == "add" and _is_less_than(base.args[0], 0):
+            rest = base.args[1]
+            if product.coefficient < 0 or (type(rest) is Node and rest.op == "div"):
+                turned = (base.graph.neg(base), exponent)
+                above = (*product.numerator[:i], turned, *product.numerator[i + 1 :])
+                return Product(-product.coefficient, above, product.denominator)
+    return product
+
+
+def _turned_below(product: Product, named: Container[Node]) -> Product:
+    """-a/(x - 1) as a/(1 - x), and a/(pi - 4), whose divisor is negative, as -a/(4 - pi)."""
+    for i, (base, exponent) in enumerate(product.denominator):
+        if base in named or base.op != "add" or not _is_less_than(base.args[0], 0):
+            continue
+        if (exponent % 2 and product.coefficient < 0) or _is_negative_constant(base):
+            below = (*product.denominator[:i], (base.graph.neg(base), exponent), *product.denominator[i + 1 :])
+            return Product((-1) ** exponent * product.coefficient, product.numerator, below)
+    return product
+
+
+def _is_negative_constant(x: Node) -> bool:
+    """pi - 4"""
+    return all(node.op in ("add", "mul", "pi") for node in order((x,))) and evaluate((x,), {}, FLOAT)[0] < 0
+
+
+def _is_less_than(x: Scalar, limit: int) -> bool:
+    return type(x) is not Node and x < limit
+
+
+def _newest_first(node: Node) -> int:
+    return -node.index
+
+
+def _tidy(c: Number) -> Number:
+    return c.numerator if c.denominator == 1 else c
+
+
+def _lead(found: list[Term], number: Number) -> list[Term]:
+    """The terms with the plain number in its place and a positive one in front."""
+    if number > 0:
+        return [(number, None), *found]
+    if number < 0 or not found:
+        found.append((number, None))
+    first = next((i for i, (c, _) in enumerate(found) if c > 0), 0)
+    return [found[first], *found[:first], *found[first + 1 :]]
+
+
+def is_base(node: Node) -> bool:
+    """True for what is no sum, product or whole power: a symbol, pi, a function, a broken power."""
+    return node.op not in SUMS and _parts(node) is None
+
+
+def _opens_as_sum(node: Node, named: Container[Node]) -> bool:
+    if node in named:
+        return False
+    return node.op in SUMS or (node.op == "mul" and type(node.args[0]) is not Node)
+
+
+def _summands(node: Node) -> tuple[tuple[Number, Scalar], ...]:
+    if node.op == "mul":
+        return ((node.args[0], node.args[1]),)
+    signs = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}[node.op]
+    return tuple(zip(signs, node.args, strict=True))
+
+
+def _opened_sum(x: Node, named: Container[Node]) -> tuple[list[Node], list[Node]]:
+    """The nodes of the sum that are opened, and its terms in the order in which they were added.
+
+    The graph sorts the arguments of a sum, but a longer sum is always younger than the shorter one that it
+    was made from: a term's place is the age of the sum that brought it in.
+    """
+    opened: dict[Node, None] = {}
+    leaves: dict[Node, int] = {}
+    stack: list[tuple[Node, int]] = [(x, x.index)]
+    while stack:
+        node, brought_by = stack.pop()
+        if not _opens_as_sum(node, named):
+            leaves[node] = min(brought_by, leaves.get(node, brought_by))
+        elif node not in opened:
+            opened[node] = None
+            by = node.index if node.op in ("add", "sub") else brought_by
+            children = [(child, by) for child in reversed(node.args) if type(child) is Node]
+            if node.op == "mul":  # 2*(a + b) stays a product
+                leaves[children[0][0]] = min(by, leaves.get(children[0][0], by))
+            else:
+                stack += children
+    return list(opened), sorted(leaves, key=leaves.__getitem__)
+
+
+def factors(x: Scalar, named: Container[Node] = ()) -> Product:
+    """x as powers over powers: constants, symbols, functions, sums, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
+
+    A base is a symbol, pi, a function, a sum, or a `pow` that is no whole power.
+
+    Args:
+        named: nodes with a name of their own, which are not opened.
+    """
+    if not isinstance(x, Node):
+        return Product(x, (), ())
+    powers: dict[Node, int] = {x: 1}
+    newest = [(-x.index, x)]
+    bases: list[Factor] = []
+    coefficient = Fraction(1)
+    while newest:
+        node = heappop(newest)[1]
+        power = powers[node]
+        parts = None if node in named else _parts(node)
+        if parts is None:
+            bases += [(node, power)] if power else []
+            continue
+        for part, exponent in parts:
+            if not isinstance(part, Node):
+                coefficient *= Fraction(part) ** (power * exponent)
+                continue
+            if part not in powers:
+                heappush(newest, (-part.index, part))
+            powers[part] = powers.get(part, 0) + power * exponent
+    bases.sort(key=_rank)
+    bases = _constant_sums_first(bases)
+    above = tuple((base, power) for base, power in bases if power > 0)
+    return Product(_tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
+
+
+def _constant_sums_first(bases: list[Factor]) -> list[Factor]:
+    """(I3 - I2)*w2*w3: sums of what stays the same before the first symbol of what moves."""
+    first = next((k for k, (base, _) in enumerate(bases) if _moves(base)), None)
+    if first is None:
+        return bases
+    sums = [each for each in bases[first:] if each[0].op in SUMS and _is_short_constant(each[0])]
+    return [*bases[:first], *sums, *(each for each in bases[first:] if each not in sums)]
+
+
+def _moves(base: Node) -> bool:
+    return base.op == "symbol" and not base.graph.is_constant(base) and not base.name.endswith("'")
+
+
+def _is_short_constant(base: Node) -> bool:
+    nodes = order((base,))
+    symbols = [x for x in nodes if x.op == "symbol"]
+    return len(nodes) <= SHORT_SUM and bool(symbols) and all(x.graph.is_constant(x) for x in symbols)
+
+
+def rebuilt_as_written(x: Scalar) -> Scalar:
+    """x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)."""
+    if not isinstance(x, Node):
+        return x
+    total: Scalar = 0
+    for product in products_of(x):
+        above: Any = product.coefficient
+        for base, power in product.numerator:
+            above = above * base**power
+        below: Any = 1
+        for base, power in product.denominator:
+            below = below * base**power
+        total = total + (above if type(below) is int else above / below)
+    return total
+
+
+def has_nested_quotient(x: Scalar) -> bool:
+    """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
+    stack: list[tuple[Scalar, bool]] = [(x, False)]
+    seen = set()
+    while stack:
+        entry = stack.pop()
+        node, within = entry
+        if not isinstance(node, Node) or is_base(node) or entry in seen:
+            continue
+        seen.add(entry)
+        for product in products_of(node):
+            broken = product.coefficient.denominator > 1 and decimal_of(product.coefficient) is None
+            if within and (product.denominator or broken):
+                return True
+            sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
+            stack += [(base, within or bool(product.denominator)) for base in sums]
+    return False
+
+
+def is_part_of_turn(product: Product) -> bool:
+    """True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4."""
+    lone = len(product.numerator) == 1 and not product.denominator and product.numerator[0][1] == 1
+    return lone and product.numerator[0][0].op == "pi" and 1 < product.coefficient.denominator < 100
+
+
+def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
+    """(factor, exponent) of a product, quotient, whole power or negation; None for a base."""
+    if node.op == "mul":
+        return ((node.args[0], 1), (node.args[1], 1))
+    if node.op == "div":
+        return ((node.args[0], 1), (node.args[1], -1))
+    if node.op == "neg":
+        return ((-1, 1), (node.args[0], 1))
+    if node.op == "pow" and type(node.args[1]) is int:
+        return ((node.args[0], node.args[1]),)
+    return None
+
+
+def _rank(factor: Factor) -> tuple[int, int]:
+    base = factor[0]
+    if base.op == "symbol":
+        kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 1
+    elif base.op in SUMS:
+        kind = 3
+    else:
+        kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 2
+    return kind, base.index

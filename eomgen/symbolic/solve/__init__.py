@@ -1,0 +1,1 @@
+"""Exact solutions of equations: linear systems, and one equation in one unknown."""

@@ -1,0 +1,295 @@
+"""Sparse linear equations over the graph: solved by elimination, dependent unknowns and left-over rows kept.
+
+A pivot must not vanish where the equations hold. Whether an entry does is read off its value at one generic state,
+the shadow, which is carried through the elimination beside the expressions. What has pivots that vanish at special
+states alone (the sine of an angle) is left to the normal equations
+
+    W^T A x = W^T b,   W = A where nothing better is known,
+
+which for equations without contradiction have the same solution, and with W = A no other singular states than A.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.solve import cramer
+
+TOGETHER = 4  # unknowns of one set of normal equations
+RANK = 1e-9  # of a column's distance from those before it, against its length
+
+Row = dict[int, Scalar]
+Values = Callable[[Sequence[Scalar]], list[Any]]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """x of  A x = b,  as far as the rows determine it.
+
+    Args:
+        constants: of each unknown that was solved for, x_j = constant - sum of coefficient * x_free.
+        shares: the coefficients of the free unknowns, {} where x_j is determined.
+        free: the unknowns that stay free: as many as the equations leave undetermined.
+        left: right sides of the rows in which no unknown is left: they must vanish.
+    """
+
+    constants: dict[int, Scalar]
+    shares: dict[int, dict[int, Scalar]]
+    free: tuple[int, ...]
+    left: tuple[Scalar, ...]
+
+    def determined(self, j: int) -> bool:
+        """Whether unknown j has one value only."""
+        return j in self.constants and not self.shares[j]
+
+
+@dataclass
+class _Line:
+    """One row under elimination: its entries, their shadows, its right side, and its row of W."""
+
+    entries: Row
+    shadow: dict[int, Any]
+    right: Scalar
+    test: Row
+
+
+def solved(
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    unknowns: int,
+    values: Values,
+    *,
+    simple: Callable[[Scalar], int] | None = None,
+    tolerance: float = 1e-20,
+    last: Sequence[int] = (),
+    sure: int | None = None,
+    tests: Sequence[Mapping[int, Scalar]] = (),
+) -> Solution:
+    """The solution of sparse linear equations, sum over j of rows[i][j] x_j = right[i].
+
+    Pivots are plain numbers where there are any, of those the ones that fill in least (Markowitz).
+
+    Args:
+        unknowns: how many x there are.
+        values: the values of scalars at one generic state, in an arithmetic of many digits.
+        simple: a rank of scalars as pivots, 0 the best (None: numbers 0, all else 1).
+        tolerance: of shadows against the largest of their row, below which an entry is zero.
+        last: unknowns that are taken as pivots only where there is no other.
+        sure: the largest rank of a pivot that vanishes nowhere; the others wait for the normal equations (None: all
+            are taken as they come).
+        tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
+    """
+
+    def tested(line: _Line, j: int) -> bool:
+        """Whether W has the entry too: friction alone does not tell the push that it comes from."""
+        return j not in late or not is_zero(line.test.get(j, 0))
+
+    lines = _lines(rows, right, values, tolerance, tests or [{}] * len(rows))
+    simple, late = simple or _number_first, frozenset(last)
+    order: list[tuple[int, _Line]] = []
+    if sure is not None:
+        _eliminate(
+            lines,
+            order,
+            lambda line, j, x: (simple(x) if tested(line, j) else sure + 1, j in late),
+            tolerance,
+            worst=(sure, True),
+        )
+        _normal(lines, order, values)
+    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), simple(x)), tolerance)
+    free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
+    constants, shares = _substituted(order, free, tolerance)
+    return Solution(constants, shares, free, tuple(line.right for line in lines))
+
+
+def _lines(
+    rows: Sequence[Mapping[int, Scalar]],
+    right: Sequence[Scalar],
+    values: Values,
+    tolerance: float,
+    tests: Sequence[Mapping[int, Scalar]],
+) -> list[_Line]:
+    flat = [entry for row in rows for entry in row.values()]
+    found = values(flat)
+    shadows, floor = iter(found), tolerance**2 * max(map(abs, found), default=0)  # a row may be rounding alone
+    lines = []
+    for row, b, test in zip(rows, right, tests, strict=True):
+        shadow = {j: next(shadows) for j in row}
+        largest = max((abs(x) for x in shadow.values()), default=0)
+        kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > max(tolerance * largest, floor)}
+        own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
+        lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
+    return lines
+
+
+def _number_first(a: Scalar) -> int:
+    return 1 if type(a) is Node else 0
+
+
+def _eliminate(
+    lines: list[_Line],
+    order: list[tuple[int, _Line]],
+    rank: Callable[[_Line, int, Scalar], tuple[int, int]],
+    tolerance: float,
+    worst: tuple[int, int] | None = None,
+) -> None:
+    """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
+    while (found := _pivot(lines, rank)) is not None:
+        line, j = found
+        if worst is not None and rank(line, j, line.entries[j]) > worst:
+            return
+        lines.remove(line)
+        order.append((j, line))
+        for other in lines:
+            if j in other.entries:
+                _subtract(other, line, j, tolerance)
+
+
+def _pivot(lines: list[_Line], rank: Callable[[_Line, int, Scalar], tuple[int, int]]) -> tuple[_Line, int] | None:
+    """The entry of the least rank by which the next unknown is eliminated; of those the one that fills in least."""
+    many: dict[int, int] = {}
+    for line in lines:
+        for j in line.entries:
+            many[j] = many.get(j, 0) + 1
+    best, found = None, None
+    for line in lines:
+        for j, entry in line.entries.items():
+            this = (*rank(line, j, entry), (len(line.entries) - 1) * (many[j] - 1))
+            if best is None or this < best:
+                best, found = this, (line, j)
+                if this == (0, 0, 0):
+                    return found
+    return found
+
+
+def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: Values) -> None:
+    """Solve the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
+    for group, unknowns in _groups(lines):
+        A = np.array([[float(line.shadow.get(j, 0)) for j in unknowns] for line in group])
+        if len(unknowns) > min(len(group), TOGETHER) or not _independent(A):
+            continue
+        rows, right = _tested(group, unknowns, A, values)
+        found = cramer.solved(rows, [(b,) for b in right])[0]
+        for line in group:
+            lines.remove(line)
+        known = {j: value for j, (value,) in zip(unknowns, found, strict=True)}
+        order += [(j, _Line({j: 1}, {j: 1}, value, {})) for j, value in known.items()]
+        lines += [_Line({}, {}, _rest(line, known), {}) for line in group[len(unknowns) :]]
+
+
+def _tested(group: list[_Line], unknowns: list[int], A: np.ndarray, values: Values) -> tuple[list[Row], list[Scalar]]:
+    """(W^T A, W^T b), and (A, b) itself where it is square; unknowns counted from 0."""
+    if len(group) == len(unknowns):
+        return [_numbered(line.entries, unknowns) for line in group], [line.right for line in group]
+    W = [line.test for line in group]
+    flat = iter(values([row.get(j, 0) for row in W for j in unknowns]))
+    if not _independent(np.array([[float(next(flat)) for _ in unknowns] for _ in W]).T @ A):
+        W = [line.entries for line in group]
+    rows = [
+        {
+            k: _sum(row.get(i, 0) * line.entries.get(j, 0) for row, line in zip(W, group, strict=True))
+            for k, j in enumerate(unknowns)
+        }
+        for i in unknowns
+    ]
+    return rows, [_sum(row[i] * line.right for row, line in zip(W, group, strict=True) if i in row) for i in unknowns]
+
+
+def _numbered(entries: Row, unknowns: list[int]) -> Row:
+    return {k: entries[j] for k, j in enumerate(unknowns) if j in entries}
+
+
+def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
+    """Lines that share unknowns, directly or through others, and these unknowns."""
+    groups: list[tuple[list[_Line], set[int]]] = []
+    for line in lines:
+        mine, columns = [line], set(line.entries)
+        if not columns:
+            continue
+        for group in [g for g in groups if g[1] & columns]:
+            groups.remove(group)
+            mine, columns = group[0] + mine, group[1] | columns
+        groups.append((mine, columns))
+    return [(group, sorted(columns)) for group, columns in groups]
+
+
+def _independent(A: np.ndarray) -> bool:
+    """Whether the columns are independent."""
+    lengths = np.linalg.norm(A, axis=0)
+    return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > RANK)
+
+
+def _sum(terms: Iterable[Scalar]) -> Scalar:
+    return sum(terms, start=0)
+
+
+def _rest(line: _Line, known: Mapping[int, Scalar]) -> Scalar:
+    """b - A x of a line: zero where the equations hold."""
+    return line.right - _sum(x * known[j] for j, x in line.entries.items())
+
+
+def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
+    """other - factor * line, so that unknown j leaves it."""
+    factor = _quotient(other.entries.pop(j), line.entries[j])
+    shadow = other.shadow.pop(j) / line.shadow[j]
+    other.right = other.right - factor * line.right
+    other.test = {k: other.test.get(k, 0) - factor * line.test.get(k, 0) for k in {**other.test, **line.test} if k != j}
+    for k, entry in line.entries.items():
+        if k == j:
+            continue
+        before = abs(other.shadow.get(k, 0))
+        value = other.shadow.get(k, 0) - shadow * line.shadow[k]
+        if abs(value) > tolerance * max(before, abs(shadow * line.shadow[k])):
+            other.entries[k] = other.entries.get(k, 0) - factor * entry
+            other.shadow[k] = value
+        else:
+            other.entries.pop(k, None)
+            other.shadow.pop(k, None)
+
+
+def _substituted(
+    order: list[tuple[int, _Line]], free: tuple[int, ...], tolerance: float
+) -> tuple[dict[int, Scalar], dict[int, dict[int, Scalar]]]:
+    """Back substitution: every pivot by the free unknowns alone."""
+    constants: dict[int, Scalar] = {}
+    shares: dict[int, dict[int, Scalar]] = {}
+    shadows: dict[int, dict[int, Any]] = {}
+    for j, line in reversed(order):
+        right = line.right
+        share: dict[int, Scalar] = {}
+        shadow: dict[int, Any] = {}
+        sizes: dict[int, Any] = {}
+        for k, entry in line.entries.items():
+            if k == j:
+                continue
+            if k in constants:
+                right = right - entry * constants[k]
+                for f, coefficient in shares[k].items():
+                    _add(share, shadow, sizes, f, -entry * coefficient, -line.shadow[k] * shadows[k][f])
+            else:
+                _add(share, shadow, sizes, k, entry, line.shadow[k])
+        pivot = line.entries[j]
+        constants[j] = _quotient(right, pivot)
+        kept = [f for f in share if abs(shadow[f]) > tolerance * sizes[f]]
+        shares[j] = {f: _quotient(share[f], pivot) for f in kept}
+        shadows[j] = {f: shadow[f] / line.shadow[j] for f in kept}
+    return constants, shares
+
+
+def _add(share: Row, shadow: dict[int, Any], sizes: dict[int, Any], f: int, entry: Scalar, value: Any) -> None:
+    share[f] = share[f] + entry if f in share else entry
+    shadow[f] = shadow.get(f, 0) + value
+    sizes[f] = max(sizes.get(f, 0), abs(value))
+
+
+def _quotient(a: Scalar, b: Scalar) -> Scalar:
+    if type(b) is int and b in (1, -1):
+        return a if b == 1 else -a
+    from eomgen.symbolic.expression.functions import over
+
+    return over(a, b)

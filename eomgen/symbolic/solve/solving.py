@@ -1,0 +1,244 @@
+"""Equation, unknown -> its roots in closed form, as many as are known; nothing is guessed from numbers.
+
+Known are: polynomials that split into factors of degree 1 and 2 in a power of x, equations in the sine and cosine of
+one angle, in exponentials with one exponent, and those that a squaring or two rid of their roots, or a sign or two of
+their magnitudes. Roots that these brought in are left out where numbers show that they are none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd
+from random import Random
+
+from eomgen.errors import DerivationError
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.factoring import factored, square_root
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.exact.terms import Terms, common_monomial, plus, scaled, tidy
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.solve.circular_equations import vanishing_angles, wave_free
+
+LIMIT = 50_000  # products of terms
+MOST_SQUARINGS = 2  # and signs of magnitudes
+TRIES = 8  # random states at which a root is tried
+VANISHES = 1e-7  # of a residual at such a state
+INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
+
+
+def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = LIMIT) -> tuple[Scalar, ...]:
+    """The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn.
+
+    Args:
+        positive: symbols that stand for positive numbers.
+        limit: products of terms for each step of the search.
+    """
+    if not depends_on(equation, (unknown,)):
+        return ()
+    assert type(equation) is Node
+    found: list[Scalar] = []
+    for candidate in _Search(unknown, frozenset(positive), limit).roots(_in_exponentials(equation, unknown)):
+        x = simplest(candidate, limit, positive)
+        if x not in found and _may_be_root(equation, unknown, x):
+            found.append(x)
+    return tuple(found)
+
+
+def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
+    """Whether equation(x + period) is the same function as equation(x)."""
+    (shifted,) = substituted((equation,), {unknown: unknown + period})
+    return shifted is equation or vanishes(shifted - equation)
+
+
+def vanishes(x: Scalar) -> bool:
+    """Whether x is 0 at all values of its symbols; not so where it has a value at no state that was tried."""
+    if type(x) is not Node:
+        return x == 0
+    try:
+        return equal_at_random_states([(x, 0)]).equal
+    except DerivationError:
+        return False
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The search for what may be a root.
+
+    Args:
+        x: the unknown.
+        positive: symbols that stand for positive numbers.
+        limit: products of terms for each step.
+        squarings: how often the equation may still be squared.
+    """
+
+    x: Node
+    positive: frozenset[Node]
+    limit: int
+    squarings: int = MOST_SQUARINGS
+
+    def roots(self, equation: Scalar) -> Iterator[Scalar]:
+        """Root by root, factor by factor."""
+        expansion = Expansion(self.x.graph, self.limit, self.positive)
+        try:
+            f, _ = expansion.cleared(expansion.of(equation))
+            f, fresh = wave_free(expansion, f)
+            for part in _factors(f):
+                for root in self._of_factor(expansion, part, fresh):
+                    yield substituted((root,), fresh)[0]
+        except DerivationError:  # too large, or a value that is not real
+            return
+
+    def _of_factor(self, expansion: Expansion, f: Terms, fresh: dict[Node, Scalar]) -> Iterator[Scalar]:
+        atoms = expansion.atoms
+        nodes = {atoms.nodes[atom] for monomial, _ in f for atom, _ in monomial if atom >= 0}
+        holders = {node for node in nodes if depends_on(fresh.get(node, node), (self.x,))}
+        ops = {atoms.opaque[h.index].op for h in holders if h.index in atoms.opaque}
+        if holders == {self.x}:
+            yield from self._powers(expansion, f, self.x)
+        elif holders and all(h in fresh for h in holders):
+            for angle, value in vanishing_angles(expansion, f, fresh, holders, self._powers):
+                yield from self.roots(angle - value)
+        elif ops == {"exp"} and all(h.index in atoms.opaque for h in holders):
+            for exponent, value in self._exponentials(expansion, f, holders):
+                yield from self.roots(exponent - value)
+        elif "sqrt" in ops and self.squarings:
+            root = next(h for h in holders if atoms.is_a(h.index, "sqrt"))
+            squared = substituted((atoms.node(_squared(expansion, f, root)),), fresh)[0]
+            yield from replace(self, squarings=self.squarings - 1).roots(squared)
+        elif "abs" in ops and self.squarings:
+            size = next(h for h in holders if atoms.is_a(h.index, "abs"))
+            for x in (size.args[0], -size.args[0]):
+                (signed,) = substituted((substituted((atoms.node(f),), {size: x})[0],), fresh)
+                yield from replace(self, squarings=self.squarings - 1).roots(signed)
+        elif len(holders) == 1 and ops <= INVERSE.keys():
+            (holder,) = holders
+            for value in self._powers(expansion, f, holder):
+                yield from self.roots(holder.args[0] - self.x.graph.call(INVERSE[holder.op], value))
+
+    def _powers(self, expansion: Expansion, f: Terms, atom: Node) -> Iterator[Scalar]:
+        """The values of the atom of which f = c0 + c1 y + c2 y^2 vanishes, y = atom^k."""
+        parts = coefficients(f, atom)
+        k = gcd(*parts)
+        c0, c1, c2 = (parts.get(n * k, {}) for n in range(3))
+        if k == 0 or max(parts) > 2 * k:
+            return
+        if not c0 and not c1:
+            yield 0
+            return
+        node = expansion.atoms.node
+        for y in self._quadratic(expansion, c0, c1, c2) if c2 else [-over(node(c0), node(c1))]:
+            yield from self._unpowered(simplest(y, self.limit, self.positive), k)
+
+    def _quadratic(self, expansion: Expansion, c0: Terms, c1: Terms, c2: Terms) -> Iterator[Scalar]:
+        """(-c1 +- sqrt(c1^2 - 4 c0 c2))/(2 c2)"""
+        discriminant = plus(expansion.product(c1, c1), expansion.product(c0, c2), -4)
+        node = expansion.atoms.node
+        whole = square_root(discriminant) if discriminant else {}
+        under = simplest(node(discriminant), self.limit, self.positive)
+        root = self.x.graph.sqrt(under) if whole is None else node(whole)
+        for sign in (1, -1):
+            yield over(sign * root - node(c1), 2 * node(c2))
+
+    def _unpowered(self, y: Scalar, k: int) -> Iterator[Scalar]:
+        """The real x with x^k = y."""
+        graph = self.x.graph
+        if k == 1:
+            yield y
+        elif k == 2:
+            if sign_of_terms(y, self.positive) != -1:
+                yield from (graph.sqrt(y), -graph.sqrt(y))
+        elif k > 2:
+            yield graph.pow(y, Fraction(1, k))
+            yield -graph.pow(-y if k % 2 else y, Fraction(1, k))
+
+    def _exponentials(self, expansion: Expansion, f: Terms, holders: set[Node]) -> Iterator[tuple[Scalar, Scalar]]:
+        """(e, log(z)): f is a polynomial in z = exp(e), whole powers of which all its exponentials are."""
+        exponents = {h.index: expansion.atoms.opaque[h.index].arguments[0] for h in holders}
+        unit = next(iter(exponents.values()))
+        unit = scaled(unit, -1) if unit[min(unit)] < 0 else unit
+        multiples = {atom: _multiple(argument, unit) for atom, argument in exponents.items()}
+        if not all(multiples.values()):
+            return
+        common = Fraction(1, math.lcm(*(c.denominator for c in multiples.values())))
+        z = self.x.graph.symbol("(exp)")
+        expansion.of(z)
+        polynomial = _in_powers_of(f, {atom: int(c / common) for atom, c in multiples.items()}, z)
+        exponent = expansion.atoms.node(scaled(unit, tidy(common)))
+        for part in _factors(polynomial):
+            for value in self._powers(expansion, part, z):
+                if type(value) is Node or value > 0:
+                    yield exponent, self.x.graph.call("log", value)
+
+
+def coefficients(f: Terms, atom: Node) -> dict[int, Terms]:
+    """f = sum of part * atom^n, as {n: part}."""
+    parts: dict[int, Terms] = {}
+    for (monomial, w), c in f.items():
+        n = dict(monomial).get(atom.index, 0)
+        parts.setdefault(n, {})[tuple(item for item in monomial if item[0] != atom.index), w] = c
+    return parts
+
+
+def _factors(f: Terms) -> list[Terms]:
+    """The factors of f, single atoms among them."""
+    alone: list[Terms] = [{(((atom, 1),), ()): 1} for atom, e in common_monomial(f) if e > 0]
+    return alone + [part for part, _ in factored(f)]
+
+
+def _squared(expansion: Expansion, f: Terms, root: Node) -> Terms:
+    """a^2 - b^2 g of f = a + b sqrt(g)."""
+    parts = coefficients(f, root)
+    a, b = parts.get(0, {}), parts.get(1, {})
+    inside = expansion.atoms.opaque[root.index].arguments[0]
+    return plus(expansion.product(a, a), expansion.product(expansion.product(b, b), inside), -1)
+
+
+def _multiple(a: Terms, unit: Terms) -> Fraction:
+    """The number c with a = c unit; 0 where there is none."""
+    key = next(iter(unit))
+    c = Fraction(a.get(key, 0)) / unit[key]
+    return Fraction(0) if plus(a, unit, -c) else c
+
+
+def _in_powers_of(f: Terms, powers: dict[int, int], z: Node) -> Terms:
+    """f with z^powers[atom] for each of the atoms, without negative powers."""
+    lowest = min(sum(e * powers.get(atom, 0) for atom, e in monomial) for monomial, _ in f)
+    total: Terms = {}
+    for (monomial, w), c in f.items():
+        n = sum(e * powers.get(atom, 0) for atom, e in monomial) - lowest
+        rest = [item for item in monomial if item[0] not in powers] + ([(z.index, n)] if n else [])
+        total = plus(total, {(tuple(sorted(rest)), w): c})
+    return total
+
+
+def _in_exponentials(equation: Node, x: Node) -> Scalar:
+    """sinh, cosh and tanh of the unknown in exponentials."""
+    known: dict[Node, Scalar] = {}
+    for node in order((equation,)):
+        if node.op in ("sinh", "cosh", "tanh") and depends_on(node, (x,)):
+            z = x.graph.call("exp", node.args[0])
+            up, down = (z - 1 / z) / 2, (z + 1 / z) / 2
+            known[node] = up if node.op == "sinh" else down if node.op == "cosh" else up / down
+    return substituted((equation,), known)[0] if known else equation
+
+
+def _may_be_root(equation: Scalar, unknown: Node, x: Scalar) -> bool:
+    """False where numbers show that x is no root: values of the residual, and none of them zero."""
+    try:
+        (residual,) = substituted((equation,), {unknown: x})
+    except DerivationError:  # a division by zero
+        return False
+    rng = Random(1)
+    symbols = symbols_of((residual,))
+    states = ({symbol: rng.uniform(0.5, 2.0) for symbol in symbols} for _ in range(TRIES))
+    values = [value for state in states if math.isfinite(value := evaluate((residual,), state, FLOAT)[0])]
+    return min(map(abs, values)) < VANISHES if values else bool(symbols)
