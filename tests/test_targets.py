@@ -175,6 +175,43 @@ def test_outside_a_domain_the_value_is_not_a_number(target):
 
 
 @each_target
+def test_what_has_no_value_gives_none_to_what_is_made_of_it(target):
+    """f(nan, b), f(a, nan), f(nan) are nan for every f, choices and comparisons too; what is not chosen counts not."""
+    s = symbols("x y")
+    g, (x, y) = s.graph, s.q
+    lost = g.sqrt(x)
+    made = {op: g.call(op, lost) for op in UNARY if op not in ("tan", "asin", "acos")}
+    for op in BINARY:
+        if op != "pow":
+            made |= {f"{op} left": g.call(op, lost, y), f"{op} right": g.call(op, y, lost)}
+    made |= {"chosen": g.select(g.call("less", x, y), lost, y), "by nothing": g.select(g.call("less", lost, y), x, y)}
+    program = program_of([*made.values(), g.select(g.call("less", y, x), lost, y)], s)
+    function, state = compiled(program, target), [-1.0, 2.0, 0.0, 0.0]
+    symbols_say = evaluate(program.outputs, dict(zip(s.q, state, strict=False)), FLOAT)
+    for found in (function(0, state, []), function.many([0.0], [state], [])[0], symbols_say):
+        assert [name for name, value in zip(made, found, strict=False) if value == value] == [] and found[-1] == 2
+
+
+@each_target
+def test_vectors_hold_states_without_a_value(target, tmp_path):
+    """min(sqrt(y), x) beside x + y: nan is expected where the root has no value, and what else there is."""
+    s = symbols("x y")
+    (x, y), g = s.q, s.graph
+    program = program_of([g.call("min", g.sqrt(y), x), x + y], s)
+    found = vectors(program)
+    partial = [v for v in found if math.isnan(v.result[0])]
+    assert 1 <= len(partial) < len(found) and all(v.result[1] == pytest.approx(v.x[0] + v.x[1]) for v in partial)
+    for v in found:
+        assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
+    paths = write_files("roots", program, Description("Roots", "", {}, found), target=target, directory=tmp_path)
+    assert sum(row["dx"][0] is None for row in json.loads(paths[-1].read_text())["vectors"]) == len(partial)
+    if target == "c":
+        assert self_test(paths[0]).returncode == 0
+        paths[0].write_text(paths[0].read_text().replace("a < b || a != a ? a : b", "fmin(a, b)"))
+        assert "dx[0]" in self_test(paths[0]).stderr
+
+
+@each_target
 def test_names_of_the_language_are_harmless(target):
     """Keywords, functions, our own variables and Greek letters as names of coordinates and parameters."""
     s = symbols("int double t_ v1 solve_M M sin θ", "lambda I E x p c dx NULL printf é", "for inputs")

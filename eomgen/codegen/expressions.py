@@ -16,7 +16,6 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
 LONGEST_INLINE = 60
-READ_TWICE = frozenset(("min", "max", "sign"))  # their arguments stand twice in the text
 LARGEST_WHOLE = 2**53  # up to here every whole number is a double
 
 Text = tuple[str, int]
@@ -91,11 +90,10 @@ def used_once(bodies: Iterable[tuple[Sequence[Node], Sequence[Scalar]]]) -> froz
     uses: Counter[Node] = Counter()
     for computed, written in bodies:
         own = frozenset(computed)
-        reads = [(a, 2 if node.op in READ_TWICE else 1) for node in computed for a in node.args]
-        for x, times in [*reads, *((x, 1) for x in written)]:
+        for x in [*(a for node in computed for a in node.args), *written]:
             if type(x) is Node:
                 x = x.args[0] if x.op == "neg" else x
-                uses[x] += times if x in own else 2
+                uses[x] += 1 if x in own else 2
     return frozenset(node for node, count in uses.items() if count == 1)
 
 

@@ -69,7 +69,8 @@ def vectors_text(
         "speeds": [x.name for x in symbols.u],
         "parameters": list(symbols.parameters),
         "inputs": list(symbols.inputs),
-        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the reactions out",
+        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the reactions out; "
+        "null: no value there, not a number",
     }
     lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
     if reactions is None:
@@ -98,7 +99,7 @@ def _listed(description: Description, indent: str) -> list[str]:
             **({"a": v.a} if v.a else {}),
             "p": v.p,
             "inputs": v.inputs,
-            result: v.result,
+            result: [value if value == value else None for value in v.result],
             "tolerance": v.tolerance,
         }
         for v in description.vectors

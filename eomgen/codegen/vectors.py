@@ -15,11 +15,13 @@ from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.codegen.targets.base import Vector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, fifty_digits
 
 TOLERANCE = 1e-12
 WORST = 1e-9  # an ill-conditioned state proves nothing
 TRIES = 60
+PARTIAL = 2  # states, at most, at which some result has no value
+NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there has none either
 
 
 def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1) -> tuple[Vector, ...]:
@@ -33,15 +35,16 @@ def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6,
     rng = random.Random(seed)
     floats = compiled(program, "numpy")
     found: list[Vector] = []
+    partial: list[Vector] = []
     for _ in range(TRIES):
         if len(found) == count:
             break
         vector = _vector(program, floats, _state(program, rng, x0, p0, with_inputs=len(found) % 2 == 1))
         if vector is not None:
-            found.append(vector)
+            (found if all(value == value for value in vector.result) else partial).append(vector)
     if not found:
         raise DerivationError("the equations have no value at any of the states tried for test vectors")
-    return tuple(found)
+    return (*found, *partial[:PARTIAL])
 
 
 def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> list[Any]:
@@ -87,15 +90,26 @@ def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | 
     if state.inputs is not None:
         arguments += symbols.inputs.values()
         numbers += state.inputs
-    arithmetic = fifty_digits()
-    values = {node: arithmetic.number(Fraction(number)) for node, number in zip(arguments, numbers, strict=True)}
-    try:
-        result = tuple(float(value) for value in outputs_at(program, values, arithmetic))
-    except NoValue:
-        return None
+    exact = dict(zip(arguments, map(Fraction, numbers), strict=True))
+    result = _right(program, exact)
     found = floats(state.t, [*state.x, *state.a], state.p, state.inputs or ())
-    largest = max(1.0, *map(abs, result)) if result else 1.0
-    error = max((abs(a - b) for a, b in zip(found, result, strict=True)), default=0.0) / largest
-    if not error < WORST:
+    known = [(a, b) for a, b in zip(found, result, strict=True) if b == b]
+    largest = max(1.0, *(abs(b) for _, b in known)) if known else 1.0
+    error = max((abs(a - b) for a, b in known), default=0.0) / largest
+    if not error < WORST or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
         return None
     return replace(state, result=result, tolerance=float(max(TOLERANCE, 10 * error)))
+
+
+def _right(program: Program, exact: dict[Node, Fraction]) -> tuple[float, ...]:
+    """The outputs from 50 digits, nan where there is no value."""
+    arithmetic = fifty_digits(partial=True)
+    values = {node: arithmetic.number(number) for node, number in exact.items()}
+    return tuple(float(value) for value in outputs_at(program, values, arithmetic))
+
+
+def _is_partial_nearby(program: Program, exact: dict[Node, Fraction], result: Sequence[float]) -> bool:
+    """Whether the same outputs have no value a little before and after: not at an edge, nor by a division by zero."""
+    missing = [value != value for value in result]
+    near = ({node: x * (1 + away) + away for node, x in exact.items()} for away in (NEAR, -NEAR))
+    return all([value != value for value in _right(program, state)] == missing for state in near)

@@ -91,7 +91,8 @@ int main(void)
         for (int j = 0; j < 4; j++)
             if (fabs(vectors[i].dx[j]) > largest) largest = fabs(vectors[i].dx[j]);
         for (int j = 0; j < 4; j++)
-            if (!(fabs(dx[j] - vectors[i].dx[j]) <= vectors[i].tolerance*largest)) {
+            if (isnan(vectors[i].dx[j]) ? !isnan(dx[j])
+                : !(fabs(dx[j] - vectors[i].dx[j]) <= vectors[i].tolerance*largest)) {
                 fprintf(stderr, "vector %d: dx[%d] is %.17g, not %.17g\n", (int)i, j, dx[j], vectors[i].dx[j]);
                 wrong = 1;
             }

@@ -120,7 +120,8 @@ int main(void)
         for (int j = 0; j < 4; j++)
             if (fabs(vectors[i].out[j]) > largest) largest = fabs(vectors[i].out[j]);
         for (int j = 0; j < 4; j++)
-            if (!(fabs(out[j] - vectors[i].out[j]) <= vectors[i].tolerance*largest)) {
+            if (isnan(vectors[i].out[j]) ? !isnan(out[j])
+                : !(fabs(out[j] - vectors[i].out[j]) <= vectors[i].tolerance*largest)) {
                 fprintf(stderr, "vector %d: out[%d] is %.17g, not %.17g\n", (int)i, j, out[j], vectors[i].out[j]);
                 wrong = 1;
             }

@@ -124,6 +124,7 @@ class Layout:
         once: nodes written where they are used.
         before, solve, after: the statements around the solve (None: everything is in `before`).
         sampled: the functions through samples that are called, samples1 first, by their number in the graph.
+        ops: the operations that the text takes.
     """
 
     program: Program
@@ -134,6 +135,7 @@ class Layout:
     solve: Solve | None
     after: tuple[Node, ...]
     sampled: dict[int, str]
+    ops: frozenset[str]
 
     def calls(self, call: Call) -> Call:
         """How functions are called, those through samples by their names here."""
@@ -168,7 +170,8 @@ def layout(program: Program) -> Layout:
     computed = (*hoisted, *(preamble if acts else ()), *before, *after)
     numbers = dict.fromkeys(x.args[1] for x in computed if x.op == "sampled")
     sampled = {number: f"samples{place}" for place, number in enumerate(numbers, start=1)}
-    return Layout(program, names, kept, once, before, solve, after, sampled)
+    ops = frozenset(x.op for x in computed)
+    return Layout(program, names, kept, once, before, solve, after, sampled, ops)
 
 
 def used_symbols(values: Sequence[Scalar], stop: Sequence[Node]) -> frozenset[Node]:

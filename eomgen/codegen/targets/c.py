@@ -19,15 +19,13 @@ from eomgen.codegen.targets.parts import Parts, parts_of
 from eomgen.codegen.targets.samples import c_samples
 from eomgen.symbolic.expression.graph import Node, Scalar
 
-_PLAIN = frozenset("sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split())
-_WRITTEN = {
-    "abs": "fabs({0})",
-    "sign": "(double)(({0} > 0) - ({0} < 0))",
-    "min": "({0} < {1} ? {0} : {1})",
-    "max": "({0} > {1} ? {0} : {1})",
-    "less": "({0} < {1} ? 1.0 : 0.0)",
-    "less_equal": "({0} <= {1} ? 1.0 : 0.0)",
-    "select": "({0} != 0 ? {1} : {2})",
+_DEFINED = {  # C has none of these, or drops a NaN
+    "sign": "(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }",
+    "min": "(double a, double b) { return a < b || a != a ? a : b; }",
+    "max": "(double a, double b) { return a > b || a != a ? a : b; }",
+    "less": "(double a, double b) { return a < b ? 1 : a >= b ? 0 : NAN; }",
+    "less_equal": "(double a, double b) { return a <= b ? 1 : a > b ? 0 : NAN; }",
+    "select": "(double given, double a, double b) { return given == 0 ? b : given == given ? a : given; }",
 }
 
 
@@ -51,6 +49,7 @@ def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, 
     parts = [
         "#include <math.h>\n#include <stddef.h>\n",
         solve,
+        "".join(f"static double {op}{_DEFINED[op]}\n" for op in sorted(bodies.ops & _DEFINED.keys())),
         c_samples(bodies),
         _constants(bodies, role.others(stem), remarks),
         _evaluate(bodies, role.others(stem), role.result, remarks),
@@ -271,9 +270,7 @@ def _function(head: str, lines: Sequence[str]) -> str:
 
 
 def _call(op: str, arguments: list[str]) -> str:
-    if op in _PLAIN or op.startswith("samples"):
-        return f"{op}({', '.join(arguments)})"
-    return _WRITTEN[op].format(*arguments)
+    return f"{'fabs' if op == 'abs' else op}({', '.join(arguments)})"
 
 
 def load(program: Program) -> Functions:

@@ -25,7 +25,8 @@ int main(void)
         for (int j = 0; j < {outputs}; j++)
             if (fabs(vectors[i].{result}[j]) > largest) largest = fabs(vectors[i].{result}[j]);
         for (int j = 0; j < {outputs}; j++)
-            if (!(fabs({result}[j] - vectors[i].{result}[j]) <= vectors[i].tolerance*largest)) {{
+            if (isnan(vectors[i].{result}[j]) ? !isnan({result}[j])
+                : !(fabs({result}[j] - vectors[i].{result}[j]) <= vectors[i].tolerance*largest)) {{
                 fprintf(stderr, "vector %d: {result}[%d] is %.17g, not %.17g\\n", (int)i, j, \
 {result}[j], vectors[i].{result}[j]);
                 wrong = 1;
@@ -59,7 +60,11 @@ def self_test(program: Program, stem: str, vectors: Sequence[Vector], role: Role
     )
 
 
+def _number(value: float) -> str:
+    return "NAN" if value != value else repr(value)
+
+
 def _row(vector: Vector) -> str:
     arrays = (vector.x, *([vector.a] if vector.a else []), vector.p, vector.inputs or (), vector.result)
-    listed = ", ".join("{" + (", ".join(map(repr, array)) or "0") + "}" for array in arrays)
+    listed = ", ".join("{" + (", ".join(map(_number, array)) or "0") + "}" for array in arrays)
     return f"{{{vector.t!r}, {listed}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"

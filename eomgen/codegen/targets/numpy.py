@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.codegen import solving
 from eomgen.codegen.expressions import Writer
-from eomgen.codegen.program import Assign, Program, Solve
+from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
 from eomgen.codegen.targets.samples import python_samples
 from eomgen.symbolic.expression.graph import Node
@@ -17,12 +17,12 @@ from eomgen.symbolic.expression.graph import Node
 SCALARS = {
     **{name: f"math.{name}" for name in "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()},
     "abs": "abs",
-    "sign": "lambda a: float((a > 0) - (a < 0))",
-    "min": "min",
-    "max": "max",
-    "less": "lambda a, b: float(a < b)",
-    "less_equal": "lambda a, b: float(a <= b)",
-    "select": "lambda given, a, b: a if given else b",
+    "sign": "lambda a: 1.0 if a > 0 else -1.0 if a < 0 else a",
+    "min": "lambda a, b: a if a < b or a != a else b",
+    "max": "lambda a, b: a if a > b or a != a else b",
+    "less": "lambda a, b: float(a < b) if a == a and b == b else a + b",
+    "less_equal": "lambda a, b: float(a <= b) if a == a and b == b else a + b",
+    "select": "lambda given, a, b: b if given == 0 else a if given == given else given",
     "solve": "_solved",
 }
 ARRAYS = {
@@ -30,9 +30,9 @@ ARRAYS = {
     **{"asin": "np.arcsin", "acos": "np.arccos", "atan": "np.arctan", "atan2": "np.arctan2", "pow": "np.float_power"},
     "min": "np.minimum",
     "max": "np.maximum",
-    "less": "lambda a, b: 1.0*(a < b)",
-    "less_equal": "lambda a, b: 1.0*(a <= b)",
-    "select": "lambda given, a, b: np.where(given != 0, a, b)",
+    "less": "lambda a, b: np.where(a < b, 1.0, np.where(a >= b, 0.0, np.nan))",
+    "less_equal": "lambda a, b: np.where(a <= b, 1.0, np.where(a > b, 0.0, np.nan))",
+    "select": "lambda given, a, b: np.where(given == 0, b, np.where(given == given, a, given))",
     "solve": "_solved_each",
 }
 
@@ -104,7 +104,7 @@ np.empty((len(t), 0))
 def python_text(program: Program, stem: str, role: Role = RHS) -> str:
     """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many, or what the role says."""
     bodies, given = layout(program), len(program.accelerations)
-    used = sorted(_functions(program))
+    used = sorted((bodies.ops & SCALARS.keys()) | ({"solve"} if bodies.solve else set()))
     written = textwrap.indent("\n".join([*_constants(bodies), "", *_evaluate(bodies)]), "    ")
     calls = _CALLS.format(
         main=role.main(stem),
@@ -236,13 +236,6 @@ def _assignments(writer: Writer, nodes: Sequence[Node], once: frozenset[Node]) -
 
 def _function(head: str, lines: Sequence[str]) -> list[str]:
     return [head, *(f"    {line}" for line in lines)]
-
-
-def _functions(program: Program) -> set[str]:
-    """The functions that the text calls."""
-    nodes = [s.node for s in (*program.hoisted, *program.preamble, *program.statements) if isinstance(s, Assign)]
-    solves = {"solve"} if any(isinstance(s, Solve) for s in program.statements) else set()
-    return {node.op for node in nodes if node.op in SCALARS} | solves
 
 
 def _call(op: str, arguments: list[str]) -> str:

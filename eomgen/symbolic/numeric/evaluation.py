@@ -104,12 +104,19 @@ def _way(outputs: tuple[Scalar, ...], given: frozenset[Node]) -> _Way:
 # -- the arithmetics ------------------------------------------------------------------------------
 
 
-def _sign(a: Any) -> int:
-    return (a > 0) - (a < 0)
+def _sign(a: Any) -> Any:
+    return (a > 0) - (a < 0) if a == a else a
 
 
 def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
+    if condition != condition:
+        return condition
     return if_true if condition else if_false
+
+
+def _of_two(function: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """A choice or comparison of two numbers; where one of them is nan, so is the result."""
+    return lambda a, b: function(a, b) if a == a and b == b else a + b
 
 
 _RING: dict[str, Callable[..., Any]] = {
@@ -122,10 +129,10 @@ _RING: dict[str, Callable[..., Any]] = {
 _ORDERED: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "sign": _sign,
-    "min": min,
-    "max": max,
-    "less": operator.lt,
-    "less_equal": operator.le,
+    "min": _of_two(min),
+    "max": _of_two(max),
+    "less": _of_two(operator.lt),
+    "less_equal": _of_two(operator.le),
     "select": _select,
 }
 
@@ -243,8 +250,12 @@ ZERO_AT_50 = 1e-25  # below which a number of 50 digits that would be of the ord
 
 
 @cache
-def fifty_digits() -> Arithmetic:
-    """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue."""
+def fifty_digits(partial: bool = False) -> Arithmetic:
+    """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue.
+
+    Args:
+        partial: outside its domain a function is nan, as in doubles, and so is what is made of that.
+    """
     from mpmath.ctx_mp import MPContext
 
     mp = MPContext()
@@ -254,6 +265,8 @@ def fifty_digits() -> Arithmetic:
         def guarded(*arguments: Any) -> Any:
             value = function(*arguments)
             if isinstance(value, mp.mpc) or not mp.isfinite(value):
+                if partial:
+                    return mp.nan
                 raise NoValue("no finite real value")
             return value
 
@@ -267,4 +280,5 @@ def fifty_digits() -> Arithmetic:
 
     own: dict[str, Callable[..., Any]] = {"pow": real(mp.power), "pi": lambda: +mp.pi}
     own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
-    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, _no_value)
+    failed = (lambda x: mp.nan) if partial else _no_value
+    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed)
