@@ -31,17 +31,60 @@ def test_a_program_is_compiled_once(own_cache, monkeypatch):
     assert [path.suffix for path in own_cache.iterdir()] == [".so"]
 
 
-@needs_cc
-def test_a_damaged_library_is_made_anew(own_cache, monkeypatch):
-    """Half a file in the cache is no reason to fail."""
-    text = "double twice(double x);\ndouble twice(double x) { return 2*x; }\n"
+TEXT = "double twice(double x);\ndouble twice(double x) { return 2*x; }\n"
+
+
+def cached(own_cache, monkeypatch):
+    """TEXT's library in the cache, not yet loaded."""
     with monkeypatch.context() as unloaded:
         unloaded.setattr(build.ctypes, "CDLL", lambda path: None)
-        build.library(text)
+        build.library(TEXT)
     (path,) = own_cache.iterdir()
-    path.write_bytes(b"half")
-    assert build.library(text).twice is not None
-    assert path.stat().st_size > len(b"half")
+    return path
+
+
+@needs_cc
+@pytest.mark.parametrize("size", [0, 4, 4096])
+def test_a_damaged_library_is_made_anew(own_cache, monkeypatch, size):
+    """A file that was cut off is not loaded: its pages behind the end would kill the process."""
+    path = cached(own_cache, monkeypatch)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:size])
+    assert build.library(TEXT).twice is not None
+    assert path.stat().st_size == len(whole) > 4096
+
+
+@needs_cc
+@pytest.mark.parametrize("what", ["folder", "file"])
+def test_what_others_may_write_is_not_loaded(own_cache, monkeypatch, what):
+    """A folder, or a file, that others may write holds their code, whatever its name says."""
+    path = cached(own_cache, monkeypatch)
+    (own_cache if what == "folder" else path).chmod(0o777)
+    loaded = []
+    monkeypatch.setattr(build.ctypes, "CDLL", lambda path: loaded.append(path))
+    made = build.library(TEXT), build.library(TEXT)
+    assert len(loaded) == len(made) == 2
+    if what == "folder":
+        assert not any(str(own_cache) in place for place in loaded)
+    else:
+        assert not path.stat().st_mode & 0o077  # made anew, and put in its place
+
+
+@needs_cc
+@pytest.mark.parametrize(
+    ("command", "said"), [('cc "', "No closing quotation"), ("{}/junk", "makes no library"), ("{}/dies", "failed")]
+)
+def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypatch, capsys, command, said):
+    """CC with an open quote, one that writes no library, one that is killed: a line on stderr, then numpy."""
+    for name, text in (("junk", 'while [ "$1" != "-o" ]; do shift; done; echo junk > "$2"'), ("dies", "kill -SEGV $$")):
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("CC", command.format(tmp_path))
+    monkeypatch.setattr(rhs, "_said", set())
+    assert compiled(right_hand_side(pendulum())).target == "numpy"
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and said in err and "numpy" in err
+    assert not own_cache.exists() or list(own_cache.iterdir()) == []
 
 
 @needs_cc

@@ -11,9 +11,11 @@ import os
 import platform
 import shlex
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import platformdirs
@@ -28,73 +30,111 @@ PATIENCE = 300  # seconds
 
 def compiler() -> str | None:
     """Path of the C compiler (the environment's CC, else cc, gcc, clang, or ziglang's), or None."""
-    command = _command()
-    return command[0] if command else None
+    try:
+        return _command()[0]
+    except ToolMissing:
+        return None
 
 
 def library(text: str) -> ctypes.CDLL:
     """The text, compiled and loaded.
 
     Raises:
-        ToolMissing: there is no compiler.
-        RunFailed: the compiler refuses the text, or does not come back.
+        ToolMissing: there is no compiler, or none that starts.
+        RunFailed: the compiler refuses the text, does not come back, or makes what is no library.
     """
     command = _command()
-    if command is None:
-        raise ToolMissing("no C compiler", mend="install cc or `pip install ziglang`, set CC, or take --target numpy")
     flags = FLAGS if len(text) < LONG_TEXT else FLAGS_OF_LONG_TEXT
     key = "\0".join((text, *command, *flags, platform.platform(), platform.machine()))
-    path = _cache() / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.so"
-    if path.exists():
-        try:
-            return ctypes.CDLL(str(path))
-        except OSError:  # half a file from a full disk, or another machine's: made anew below
-            pass
-    _compile(text, [*command, *flags], path)
-    return ctypes.CDLL(str(path))
+    folder, name = _cache(), _digest(key.encode())
+    for path in folder.glob(f"{name}-*.so"):
+        if _is_whole(path):
+            with suppress(OSError):  # another machine's: made anew below
+                return ctypes.CDLL(str(path))
+    path = _compile(text, [*command, *flags], folder, name)
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        path.unlink(missing_ok=True)
+        raise RunFailed(f"the C compiler makes no library: {error}", shlex.join(command)) from None
 
 
-def _compile(text: str, command: list[str], path: Path) -> None:
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:32]
+
+
+def _is_whole(path: Path) -> bool:
+    """Whether a file is what its name says, NAME-DIGEST.so, and nobody else can write it; half a file kills at load."""
+    try:
+        return _is_ours(path) and path.stem.endswith(f"-{_digest(path.read_bytes())}")
+    except OSError:
+        return False
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file or folder belongs to this user, who alone may write it."""
+    if not hasattr(os, "getuid"):
+        return True  # Windows: a user's cache folder is the user's by inheritance
+    found = path.stat()
+    return found.st_uid == os.getuid() and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
+def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
     """Compile beside the target and rename: another process sees all of the library or nothing."""
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix="making-") as place:
-        source, made = Path(place) / "program.c", Path(place) / "program.so"
-        source.write_text(text, encoding="utf-8")
-        try:
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix="making-") as place:
+            source, made = Path(place) / "program.c", Path(place) / "program.so"
+            source.write_text(text, encoding="utf-8")
             done = subprocess.run(
                 [*command, "-o", str(made), str(source), "-lm"],
                 capture_output=True,
                 text=True,
+                errors="replace",
                 timeout=PATIENCE,
                 check=False,
             )
-        except subprocess.TimeoutExpired:
-            raise RunFailed(f"the C compiler did not come back within {PATIENCE} s") from None
-        except OSError as error:
-            raise ToolMissing(f"the C compiler does not start: {error}", command[0]) from None
-        if done.returncode != 0 or not made.exists():
-            raise RunFailed(f"the C compiler failed: {done.stderr.strip()[:2000]}", command[0])
-        os.replace(made, path)
+            if done.returncode != 0 or not made.exists():
+                said = done.stderr.strip()[:2000] or f"it ended with {done.returncode}"
+                raise RunFailed(f"the C compiler failed: {said}", command[0])
+            made.chmod(0o700)  # whatever the umask
+            path = folder / f"{name}-{_digest(made.read_bytes())}.so"
+            os.replace(made, path)
+            return path
+    except subprocess.TimeoutExpired:
+        raise RunFailed(f"the C compiler did not come back within {PATIENCE} s") from None
+    except OSError as error:
+        raise ToolMissing(f"nothing can be compiled: {error}", command[0]) from None
 
 
-def _command() -> list[str] | None:
-    """The compiler's command line, the environment's choice first."""
-    chosen = shlex.split(os.environ.get("CC", ""))
+def _command() -> list[str]:
+    """The compiler's command line, the environment's choice first.
+
+    Raises:
+        ToolMissing: there is none, or CC is no command line.
+    """
+    given = os.environ.get("CC", "")
+    try:
+        chosen = shlex.split(given)
+    except ValueError as error:
+        raise ToolMissing(
+            f"no C compiler: CC is {given!r}: {error}", mend="set CC to a command line, or to none"
+        ) from None
     for words in [chosen] if chosen else [["cc"], ["gcc"], ["clang"]]:
         path = shutil.which(words[0])
         if path:
             return [path, *words[1:]]
     if not chosen and importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc"]
-    return None
+    raise ToolMissing("no C compiler", mend="install cc or `pip install ziglang`, set CC, or take --target numpy")
 
 
 def _cache() -> Path:
-    """The user's cache folder, or one of this process where that cannot be written."""
+    """The user's cache folder, or one of this process where that cannot be written, or others can write it too."""
     place = Path(platformdirs.user_cache_dir("eomgen"))
     try:
         place.mkdir(parents=True, exist_ok=True, mode=0o700)
         with tempfile.TemporaryFile(dir=place):
-            return place
+            return place if _is_ours(place) else _own_folder()
     except OSError:
         return _own_folder()
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.build import compiler
 from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
@@ -124,9 +123,6 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     """
     if target is not None:
         return RightHandSide(program, target_named(target).load(program), target, x0, p0)
-    if compiler() is None:
-        _say("no C compiler found: the equations run in numpy, some 30 times slower")
-        return compiled(program, "numpy", x0=x0, p0=p0)
     try:
         return compiled(program, "c", x0=x0, p0=p0)
     except (RunFailed, ToolMissing) as error:
