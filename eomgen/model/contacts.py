@@ -18,6 +18,8 @@ class Contact:
     Args:
         name: of the tie, or of the body.
         kind: as the model file says it: "support", "link", "path".
+        of_joint: the contact of a body with its path.
+        pulls: a wire or string, which goes slack; anything else opens.
         unilateral: it can end.
         friction: its law, or None.
         surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
@@ -28,27 +30,24 @@ class Contact:
     kind: str
     unilateral: bool
     friction: Resistance | None
+    of_joint: bool = False
+    pulls: bool = False
     surface: bool = False
     round: bool = False
 
     @property
     def words(self) -> str:
-        return f"the body '{self.name}'" if self.kind == "path" else f"the {self.kind} '{self.name}'"
+        return f"the body '{self.name}'" if self.of_joint else f"the {self.kind} '{self.name}'"
 
     @property
     def declared_at(self) -> str:
         """Where: constraints.wall, bodies.bead.joint."""
-        return f"bodies.{self.name}.joint" if self.kind == "path" else f"constraints.{self.name}"
+        return f"bodies.{self.name}.joint" if self.of_joint else f"constraints.{self.name}"
 
     @property
     def mu(self) -> Expression | None:
         """The coefficient of Coulomb friction."""
         return None if self.friction is None else self.friction.coulomb
-
-    @property
-    def pulls(self) -> bool:
-        """A wire or string, which goes slack; anything else opens."""
-        return self.kind in ("link", "string")
 
 
 def contacts_of(model: Model) -> tuple[Contact, ...]:
@@ -69,7 +68,7 @@ def pieces_of(body: Body) -> tuple[Any, ...]:
 
 
 def _on_path(model: Model, body: str, law: Resistance | None) -> Contact:
-    return Contact(body, "path", False, law, round=model.space == "space")
+    return Contact(body, "path", False, law, of_joint=True, round=model.space == "space")
 
 
 def _ties(model: Model) -> Iterator[Contact]:
@@ -77,5 +76,12 @@ def _ties(model: Model) -> Iterator[Contact]:
         friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
         if unilateral or friction is not None:
             rough = model.space == "space" and friction is not None
-            of_line = tie.kind == "slider"
-            yield Contact(name, tie.kind, unilateral, friction, rough and not of_line, rough and of_line)
+            yield Contact(
+                name,
+                tie.kind,
+                unilateral,
+                friction,
+                pulls=tie.pulls,
+                surface=rough and not tie.on_line,
+                round=rough and tie.on_line,
+            )

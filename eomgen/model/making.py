@@ -5,7 +5,7 @@ from itertools import islice
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
 from eomgen.model.findings import Finding
 from eomgen.model.part import altered, read_part, slots_of

@@ -190,7 +190,7 @@ class Watch:
 
         Each as (value, name of its column).
         """
-        if contact.kind == "path":
+        if contact.of_joint:
             labels = ("n 1", "n 2") if contact.round else ("n",)
             found = [self._component(contact.name, "joint", label, 1) for label in labels]
         else:
@@ -222,7 +222,7 @@ def stopped_below(contact: Contact) -> Fraction | int:
 
 def sliding_velocity(system: System, contact: Contact) -> Scalar:
     """Of a closed contact that rubs, along its tangent."""
-    if contact.kind == "path":
+    if contact.of_joint:
         return system.motion.link(contact.name).s_rate[0]
     return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)
 

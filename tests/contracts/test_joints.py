@@ -151,7 +151,7 @@ def columns(found, state) -> np.ndarray:
 def test_every_kind_of_joint_has_examples_here():
     """A joint that is added to ALL is held to the contract."""
     assert {joint.kind for joint in ALL} == set(EXAMPLES)
-    assert {kind for kind, _, _ in BUILT} >= {joint.kind for joint in ALL if joint.works}
+    assert {kind for kind, _, _ in BUILT} >= {joint.kind for joint in ALL}
 
 
 @pytest.mark.parametrize(("kind", "space", "fields"), UNBUILT, ids=[f"{k}-{s}" for k, s, _ in UNBUILT])

@@ -100,7 +100,7 @@ def _displacements(model: Model, body: str) -> tuple[tuple[str, ...], tuple[str,
     """The names of the displacements and of the turns of a loose body; a point does not turn."""
     axes = "xy" if model.space == "plane" else "xyz"
     part = model.bodies[body]
-    point = part.shape is not None and part.shape.kind == "particle" and not part.points
+    point = part.shape is not None and part.shape.is_point and not part.points
     turns = () if point else ("turn",) if axes == "xy" else tuple(f"turn_{axis}" for axis in axes)
     return tuple(f"({body}.{axis})" for axis in axes), tuple(f"({body}.{turn})" for turn in turns)
 

@@ -136,7 +136,7 @@ def is_particle(motion: Motion, link: Link) -> bool:
     """A point mass that its joint does not turn."""
     shape = motion.scope.model.bodies[link.name].shape
     turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
-    return shape is not None and shape.kind == "particle" and (_is_placed(link) or not turns)
+    return shape is not None and shape.is_point and (_is_placed(link) or not turns)
 
 
 def _is_placed(link: Link) -> bool:

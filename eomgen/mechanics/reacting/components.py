@@ -183,7 +183,7 @@ def _is_idle(axes: Axes, link: Link, system: System) -> bool:
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape
     carries = any(other.parent == motion.index[link.name] for other in motion.links)
-    if shape is None or shape.kind != "particle" or carries or link.point != ZERO:
+    if shape is None or not shape.is_point or carries or link.point != ZERO:
         return False
     loads = (*system.loads.placed, *(push for row in system.ties.rows for push in (*row.pushes, *row.tangent)))
     mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]

@@ -16,7 +16,6 @@ from eomgen.symbolic.expression.spatial import Vector, cross, dot, times, vector
 from eomgen.symbolic.print.text import to_text
 
 MOST_NAMES = 6  # of parts that move together
-SPRINGS = ("spring", "torsion_spring")
 MOST_MOTIONS = 3  # that are told in words
 
 
@@ -81,7 +80,7 @@ def _mend(structure: Structure, enough: bool) -> str:
         return "turn or move a support or hinge, so that it stands across this motion"
     held = "hold it against this motion by a further support, hinge, clamp or member"
     model = structure.system.scope.model
-    if not model.coordinates and any(force.kind in SPRINGS for force in model.forces.values()):
+    if not model.coordinates and any(force.elastic for force in model.forces.values()):
         held += "; a spring holds only what a coordinate moves: name the angle or displacement in the body's joint"
     balanced = "; its loads are in balance even so, what they need then `eomgen reactions` gives"
     return held + (balanced if structure.is_in_balance else "")

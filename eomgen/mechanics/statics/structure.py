@@ -280,5 +280,5 @@ def _is_point_that_turns(system: System, column: Column) -> bool:
     """Whether it is the turning of a node or a point mass on which no moment acts: it is no motion of its own."""
     body, direction = column
     part = system.scope.model.bodies.get(system.motion.links[body].name)
-    point = part is None or (part.shape is not None and part.shape.kind == "particle")
+    point = part is None or (part.shape is not None and part.shape.is_point)
     return point and direction > 2

@@ -3,13 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.composite import sources
 from eomgen.model.findings import Finding, Path
-from eomgen.model.joints.orientation import SEQUENCES
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
-SPACE_ONLY = ("cylindrical", "screw", "universal", "spherical")
 
 
 def bodies(catalog: Catalog) -> Iterator[Finding]:
@@ -92,69 +90,14 @@ def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Finding]:
         elif isinstance(joint.at, str):
             what = f"'{joint.at}' is a point of the ground, but the joint of body '{name}' hangs on '{joint.on}'"
             yield Finding((*path, "at"), what, f'write on = "{joint.on}.point", or give coordinates in its axes')
-    if space == "plane" and joint.kind in SPACE_ONLY:
+    if space == "plane" and joint.only_space:
         yield Finding(
             (*path, "kind"),
             f"a {joint.kind} joint needs space, but the model is in the plane",
             'use "revolute", "prismatic" or "free"',
         )
-    elif joint.kind in ("placed", "spherical", "free"):
-        yield from _free(catalog, name, joint, path, space)
-    elif joint.kind == "path":
-        yield from _path(name, joint, path)
-
-
-def _free(catalog: Catalog, name: str, joint: Any, path: Path, space: str) -> Iterator[Finding]:
-    in_plane = ("x", "y", "angle") if joint.kind == "free" else ()
-    in_space = ("orientation", "angles", "quaternion", "omega", *(("position",) if joint.kind == "free" else ()))
-    wrong = in_space if space == "plane" else in_plane
-    for key in wrong:
-        if getattr(joint, key) is not None:
-            what = f"'{key}' of a {joint.kind} joint is for {'space' if space == 'plane' else 'the plane'}"
-            yield Finding((*path, key), what, "leave it out", key=True)
-    if joint.kind == "free":
-        needed = in_plane if space == "plane" else ("position", "orientation")
-        for key in needed:
-            if getattr(joint, key) is None and (*path, key) not in catalog.broken:
-                yield Finding(path, f"the joint of body '{name}' has no '{key}'", f"give '{key}'")
-    if space == "space":
-        yield from _orientation(catalog, name, joint, path)
-
-
-def _orientation(catalog: Catalog, name: str, joint: Any, path: Path) -> Iterator[Finding]:
-    """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
-    orientation = joint.orientation
-    if orientation is None:
-        for key in ("angles", "quaternion"):
-            if getattr(joint, key) is not None and (*path, "orientation") not in catalog.broken:
-                yield Finding(
-                    path,
-                    f"the joint of body '{name}' has '{key}' but no 'orientation'",
-                    f'orientation = "{"zxz" if key == "angles" else key}"',
-                )
-        return
-    needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
-    if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:
-        yield Finding((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
-    also = [other] + (["angle"] if joint.kind == "placed" else [])
-    for key in also:
-        if getattr(joint, key) is not None:
-            what = f"'{key}' does not go with orientation \"{orientation}\""
-            yield Finding((*path, key), what, "leave it out", key=True)
-    if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
-        yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
-
-
-def _path(name: str, joint: Any, path: Path) -> Iterator[Finding]:
-    for k, piece in enumerate(joint.pieces or ()):
-        where = (*path, "pieces", k)
-        if (piece.line is None) == (piece.arc is None):
-            yield Finding(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
-        elif piece.arc is not None and (piece.turn is None or piece.angle is None):
-            what = f"an arc of the path of body '{name}' needs 'turn' and 'angle'"
-            yield Finding(where, what, 'turn = "ccw", angle = "pi/2"')
-        elif piece.line is not None and (piece.turn is not None or piece.angle is not None):
-            yield Finding(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
+    else:
+        yield from joint.findings(path, catalog)
 
 
 def _rings(catalog: Catalog) -> Iterator[Finding]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import cache
 
 from eomgen.model.arithmetic import in_order
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
 from eomgen.model.findings import Finding, Path, article, nearest, whereabouts
 from eomgen.symbolic.expression.expressions import Expression

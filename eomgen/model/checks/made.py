@@ -5,7 +5,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, number_of
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.checks.triangle import ROUNDING, possible
 from eomgen.model.composite import Composite, about, composite_of
 from eomgen.model.findings import Finding, Path

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from eomgen.model.checks.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
+from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
 from eomgen.model.findings import Finding, one_of
 from eomgen.symbolic.expression.expressions import is_name
 

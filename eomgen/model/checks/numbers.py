@@ -6,7 +6,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, in_order, number_of
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.checks.made import made
 from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.checks.references import missing_point
 from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.fields import AxialRule, Leaf, NameRule, VectorRule
 from eomgen.model.findings import Finding, nearest, whereabouts
 

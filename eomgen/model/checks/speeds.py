@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from eomgen.model.begun_speeds import begun_speeds
-from eomgen.model.checks.catalog import Catalog
+from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding, Path
 
 

@@ -4,20 +4,9 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from eomgen.model.checks.catalog import Catalog
-from eomgen.model.checks.choices import not_in_the_plane, one_of
-from eomgen.model.checks.rolling import is_round, rolling
+from eomgen.model.catalog import Catalog, one_of, owner_of
 from eomgen.model.fields import NameRule
 from eomgen.model.findings import Finding, Path
-
-ONE_OF = {
-    "clamp": ("point", "points"),
-    "equation": ("gap", "rate"),
-    "torsion_spring": ("bodies", "body"),
-    "torsion_damper": ("bodies", "body"),
-    "distributed": ("intensity", "intensities"),
-}
-"""Of these fields of a kind exactly one is given."""
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
@@ -29,16 +18,9 @@ def ties(catalog: Catalog) -> Iterator[Finding]:
             if part is None:
                 continue
             path: Path = (table, name)
-            if part.kind in ONE_OF:
-                yield from one_of(catalog, path, part, ONE_OF[part.kind])
-            if part.kind == "rolling":
-                yield from rolling(catalog, path, part)
-            elif part.kind == "skate":
-                yield from not_in_the_plane(catalog, path, part, ("normal",))
-            elif part.kind == "string":
-                yield from _string(catalog, path, part)
-            elif part.kind == "slider":
-                yield from _slider(catalog, path, part)
+            if part.one_of:
+                yield from one_of(catalog, path, part, part.one_of)
+            yield from part.findings(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
             friction = getattr(part, "friction", None)
@@ -56,61 +38,12 @@ def _on_itself(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
     point = getattr(part, "point", None)
     if any(name not in catalog.point_names() for name in (point, *points) if name is not None):
         return
-    if point is not None and "." not in point and part.kind != "slider":
+    if point is not None and "." not in point and not part.holds_ground:
         yield Finding((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
-    elif point is not None and part.kind == "slider" and _owner(point) == part.on:
-        yield Finding((*path, "point"), f"the point '{point}' of '{name}' is on the body along which it should slide")
-    owners = {_owner(point) for point in points}
+    owners = {owner_of(point) for point in points}
     if len(owners) == 1 and (len(points) > 1 or "" in owners):
         whose = f"body '{owner}'" if (owner := owners.pop()) else "the ground"
         yield Finding((*path, "points"), f"'{name}' joins {whose} to itself", "name points of different bodies")
-
-
-def _owner(point: str) -> str:
-    """The body of a point; "" of the ground's."""
-    return point.partition(".")[0] if "." in point else ""
-
-
-def _slider(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
-    if _lacks_line(catalog, part.on):
-        what = f"'{path[1]}' slides on the line of body '{part.on}', which has none"
-        yield Finding((*path, "on"), what, f'give body \'{part.on}\' its line = ["A", "B"]')
-    if part.unilateral and catalog.model.space == "space":
-        what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
-        yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
-
-
-def _lacks_line(catalog: Catalog, body: Any) -> bool:
-    part = catalog.table("bodies").get(body)
-    return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken
-
-
-def _string(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
-    for k, wrap in enumerate(part.path or ()):
-        where = (*path, "path", k)
-        if isinstance(wrap, str):
-            continue
-        yield from one_of(catalog, where, wrap, ("body", "at"))
-        if wrap.radius is None and (wrap.at is not None or not is_round(catalog, wrap.body)):
-            yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
-        if wrap.turn is None and (*where, "turn") not in catalog.broken:
-            yield Finding(where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"')
-        if wrap.axis is not None and catalog.model.space == "plane":
-            yield Finding((*where, "axis"), f"'axis' of a wrap of '{path[1]}' is for space", "leave it out", key=True)
-        if wrap.slip and k in (0, len(part.path) - 1):
-            yield Finding((*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True)
-    owners = {_owner(stop) if isinstance(stop, str) else stop.body or "" for stop in part.path or ()}
-    if len(owners) == 1:
-        what = f"the string '{path[1]}' has nothing on it that it could hold: all of it is on one body or the ground"
-        yield Finding((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
-    for k, way in enumerate(part.strands or ()):
-        if isinstance(way, str) and catalog.model.space == "space":
-            what = f"'{way}' says no direction in space, where nothing tells which axis is up"
-            yield Finding((*path, "strands", k), what, "give the direction as three components")
-    pieces = len(part.path or ()) - 1
-    if part.strands is not None and part.path is not None and len(part.strands) != pieces:
-        what = f"the string has {pieces} strands, but {len(part.strands)} directions are given"
-        yield Finding((*path, "strands"), what)
 
 
 def coordinates(catalog: Catalog) -> Iterator[Finding]:

@@ -1,11 +1,14 @@
 """What every tie is: fields that say what touches what."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from eomgen.model.catalog import Catalog
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.graph import Scalar
@@ -22,6 +25,14 @@ class Constraint(Part, ABC):
     kind: ClassVar[str]
     table: ClassVar[str] = "constraints"
     spaces: ClassVar[tuple[str, ...]] = ("plane", "space")
+    one_of: ClassVar[tuple[str, ...]] = ()  # of these fields exactly one is given
+    holds_ground: ClassVar[bool] = False  # its point may be one of the ground
+    pulls: ClassVar[bool] = False  # a wire, which goes slack; anything else opens
+    on_line: ClassVar[bool] = False  # in space it holds its point from all sides of a line
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """What is wrong with its fields together; one alone its rule has looked at."""
+        yield from ()
 
     @classmethod
     def works_in(cls, space: str) -> bool:

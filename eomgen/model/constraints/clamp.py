@@ -18,6 +18,7 @@ class Clamp(Constraint):
     """A body is built into the ground at `point`, or bodies are welded together at `points`."""
 
     kind: ClassVar[str] = "clamp"
+    one_of: ClassVar[tuple[str, ...]] = ("point", "points")
     point: PointName | None = None
     points: Points | None = None
 

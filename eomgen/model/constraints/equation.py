@@ -20,6 +20,7 @@ class Equation(Constraint):
     """
 
     kind: ClassVar[str] = "equation"
+    one_of: ClassVar[tuple[str, ...]] = ("gap", "rate")
     gap: Gap | None = None
     rate: VelocityLaw | None = None
 

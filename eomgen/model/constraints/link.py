@@ -24,6 +24,7 @@ class Link(Constraint):
     """
 
     kind: ClassVar[str] = "link"
+    pulls: ClassVar[bool] = True
     points: TwoPoints
     length: Length | None = None
     unilateral: Flag = False

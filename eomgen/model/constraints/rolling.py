@@ -1,9 +1,11 @@
 """Rolling: a round body on a line, a circle or another body; in space on a plane, a ball or a pipe."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.model.catalog import Catalog, is_round, not_in_the_plane, one_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.round_bodies import Ball, Egg, Round, Wheel
@@ -19,6 +21,7 @@ from eomgen.model.constraints.tracks import (
     on_level,
     wheel_on_ball,
 )
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import Scalar, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
@@ -28,6 +31,7 @@ from eomgen.symbolic.expression.spatial import minus
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]
 
+TRACKS = ("line", "plane", "circle")
 ALONG = ("t", "s")
 """What the components along a contact are called."""
 
@@ -64,6 +68,62 @@ class Rolling(Constraint):
     center: OwnPointName | None = None
     axis: SpaceDirection | None = None
     ellipsoid: Size | None = None
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """Tracks and sizes that are missing or exclude one another, or that are for another space."""
+        alone = self.on is not None and all(getattr(self, track) is None for track in TRACKS)
+        yield from one_of(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
+        yield from self._wrong_sizes(path, catalog)
+        if alone and not is_round(catalog, self.on):
+            what = f"'{self.body}' rolls on body '{self.on}', which is not round"
+            yield Finding((*path, "on"), what, "give the line or circle of it, or the body a round shape")
+        track = self.line or self.plane or self.circle
+        if self.on is not None and track is not None and isinstance(track.at, str):
+            what = f"'{track.at}' is a point of the ground, but the track is fixed in body '{self.on}'"
+            yield Finding(path, what, f"give 'at' as coordinates in the axes of '{self.on}'")
+        yield from self._of_other_space(path, catalog, curved=alone or self.circle is not None)
+        if self.on is not None and self.on == self.body:
+            yield Finding((*path, "on"), f"'{self.body}' cannot roll on itself")
+        if self.friction is not None and not self.slip:
+            yield Finding(
+                (*path, "friction"), "friction needs sliding", "slip = true, or leave 'friction' out", key=True
+            )
+
+    def _wrong_sizes(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """A radius, or semiaxes, of the tie or of the shape; not both; a tyre only about an axis."""
+        sizes = ("radius",) if catalog.model.space == "plane" else ("radius", "semiaxes", "major")
+        if self.radius is None and self.ellipsoid is None and not is_round(catalog, self.body, sizes):
+            what = f"the radius of '{self.body}', which rolls, is not known"
+            yield Finding(path, what, "give 'radius', or the body a round shape")
+        for key in ("radius", "axis", "tube") if self.ellipsoid is not None else ():
+            if getattr(self, key) is not None:
+                what = f"'{path[1]}' has an 'ellipsoid' and '{key}': it is one or the other"
+                yield Finding((*path, key), what, "keep one", key=True)
+        if self.tube is not None and self.axis is None and not is_round(catalog, self.body, ("major",)):
+            yield Finding((*path, "tube"), f"the tyre of '{self.body}' has no 'axis'", "give it, body axes", key=True)
+
+    def _of_other_space(self, path: Path, catalog: Catalog, curved: bool) -> Iterator[Finding]:
+        """In the plane no fields of space; in space a plane for a line; wheels on planes and balls, eggs on planes."""
+        if catalog.model.space == "plane":
+            if self.plane is not None:
+                mend = "in the plane a body rolls on a 'line'"
+                yield Finding((*path, "plane"), f"'plane' of '{path[1]}' is for space", mend, key=True)
+            yield from not_in_the_plane(catalog, path, self, ("axis", "ellipsoid", "tube"))
+            if self.circle is not None and self.circle.axis is not None:
+                yield Finding(
+                    (*path, "circle", "axis"), f"'axis' of '{path[1]}' is for space", "leave it out", key=True
+                )
+            return
+        if self.line is not None:
+            yield Finding((*path, "line"), f"'line' of '{path[1]}' is for the plane", "in space: 'plane'", key=True)
+        pipe = self.circle is not None and self.circle.axis is not None
+        for key in (*(["axis"] if pipe else []), "ellipsoid") if curved else ():
+            if getattr(self, key) is not None:
+                where = (
+                    "only a ball rolls in or on a pipe" if key == "axis" else "no ellipsoid rolls on something curved"
+                )
+                what = f"'{path[1]}': {where}, '{self.body}' has '{key}'"
+                yield Finding((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.
@@ -123,7 +183,7 @@ class Rolling(Constraint):
         semiaxes = self.ellipsoid or (getattr(shape, "semiaxes", None) if self._plain else None)
         if semiaxes is not None:
             return Egg(self.body, scene.vector(semiaxes))
-        torus = not scene.plane and shape is not None and shape.kind == "torus"
+        torus = not scene.plane and shape is not None and shape.is_tyre
         if self.axis is None and not (torus and self.radius is None):
             return Ball(self._radius(scene))
         R = scene.value(shape.major) if torus and self.radius is None else self._radius(scene)

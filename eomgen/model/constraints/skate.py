@@ -1,12 +1,15 @@
 """Skate: a knife edge."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from eomgen.model.catalog import Catalog, not_in_the_plane
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left
 from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
 from eomgen.symbolic.expression.functions import over
@@ -27,6 +30,10 @@ class Skate(Constraint):
     point: PointName
     along: Direction
     normal: SpaceDirection | None = None
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """The ice has no normal in the plane."""
+        yield from not_in_the_plane(catalog, path, self, ("normal",))
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . v = 0; a row of velocities alone, which no gap has for a rate.

@@ -1,12 +1,15 @@
 """Slider: a point stays on the line of a body."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
@@ -25,10 +28,24 @@ class Slider(Constraint):
     """
 
     kind: ClassVar[str] = "slider"
+    holds_ground: ClassVar[bool] = True
+    on_line: ClassVar[bool] = True
     point: PointName
     on: BodyName
     unilateral: Flag = False
     friction: FrictionLaw | None = None
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """The body needs a line, another than that of the point; in space the slider cannot end."""
+        if _lacks_line(catalog, self.on):
+            what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"
+            yield Finding((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
+        if self.unilateral and catalog.model.space == "space":
+            what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
+            yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
+        if owner_of(self.point) == self.on:
+            what = f"the point '{self.point}' of '{path[1]}' is on the body along which it should slide"
+            yield Finding((*path, "point"), what)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
@@ -51,3 +68,8 @@ class Slider(Constraint):
         ]
         rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
         return tuple(rows)
+
+
+def _lacks_line(catalog: Catalog, body: Any) -> bool:
+    part = catalog.table("bodies").get(body)
+    return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken

@@ -1,14 +1,17 @@
 """String: over pulleys and pegs, fastened or wound at its ends."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, ClassVar
 
+from eomgen.model.catalog import Catalog, is_round, one_of, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import Scene, Vector
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
@@ -55,6 +58,7 @@ class String(Constraint):
     """
 
     kind: ClassVar[str] = "string"
+    pulls: ClassVar[bool] = True
     path: Route
     strands: Strands | None = None
     unilateral: Flag = False
@@ -77,6 +81,40 @@ class String(Constraint):
             return tuple(common_tangent(scene, *pair) for pair in pairs)
         ways = [_direction(scene, way) for way in self.strands]
         return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """Wraps that lack a size or a sense; something that moves must hang on it; a direction for each strand."""
+        for k, wrap in enumerate(self.path or ()):
+            where = (*path, "path", k)
+            if isinstance(wrap, str):
+                continue
+            yield from one_of(catalog, where, wrap, ("body", "at"))
+            if wrap.radius is None and (wrap.at is not None or not is_round(catalog, wrap.body)):
+                yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
+            if wrap.turn is None and (*where, "turn") not in catalog.broken:
+                yield Finding(
+                    where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"'
+                )
+            if wrap.axis is not None and catalog.model.space == "plane":
+                yield Finding(
+                    (*where, "axis"), f"'axis' of a wrap of '{path[1]}' is for space", "leave it out", key=True
+                )
+            if wrap.slip and k in (0, len(self.path) - 1):
+                yield Finding((*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True)
+        owners = {owner_of(stop) if isinstance(stop, str) else stop.body or "" for stop in self.path or ()}
+        if len(owners) == 1:
+            what = (
+                f"the string '{path[1]}' has nothing on it that it could hold: all of it is on one body or the ground"
+            )
+            yield Finding((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
+        for k, way in enumerate(self.strands or ()):
+            if isinstance(way, str) and catalog.model.space == "space":
+                what = f"'{way}' says no direction in space, where nothing tells which axis is up"
+                yield Finding((*path, "strands", k), what, "give the direction as three components")
+        pieces = len(self.path or ()) - 1
+        if self.strands is not None and self.path is not None and len(self.strands) != pieces:
+            what = f"the string has {pieces} strands, but {len(self.strands)} directions are given"
+            yield Finding((*path, "strands"), what)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.

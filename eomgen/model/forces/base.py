@@ -1,8 +1,11 @@
 """What every force is: fields that say where it acts and by which law."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from eomgen.model.catalog import Catalog
+from eomgen.model.findings import Finding, Path
 from eomgen.model.forces.load import Load, Scalar, Scene, SpreadLoad
 from eomgen.model.part import Part
 
@@ -18,7 +21,13 @@ class Force(Part):
     kind: ClassVar[str]
     works: ClassVar[bool] = True
     by_mass: ClassVar[bool] = False
+    one_of: ClassVar[tuple[str, ...]] = ()  # of these fields exactly one is given
+    elastic: ClassVar[bool] = False  # a spring
     placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """What is wrong with its fields together; one alone its rule has looked at."""
+        yield from ()
 
     @property
     def spring_ends(self) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ class Distributed(Force):
     """
 
     kind: ClassVar[str] = "distributed"
+    one_of: ClassVar[tuple[str, ...]] = ("intensity", "intensities")
     body: BodyName
     between: TwoOwnPoints
     intensity: LineLoad | None = None

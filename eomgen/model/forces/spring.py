@@ -22,6 +22,7 @@ class Spring(Force):
     """
 
     kind: ClassVar[str] = "spring"
+    elastic: ClassVar[bool] = True
     points: TwoPoints
     stiffness: LinearStiffness
     length: NaturalLength

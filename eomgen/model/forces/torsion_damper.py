@@ -20,6 +20,7 @@ class TorsionDamper(Force):
     """
 
     kind: ClassVar[str] = "torsion_damper"
+    one_of: ClassVar[tuple[str, ...]] = ("bodies", "body")
     bodies: TwoBodies | None = None
     body: BodyName | None = None
     damping: Law

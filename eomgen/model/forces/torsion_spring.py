@@ -22,6 +22,8 @@ class TorsionSpring(Force):
     """
 
     kind: ClassVar[str] = "torsion_spring"
+    elastic: ClassVar[bool] = True
+    one_of: ClassVar[tuple[str, ...]] = ("bodies", "body")
     bodies: TwoBodies | None = None
     body: BodyName | None = None
     stiffness: AngularStiffness

@@ -5,12 +5,14 @@ a point of the child (`point`). Everything here is from the (turned) parent's jo
 A column of S or W has six entries, angular part (torque) first, at the joint point, in the child's axes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import NotYet
+from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
+from eomgen.model.findings import Finding, Path
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expression.expressions import Expression
@@ -64,7 +66,7 @@ class Joint(Part):
     """
 
     kind: ClassVar[str]
-    works: ClassVar[bool] = True
+    only_space: ClassVar[bool] = False
     carries_reaction: ClassVar[bool] = True
     seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
 
@@ -87,9 +89,13 @@ class Joint(Part):
         """Of a joint whose last four variables are a quaternion: the speeds that S takes in place of their rates."""
         return ()
 
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """What is wrong with its fields together; one alone its rule has looked at."""
+        yield from ()
+
     def works_in(self, space: str) -> bool:
         """Whether this version derives the joint in this space."""
-        return self.works
+        return space == "space" or not self.only_space
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         """The joint's variables s, f of them."""

@@ -1,17 +1,31 @@
 """Free: nothing holds the child."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
+from eomgen.model.catalog import Catalog
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
+from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, linear
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
+from eomgen.model.joints.orientation import (
+    Angles,
+    Omega,
+    Quaternion,
+    Sequence,
+    columns_of,
+    other_space,
+    rotation_of,
+    turning_findings,
+)
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose, apply, transposed, vector_of
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
+
+IN_PLANE = ("x", "y", "angle")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +42,7 @@ class Free(Joint):
     """
 
     kind: ClassVar[str] = "free"
+    beside_orientation: ClassVar[tuple[str, ...]] = ()
     x: Displacement | None = None
     y: Displacement | None = None
     angle: Angle | None = None
@@ -36,6 +51,15 @@ class Free(Joint):
     angles: Angles | None = None
     quaternion: Quaternion | None = None
     omega: Omega | None = None
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        """The fields of this space, all of them."""
+        plane = catalog.model.space == "plane"
+        yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)
+        for key in IN_PLANE if plane else ("position", "orientation"):
+            if getattr(self, key) is None and (*path, key) not in catalog.broken:
+                yield Finding(path, f"the joint of body '{path[1]}' has no '{key}'", f"give '{key}'")
+        yield from turning_findings(self, path, catalog)
 
     @property
     def spins(self) -> tuple[str, ...]:

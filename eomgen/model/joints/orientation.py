@@ -6,12 +6,15 @@ e = (e0, e1, e2, e3), scalar first, child to parent, moves with the child's angu
     e' = 1/2 e o (0, w),    w = 2 Im(e* o e'),    e . e = 1
 """
 
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from itertools import product as combinations
 from typing import Annotated, Any
 
+from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
+from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.base import Column, X, Y, Z, angular
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -25,6 +28,47 @@ Sequence = Annotated[str, TextRule((*SEQUENCES, "quaternion"))]
 Angles = Annotated[tuple[Expression, ...], ListRule(FormulaRule("rad", "", CONFIGURATION), 3, 3)]
 Quaternion = Annotated[tuple[str, ...], ListRule(NameRule("coordinate"), 4, 4)]
 Omega = Annotated[tuple[str, ...], ListRule(NameRule("speed"), 3, 3)]
+
+TURNING = ("orientation", "angles", "quaternion", "omega")
+
+
+def other_space(joint: Any, keys: Iterable[str], path: Path, space: str) -> Iterator[Finding]:
+    """Fields that mean nothing in this space."""
+    for key in keys:
+        if getattr(joint, key) is not None:
+            what = f"'{key}' of a {joint.kind} joint is for {'space' if space == 'plane' else 'the plane'}"
+            yield Finding((*path, key), what, "leave it out", key=True)
+
+
+def turning_findings(joint: Any, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    """Of a joint that turns in space: no fields of it in the plane; in space those that its orientation needs."""
+    if catalog.model.space == "plane":
+        yield from other_space(joint, TURNING, path, "plane")
+    else:
+        yield from _orientation(joint, path, catalog)
+
+
+def _orientation(joint: Any, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
+    orientation, name = joint.orientation, path[1]
+    if orientation is None:
+        for key in ("angles", "quaternion"):
+            if getattr(joint, key) is not None and (*path, "orientation") not in catalog.broken:
+                yield Finding(
+                    path,
+                    f"the joint of body '{name}' has '{key}' but no 'orientation'",
+                    f'orientation = "{"zxz" if key == "angles" else key}"',
+                )
+        return
+    needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
+    if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:
+        yield Finding((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
+    for key in (other, *joint.beside_orientation):
+        if getattr(joint, key) is not None:
+            what = f"'{key}' does not go with orientation \"{orientation}\""
+            yield Finding((*path, key), what, "leave it out", key=True)
+    if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
+        yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
 
 
 def rotation_by(sequence: str, angles: tuple[Any, ...]) -> Matrix:

@@ -1,10 +1,13 @@
 """Path: a point on pieces of lines and arcs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
+from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
+from eomgen.model.findings import Finding
+from eomgen.model.findings import Path as FilePath
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn
@@ -99,6 +102,19 @@ class Path(Joint):
     def friction(self) -> FrictionLaw | None:
         """The friction of its piece, where it has only one."""
         return self.pieces[0].friction if len(self.pieces) == 1 else None
+
+    def findings(self, path: FilePath, catalog: Catalog) -> Iterator[Finding]:
+        """Each piece is a line or an arc."""
+        name = path[1]
+        for k, piece in enumerate(self.pieces or ()):
+            where = (*path, "pieces", k)
+            if (piece.line is None) == (piece.arc is None):
+                yield Finding(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
+            elif piece.arc is not None and (piece.turn is None or piece.angle is None):
+                what = f"an arc of the path of body '{name}' needs 'turn' and 'angle'"
+                yield Finding(where, what, 'turn = "ccw", angle = "pi/2"')
+            elif piece.line is not None and (piece.turn is not None or piece.angle is not None):
+                yield Finding(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
 
     def turns(self) -> tuple[Expression, ...]:
         return ()

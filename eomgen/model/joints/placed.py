@@ -1,10 +1,21 @@
 """Placed: where the child stands is given as expressions. Geometry, which carries no reaction."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from eomgen.model.catalog import Catalog
+from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
+from eomgen.model.joints.orientation import (
+    Angles,
+    Omega,
+    Quaternion,
+    Sequence,
+    columns_of,
+    rotation_of,
+    turning_findings,
+)
 from eomgen.model.kinds import Angle, SpaceDirection
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -24,12 +35,16 @@ class Placed(Joint):
     kind: ClassVar[str] = "placed"
     carries_reaction: ClassVar[bool] = False
     seated: ClassVar[bool] = False
+    beside_orientation: ClassVar[tuple[str, ...]] = ("angle",)
     angle: Angle | None = None
     axis: SpaceDirection | None = None
     orientation: Sequence | None = None
     angles: Angles | None = None
     quaternion: Quaternion | None = None
     omega: Omega | None = None
+
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        yield from turning_findings(self, path, catalog)
 
     @property
     def spins(self) -> tuple[str, ...]:

@@ -3,21 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.joints.base import (
-    Column,
-    Effort,
-    Joint,
-    Scalars,
-    Value,
-    X,
-    Y,
-    Z,
-    across,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.axis import AxisJoint
+from eomgen.model.joints.base import Effort, Scalars, Value, Z, unit, vector
 from eomgen.model.kinds import (
     ConstantAngle,
     Direction,
@@ -30,11 +17,11 @@ from eomgen.model.kinds import (
 )
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, times, transposed
+from eomgen.symbolic.expression.spatial import Matrix, Vector, rotation
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prismatic(Joint):
+class Prismatic(AxisJoint):
     """A slide: s = displacement, X = (Rot(angle), s n), S = (0, R^T n); W: every torque and the forces across n.
 
     Args:
@@ -61,25 +48,18 @@ class Prismatic(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement,)
 
+    def normal(self, value: Value) -> Vector:
+        return unit(vector(self.axis, value))
+
+    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+        return ((0, 1),)
+
+    def mounting(self, value: Value) -> Matrix:
+        angle = self.turn((), value)
+        return rotation(Z if len(self.axis) == 2 else self.normal(value), cos(angle), sin(angle))
+
     def turn(self, s: Scalars, value: Value) -> Any:
         return 0 if self.angle is None else value(self.angle)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
-        return Pose(self._rotation(s, value), times(s[0], unit(vector(self.axis, value))))
-
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        R_CP = transposed(self._rotation(s, value))
-        return (linear(apply(R_CP, unit(vector(self.axis, value)))),)
-
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        R_CP = transposed(self._rotation(s, value))
-        sideways = (apply(R_CP, e) for e in across(unit(vector(self.axis, value))))
-        return (*map(angular, (X, Y, Z)), *map(linear, sideways))
-
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.force, self.stiffness, self.damping, self.rest, self.armature),)
-
-    def _rotation(self, s: Scalars, value: Value) -> Matrix:
-        angle = self.turn(s, value)
-        about = Z if len(self.axis) == 2 else unit(vector(self.axis, value))
-        return rotation(about, cos(angle), sin(angle))

@@ -3,29 +3,15 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.joints.base import (
-    Column,
-    Effort,
-    Joint,
-    Scalars,
-    Value,
-    X,
-    Y,
-    Z,
-    across,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.axis import AxisJoint
+from eomgen.model.joints.base import Effort, Value, Z, unit, vector
 from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.spatial import Pose, rotation
+from eomgen.symbolic.expression.spatial import Vector
 
 
 @dataclass(frozen=True, kw_only=True)
-class Revolute(Joint):
+class Revolute(AxisJoint):
     """A hinge: s = angle, X = Rot(n, s), S = (n, 0); W: the torques across n and every force.
 
     Args:
@@ -50,21 +36,11 @@ class Revolute(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)
 
-    def normal(self, value: Value):
-        """The unit axis n."""
+    def normal(self, value: Value) -> Vector:
         return unit(vector(self.axis, value, Z))
 
-    def turn(self, s: Scalars, value: Value) -> Any:
-        return s[0]
-
-    def pose(self, s: Scalars, value: Value) -> Pose:
-        return Pose(rotation(self.normal(value), cos(s[0]), sin(s[0])))
-
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        return (angular(self.normal(value)),)
-
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        return (*map(angular, across(self.normal(value))), *map(linear, (X, Y, Z)))
+    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+        return ((1, 0),)
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)

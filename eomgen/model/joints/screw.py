@@ -4,29 +4,17 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.fields import FormulaRule
-from eomgen.model.joints.base import (
-    Column,
-    Effort,
-    Joint,
-    Scalars,
-    Value,
-    Z,
-    across,
-    angular,
-    linear,
-    unit,
-    vector,
-)
+from eomgen.model.joints.axis import AxisJoint
+from eomgen.model.joints.base import Effort, Value, Z, unit, vector
 from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.spatial import Pose, Vector, rotation, times
+from eomgen.symbolic.expression.spatial import Vector
 
 Pitch = Annotated[Expression, FormulaRule("m")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Screw(Joint):
+class Screw(AxisJoint):
     """A nut on a thread of pitch h: s = angle, X = (Rot(n, s), h s n), S = (n, h n).
 
     W: torques and forces across n, and the thread's thrust: a force n with the torque -h n.
@@ -40,6 +28,7 @@ class Screw(Joint):
     """
 
     kind: ClassVar[str] = "screw"
+    only_space: ClassVar[bool] = True
     axis: SpaceDirection | None = None
     angle: Angle
     pitch: Pitch
@@ -49,34 +38,17 @@ class Screw(Joint):
     rest: RestAngle | None = None
     armature: RotorInertia | None = None
 
-    def works_in(self, space: str) -> bool:
-        return space == "space"
-
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
-        n, h = self._thread(value)
-        return Pose(rotation(n, cos(s[0]), sin(s[0])), times(h * s[0], n))
+    def normal(self, value: Value) -> Vector:
+        return unit(vector(self.axis, value, Z))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        n, h = self._thread(value)
-        return ((*n, *times(h, n)),)
-
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
-        n, h = self._thread(value)
-        sideways = across(n)
-        return (*map(angular, sideways), *map(linear, sideways), (*times(-h, n), *n))
+    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+        return ((1, value(self.pitch)),)
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
-
-    def _thread(self, value: Value) -> tuple[Vector, Any]:
-        """The unit axis n and the pitch h."""
-        return unit(vector(self.axis, value, Z)), value(self.pitch)
-
-    def turn(self, s: Scalars, value: Value) -> Any:
-        return s[0]

@@ -1,10 +1,21 @@
 """Spherical: a ball joint."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from eomgen.model.catalog import Catalog
+from eomgen.model.findings import Finding, Path
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
-from eomgen.model.joints.orientation import Angles, Omega, Quaternion, Sequence, columns_of, rotation_of
+from eomgen.model.joints.orientation import (
+    Angles,
+    Omega,
+    Quaternion,
+    Sequence,
+    columns_of,
+    rotation_of,
+    turning_findings,
+)
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose
 
@@ -22,17 +33,19 @@ class Spherical(Joint):
     """
 
     kind: ClassVar[str] = "spherical"
+    only_space: ClassVar[bool] = True
+    beside_orientation: ClassVar[tuple[str, ...]] = ()
     orientation: Sequence
     angles: Angles | None = None
     quaternion: Quaternion | None = None
     omega: Omega | None = None
 
+    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+        yield from turning_findings(self, path, catalog)
+
     @property
     def spins(self) -> tuple[str, ...]:
         return (self.omega or ()) if self.orientation == "quaternion" else ()
-
-    def works_in(self, space: str) -> bool:
-        return space == "space"
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles or tuple(as_expression(name) for name in self.quaternion or ())

@@ -26,11 +26,9 @@ class Universal(Joint):
     """
 
     kind: ClassVar[str] = "universal"
+    only_space: ClassVar[bool] = True
     axes: TwoAxes
     angles: TwoAngles
-
-    def works_in(self, space: str) -> bool:
-        return space == "space"
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles

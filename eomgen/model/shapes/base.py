@@ -32,7 +32,13 @@ class Shape(Part, ABC):
 
     kind: ClassVar[str]
     dimension: ClassVar[int]  # what its mass is spread over: 0 a point, 1 a line, 2 a surface, 3 a volume
+    is_tyre: ClassVar[bool] = False  # a ring with radii `major`, `minor`, which rolls on its section
     mass: Mass | None = None
+
+    @property
+    def is_point(self) -> bool:
+        """Whether its mass has no extent."""
+        return self.dimension == 0
 
     def points(self, value: Value) -> dict[str, Vector]:
         """The named points of the shape, body axes [m]: `origin`, `center`, the mass centre, and its own."""

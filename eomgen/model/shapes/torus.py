@@ -18,6 +18,7 @@ class Torus(Shape):
 
     kind: ClassVar[str] = "torus"
     dimension: ClassVar[int] = 3
+    is_tyre: ClassVar[bool] = True
     major: Length
     minor: Length
 

@@ -65,7 +65,7 @@ def field_payload(system: System, state: Mapping[Node, Scalar], kinds: Kinds | N
 def particles_of(system: System) -> tuple[str, ...]:
     """The bodies that are points."""
     bodies = system.scope.model.bodies
-    return tuple(name for name, part in bodies.items() if part.shape is not None and part.shape.kind == "particle")
+    return tuple(name for name, part in bodies.items() if part.shape is not None and part.shape.is_point)
 
 
 def kinds_step(motions: Sequence[BodyMotion], particles: Iterable[str] = ()) -> Step:

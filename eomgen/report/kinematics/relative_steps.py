@@ -119,7 +119,7 @@ def _table(
 def _is_particle(system: System, owner: str | None, point: str) -> bool:
     """Whether the point is the mass centre of a particle of the model."""
     part = None if owner is None else system.scope.model.bodies.get(owner)
-    if part is None or part.shape is None or part.shape.kind != "particle":
+    if part is None or part.shape is None or not part.shape.is_point:
         return False
     return point.endswith((".center", ".origin")) and not is_zero(mass_properties(system.scope, str(owner)).m)
 

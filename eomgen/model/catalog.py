@@ -95,6 +95,34 @@ class Catalog:
         return tuple(f"{name}.{node}" for name, truss in trusses if truss for node in truss.nodes or {})
 
 
+def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+    """Exactly one of these fields is given."""
+    given = [key for key in keys if getattr(part, key) is not None]
+    listed = " and ".join(f"'{key}'" for key in keys)
+    if len(given) > 1:
+        yield Finding((*path, given[1]), f"only one of {listed} can be given ({'.'.join(map(str, path))})", key=True)
+    elif not given and not any((*path, key) in catalog.broken for key in keys):
+        yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
+
+
+def not_in_the_plane(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+    """Fields for space that are given in the plane."""
+    for key in keys if catalog.model.space == "plane" else ():
+        if getattr(part, key) is not None:
+            yield Finding((*path, key), f"'{key}' of '{path[1]}' is for space", "leave it out", key=True)
+
+
+def is_round(catalog: Catalog, body: Any, sizes: tuple[str, ...] = ("radius",)) -> bool:
+    """Whether a body's shape has a radius, or other such sizes (or could not be read)."""
+    part = catalog.table("bodies").get(body)
+    return part is None or ("bodies", body, "shape") in catalog.broken or any(hasattr(part.shape, x) for x in sizes)
+
+
+def owner_of(point: str) -> str:
+    """The body of a point; "" of the ground's."""
+    return point.partition(".")[0] if "." in point else ""
+
+
 def _expressions_in(value: Any) -> Iterator[Expression]:
     if isinstance(value, Expression):
         yield value
