@@ -10,15 +10,17 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.formulations import ALL
+from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.inertia import kinetic_energy
+from eomgen.mechanics.inverse import residual
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import powered_forces, total
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
+from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 Pairs = list[tuple[Scalar, Scalar]]
@@ -46,31 +48,46 @@ def rates(system: System, assembly: Assembly) -> Check:
 
 
 def routes(system: System, assembly: Assembly) -> Iterable[Check]:
-    """The equations against each formulation's own M, c, Q."""
-    speeds = [u.name for u in assembly.symbols.u]
-    for formulation in ALL:
-        if not formulation.applies(system):
-            continue
-        other = with_friction(system, formulation.assemble(system))
-        pairs, labels = [], []
-        for i, name in enumerate(speeds):
-            pairs += [(assembly.M[i][j], other.M[i][j]) for j in range(len(speeds))]
-            labels += [f"M[{name}, {column}]" for column in speeds]
-            pairs += [(assembly.c[i], other.c[i]), (assembly.Q[i], other.Q[i])]
-            labels += [f"c[{name}]", f"Q[{name}]"]
-            pairs += [(assembly.forcing[i], other.forcing[i])]
-            labels += [f"Q - c [{name}]"]
-        yield _compared(f"M, c and Q agree with those by {formulation.title}", pairs, labels)
+    """The equations along a motion with any accelerations a: against energies, wrenches and inverse dynamics.
+
+    M a is linear in a, so that at random a a wrong entry of M shows with the chance with which it shows by itself.
+    """
+    symbols, friction = assembly.symbols, assembly.friction or (0,) * len(assembly.Q)
+    speeds = [u.name for u in symbols.u]
+    Ma = tuple(inner(row, symbols.a) for row in assembly.M)
+    Q = tuple(x - f for x, f in zip(assembly.Q, friction, strict=True))
+    labels = [f"{word} [{name}]" for word in ("M a", "c", "Q") for name in speeds]
+    for formulation in (lagrange, projection):
+        pairs = [
+            pair
+            for own, other in zip((Ma, assembly.c, Q), formulation.along(system), strict=True)
+            for pair in zip(own, other, strict=True)
+        ]
+        yield _compared(f"M a, c and Q agree with those by {formulation.title}", pairs, labels)
+    left = [x - b + f for x, b, f in zip(Ma, assembly.forcing, friction, strict=True)]
+    pairs = [*zip(left, residual(system), strict=True)]
+    pairs += [(b, x - y) for b, x, y in zip(assembly.forcing, assembly.Q, assembly.c, strict=True)]
+    labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
+    yield _compared("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
+    if friction != (0,) * len(assembly.Q):
+        other = with_friction(system, lagrange.assemble(system)).friction
+        yield _compared(
+            "friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds
+        )
 
 
 def mass_matrix(assembly: Assembly) -> Check:
-    u = assembly.symbols.u
-    curvature = jacobian(gradient(assembly.T, u), u)
-    pairs, labels = [], []
-    for i, row in enumerate(assembly.M):
-        for j in range(i + 1):
-            pairs += [(row[j], assembly.M[j][i]), (row[j], curvature[i][j])]
-            labels += [f"M[{u[i].name}, {u[j].name}]"] * 2
+    """M a is the derivative of dT/du along a, and M and its transpose are the same."""
+    u, a = assembly.symbols.u, assembly.symbols.a
+    slope = tangent(gradient(assembly.T, u), dict(zip(u, a, strict=True)))
+    pairs = [*zip((inner(row, a) for row in assembly.M), slope, strict=True)]
+    pairs += [
+        (row[j], assembly.M[j][i])
+        for i, row in enumerate(assembly.M)
+        for j in range(i)
+        if row[j] is not assembly.M[j][i]
+    ]
+    labels = [f"M a [{x.name}]" for x in u] + ["M or its transpose"] * (len(pairs) - len(u))
     return _compared("M is symmetric and is the second derivative of T", pairs, labels)
 
 

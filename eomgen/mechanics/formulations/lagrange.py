@@ -14,7 +14,7 @@ from eomgen.mechanics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import generalized_forces, per_speed
-from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
+from eomgen.symbolic.expression.derivative import gradient, jacobian, pullback, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -56,6 +56,31 @@ def _reduced(system: System, free: System) -> Assembly:
         Q=tuple(inner(column, Q) for column in columns),
         T=T,
     )
+
+
+def along(system: System) -> tuple[Row, Row, Row]:
+    """(M a, c, Q) by derivatives of the energies along one motion: O(n), no entry of M is formed."""
+    if system.free is None:
+        return _along(system, system.symbols.a)
+    u, free = system.scope.symbols.u, system.free
+    rates = free_rates(system, free)
+    bias = system.scope.time_derivative(rates)
+    rows = (*_along(free, tangent(rates, dict(zip(u, system.symbols.a, strict=True)))), _along(free, bias)[0])
+    known = dict(zip(free.scope.symbols.u, rates, strict=True))
+    found = substituted([x for row in rows for x in row], known)
+    Ma, c, Q, carried = (found[k : k + len(rates)] for k in range(0, len(found), len(rates) or 1))
+    inertia = tuple(x + y for x, y in zip(c, carried, strict=True))
+    return pullback(rates, Ma, u), pullback(rates, inertia, u), pullback(rates, Q, u)
+
+
+def _along(system: System, a: Row) -> tuple[Row, Row, Row]:
+    """The same for given accelerations of a system whose speeds are rates."""
+    scope, u = system.scope, system.scope.symbols.u
+    T = kinetic_energy(system.motion)
+    momenta = gradient(T, u)
+    held = per_speed(system.motion, gradient(T, scope.symbols.q))
+    c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
+    return tangent(momenta, dict(zip(u, a, strict=True))), c, generalized_forces(system.loads)
 
 
 def free_rates(system: System, free: System) -> Row:

@@ -5,6 +5,8 @@ M = sum B^T I B,   c = sum B^T (I alpha + xi x* (I xi)),   Q = sum B^T W
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from eomgen.mechanics.armature import armature_bias, armature_mass
 from eomgen.mechanics.assembly import Assembly, Row, assembled
 from eomgen.mechanics.inertia import kinetic_energy, mass_properties
@@ -12,8 +14,9 @@ from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import Loads, body_wrench, joint_wrenches, weights
 from eomgen.mechanics.system import System
 from eomgen.mechanics.work import placeless_forces
-from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.expression.spatial import Inertia, Twist, Wrench, cross, plus
+from eomgen.symbolic.expression.derivative import pullback, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Inertia, Twist, Wrench, cross, plus
 
 name = "projection"
 title = "projection of Newton-Euler"
@@ -28,6 +31,34 @@ def assemble(system: System) -> Assembly:
     """The equations of motion from wrenches and twists; closing rows by multipliers."""
     M, c = inertia_side(system.motion)
     return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
+
+
+def along(system: System) -> tuple[Row, Row, Row]:
+    """(M a, c, Q) by the wrenches of one motion, B^T applied in one sweep: O(n), no entry of M is formed."""
+    motion, a = system.motion, system.symbols.a
+    u = motion.scope.symbols.u
+    twists = tuple(x for link in motion.links for x in (*link.twist.w, *link.twist.v))
+    pushed = tangent(twists, dict(zip(u, a, strict=True)))
+    inertia, bias = [], []
+    for i, link in enumerate(motion.links):
+        mass = mass_properties(motion.scope, link.name)
+        body = Inertia.about_center(mass.m, mass.com, mass.I)
+        inertia.append(body.momentum(_twist(pushed[6 * i : 6 * i + 6])))
+        bias.append(_bias(body, link.twist, _twist(motion.alpha[i])))
+    Ma = list(_projected(twists, inertia, u))
+    for i, j, value in armature_mass(motion):
+        Ma[i] = Ma[i] + value * a[j]
+    rotors = armature_bias(motion, len(u))
+    c = tuple(x + y for x, y in zip(_projected(twists, bias, u), rotors, strict=True))
+    applied = applied_to_bodies(system.loads)
+    none = Wrench(ZERO, ZERO)
+    Q = _projected(twists, [applied.get(link.name, none) for link in motion.links], u)
+    return tuple(Ma), c, tuple(x + y for x, y in zip(Q, placeless_forces(system.loads), strict=True))
+
+
+def _projected(twists: Row, wrenches: Iterable[Wrench], u: Sequence[Node]) -> Row:
+    """sum B^T W"""
+    return pullback(twists, [x for wrench in wrenches for x in (*wrench.tau, *wrench.f)], u)
 
 
 def inertia_side(motion: Motion) -> tuple[tuple[Row, ...], Row]:
@@ -75,6 +106,16 @@ def force_side(loads: Loads) -> Row:
     """Q = sum B^T W of every wrench, and what acts at no place."""
     motion = loads.motion
     Q = list(placeless_forces(loads))
+    for body, wrench in applied_to_bodies(loads).items():
+        rows = motion.B[motion.index[body]]
+        for k in range(len(Q)):
+            Q[k] = Q[k] + _twist([row[k] for row in rows]).power(wrench)
+    return tuple(Q)
+
+
+def applied_to_bodies(loads: Loads) -> dict[str, Wrench]:
+    """What is applied to each body, efforts of joints included: at its origin, in its axes."""
+    motion = loads.motion
     wrenches = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
     wrenches += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
     total: dict[str, Wrench] = {}
@@ -82,8 +123,4 @@ def force_side(loads: Loads) -> Row:
         if found is not None:
             body, wrench = found
             total[body] = total[body].plus(wrench) if body in total else wrench
-    for body, wrench in total.items():
-        rows = motion.B[motion.index[body]]
-        for k in range(len(Q)):
-            Q[k] = Q[k] + _twist([row[k] for row in rows]).power(wrench)
-    return tuple(Q)
+    return total

@@ -50,10 +50,16 @@ def derivative(x: Scalar, symbol: Node) -> Scalar:
 
 def gradient(x: Scalar, symbols: Sequence[Node]) -> tuple[Scalar, ...]:
     """(dx/dsymbol for each symbol), in one sweep from the result back to the symbols."""
-    if type(x) is not Node:
-        return (0,) * len(symbols)
-    active = _dependents(order((x,)), frozenset(symbols))
-    adjoint: dict[Node, Scalar] = {x: 1}
+    return pullback((x,), (1,), symbols)
+
+
+def pullback(outputs: Sequence[Scalar], weights: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[Scalar, ...]:
+    """(sum over the outputs of weight d output/dsymbol, for each symbol), in one sweep: A^T w of the Jacobian A."""
+    adjoint: dict[Node, Scalar] = {}
+    for x, w in zip(outputs, weights, strict=True):
+        if type(x) is Node and (type(w) is Node or w != 0):
+            adjoint[x] = adjoint[x] + w if x in adjoint else w
+    active = _dependents(order(adjoint), frozenset(symbols))
     for y in reversed(active):
         if y.op == "symbol" or y not in adjoint:
             continue
