@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eomgen.shell import Verbs, deliver, reading
+from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
 if TYPE_CHECKING:
@@ -244,8 +245,8 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
 @click.option("--set", "given", multiple=True, metavar="NAME=VALUE", help="Another value of a parameter.")
 @click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
-@click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative tolerance of the run.")
-@click.option("--atol", type=float, default=1e-9, show_default=True, help="Absolute tolerance of the run.")
+@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of the run.")
+@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
 @click.option(
     "--method",
     default="DOP853",

@@ -34,12 +34,10 @@ from eomgen.situation import Situation, situation_of, start_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN
 
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
-FINE = Stepping(rtol=1e-12, atol=1e-12, most_steps=4000)
-HOLDS = 1e-8  # of a bound against its size at the start
-SAME = 1e-8  # of a velocity on both sides of an instant, relative to it and 1
-RESTING = 1e-9  # of an acceleration, below which a start is one of rest
+FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=4000)
 
 
 @dataclass(frozen=True)
@@ -191,7 +189,7 @@ class Journey:
         x = stage.state({node.name: value for node, value in self.numbers.items()})
         with np.errstate(all="ignore"):
             rates = stage.rate(0.0, x)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
-        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < RESTING
+        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < COMPUTED
 
     @property
     def _stage_of_first(self) -> Stage:
@@ -212,7 +210,7 @@ class Journey:
             scalar = moment.situation.eliminated(bound.value)
             there = evaluate((scalar,), values, FLOAT)[0]
             size = abs(evaluate((scalar,), {**values, **self.numbers}, FLOAT)[0])
-            if math.isfinite(there) and there < -HOLDS * max(1.0, size):
+            if math.isfinite(there) and there < -CARRIED * max(1.0, size):
                 raise RunFailed(f"'{bound.owner}' ends before the instant, on the way from an unstable rest")
 
     # -- through several phases -------------------------------------------------------------------
@@ -277,7 +275,7 @@ def _numbers(situation: Situation, t: float, values: Mapping[str, float]) -> dic
 def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
     """Whether a velocity jumps between two phases: an impact."""
     common = [name for name in end if name in start]
-    return any(abs(end[name] - start[name]) > SAME * (1 + abs(end[name])) for name in common)
+    return any(abs(end[name] - start[name]) > CARRIED * (1 + abs(end[name])) for name in common)
 
 
 def _is_moved_by_time(stage: Stage, situation: Situation) -> bool:

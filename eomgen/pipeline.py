@@ -21,6 +21,7 @@ from eomgen.simulation.course import modes_at_start
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.numeric.tolerances import RUN
 
 METHODS = ("lagrange", "projection", "kinetostatic")
 
@@ -60,8 +61,8 @@ def simulate(
     parameters: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     inputs: Mapping[str, Any] | None = None,
-    rtol: float = 1e-9,
-    atol: float = 1e-9,
+    rtol: float = RUN,
+    atol: float = RUN,
     target: str | None = None,
     samples: int | Sequence[float] | None = None,
     method: str = "DOP853",

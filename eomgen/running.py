@@ -15,7 +15,7 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.friction import with_friction
 from eomgen.mechanics.gimbal import locks_of
-from eomgen.mechanics.loops.edges import NEAR, edges_of, left_of, stopped_at
+from eomgen.mechanics.loops.edges import edges_of, left_of, stopped_at
 from eomgen.mechanics.loops.elimination import singular_blocks
 from eomgen.mechanics.loops.stabilization import stabilized
 from eomgen.mechanics.loops.start import Start, start_of_motion
@@ -23,7 +23,6 @@ from eomgen.mechanics.wellposed import is_conservative
 from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition, condition_of
 from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.endings import MET
 from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.integrate import SAMPLES, check, integrate
 from eomgen.simulation.joined import thinned
@@ -38,8 +37,8 @@ from eomgen.simulation.solvers import IMPLICIT
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, COMPUTED, FINEST_RUN
 
-STILL = 1e-9  # a rate or acceleration that is none, in SI
 CHOOSE = "declare other speeds"
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
@@ -121,7 +120,7 @@ def _refuse_fork_at_rest(equations: Equations, begun: Start, x0: np.ndarray, p: 
         return
     dx = equations.rhs("numpy")(0.0, x0, p)
     rates, accelerations = np.split(np.abs(dx), [len(equations.coordinates)])
-    if np.max(rates, initial=0.0) <= STILL and np.max(accelerations, initial=0.0) > STILL:
+    if np.max(rates, initial=0.0) <= COMPUTED and np.max(accelerations, initial=0.0) > COMPUTED:
         what = f"it starts at rest in {begun.fork.words}: forces pull it away, on which branch nothing says"
         raise DerivationError(
             what, f"constraints.{begun.fork.ties[0]}", "give it start speeds, or start beside that position"
@@ -191,7 +190,7 @@ def _events(equations: Equations, p: np.ndarray, condition: Condition | None, to
         return None
     function = compiled(program_of((*values, *asked), system.symbols, inputs=system.inputs, solve=solve), "numpy")
     last = (len(values),) if asked else ()
-    floors = np.full(len(values) + len(asked), MET)
+    floors = np.full(len(values) + len(asked), COMPUTED)
     return Events(lambda t, x: function.many(t, x, p), floors, either=last, touch=touch)
 
 
@@ -202,7 +201,7 @@ def _at_edge(equations: Equations, found: Trajectory, p: np.ndarray) -> Trajecto
         return found
     left = measure(equations.system, tuple(edge.vanishes for edge in edges), p)(found.t[-1:], found.x[-1:])[0]
     k = int(np.argmin(left))
-    if left[k] > 2 * NEAR:
+    if left[k] > 2 * AT_AN_EDGE:
         return found
     message = stopped_at(edges[k], found.t[-1])
     phases = (*found.phases[:-1], replace(found.phases[-1], ended_by=message))
@@ -228,7 +227,7 @@ def _watched(
 ) -> Trajectory:
     """The run, ended where dependent coordinates or closing ties do not say how it goes on, and it went astray."""
     system = equations.system
-    rtol, atol = (max(tolerance / 1000, 1e-13) for tolerance in (how.rtol, how.atol))
+    rtol, atol = (max(tolerance / 1000, FINEST_RUN) for tolerance in (how.rtol, how.atol))
 
     def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
         finer = integrate(

@@ -40,11 +40,11 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.solve import linear
 
 WORK = 50_000  # products of terms for making one formula readable
 LONG = 400  # characters from which a formula is no easier to read than it came
-SAME = 1e-9  # between a value in floats and one with 50 digits, where nothing vanishes in between
 State = Mapping[Node, Scalar]
 
 
@@ -176,7 +176,7 @@ class Situation:
             sharp = evaluate(closed, {x: precise(value) for x, value in values.items()}, fifty_digits())[0]
         except (NoValue, ZeroDivisionError):
             return False
-        return math.isclose(found, float(sharp), rel_tol=SAME, abs_tol=SAME)
+        return math.isclose(found, float(sharp), rel_tol=COMPUTED, abs_tol=COMPUTED)
 
     def at(self, formula: Expression, state: State) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.

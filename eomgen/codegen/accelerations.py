@@ -17,9 +17,7 @@ from eomgen.mechanics.assembly import Assembly
 from eomgen.mechanics.loops.freedom import rank_of_ties
 from eomgen.mechanics.system import System
 from eomgen.symbolic.numeric.dense import of_one_length
-
-DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
-SHARE = 1e-6  # of a multiplier in a combination that vanishes
+from eomgen.symbolic.numeric.tolerances import RANK, SHARE
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ def _left(J: np.ndarray) -> np.ndarray:
     if not J.size or not np.all(np.isfinite(J)):
         return np.eye(len(J))
     U, sizes, _ = np.linalg.svd(of_one_length(J))
-    left: np.ndarray = U[:, int(np.sum(sizes > DEPENDENT)) :].T
+    left: np.ndarray = U[:, int(np.sum(sizes > RANK)) :].T
     return left
 
 

@@ -6,10 +6,9 @@ same in C. Both walk along lists of what is not zero (codegen/sparsity.py).
 
 from __future__ import annotations
 
-DEPENDENT = 1e-11  # of a row's pivot: the squared sine of its angle to the rows before it
-SINGULAR = 1e-14  # of a diagonal entry
-LOST = 1e-6  # of a diagonal entry: below it M is not relied on without the rows
-NOTHING = 1e-28  # of the largest pivot, the square of a length: rounding
+from eomgen.symbolic.numeric.tolerances import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED
+
+TOLERANCES = ("PIVOT", "ROUNDING", "DEGENERATE", "ROUNDING_SQUARED")  # that these functions name
 
 
 def solve_bordered(M, J, f, g, zeros=None):
@@ -47,9 +46,9 @@ def _factors(M, J, zeros):
 
     With f + J^T W g in the place of f the solution is the same.
     """
-    for where, least in zip(zeros, (LOST, SINGULAR), strict=True):
+    for where, least in zip(zeros, (DEGENERATE, ROUNDING), strict=True):
         partners, reach, rows = where
-        weights = [0] * len(J) if least == LOST else _weights(M, J)
+        weights = [0] * len(J) if least == DEGENERATE else _weights(M, J)
         L = _weighted(M, J, weights, reach)
         if _factored(L, partners, least):
             Y = [_forward(L, row, partners, places) for row, places in zip(J, reach, strict=True)]
@@ -94,7 +93,7 @@ def _weights(M, J):
     masses = [M[i][i] for i in range(len(M))]
     mean = sum(masses) / len(M) if J and sum(masses) > 0 else 1
     sizes = [sum(c * c / (m if m > 0 else mean) for c, m in zip(row, masses, strict=True)) for row in J]
-    nothing = NOTHING * max(sizes, default=0)
+    nothing = ROUNDING_SQUARED * max(sizes, default=0)
     return [1 / size if size > nothing else 0 for size in sizes]
 
 
@@ -157,11 +156,11 @@ def _flexibility(L, Y, rows):
 def _multiplier_factors(S):
     """(S factored in place, its rows in the order of elimination): largest pivot first, dependent rows passed over."""
     first, order = [S[m][m] for m in range(len(S))], []
-    nothing = NOTHING * max(first, default=0)
+    nothing = ROUNDING_SQUARED * max(first, default=0)
     left = [m for m in range(len(S)) if first[m] > nothing]
     while left:
         pivot = max(left, key=lambda m: S[m][m] / first[m])
-        if not S[pivot][pivot] > DEPENDENT * first[pivot]:
+        if not S[pivot][pivot] > PIVOT * first[pivot]:
             break
         left.remove(pivot)
         order.append(pivot)

@@ -16,9 +16,8 @@ from eomgen.codegen.targets.base import Vector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 
-TOLERANCE = 1e-12
-WORST = 1e-9  # an ill-conditioned state proves nothing
 TRIES = 60
 PARTIAL = 2  # states, at most, at which some result has no value
 NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there has none either
@@ -79,7 +78,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
-    return Vector(t, x, p, inputs if with_inputs and inputs else None, (), TOLERANCE, a)
+    return Vector(t, x, p, inputs if with_inputs and inputs else None, (), SOLVED, a)
 
 
 def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | None:
@@ -96,9 +95,9 @@ def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | 
     known = [(a, b) for a, b in zip(found, result, strict=True) if b == b]
     largest = max(1.0, *(abs(b) for _, b in known)) if known else 1.0
     error = max((abs(a - b) for a, b in known), default=0.0) / largest
-    if not error < WORST or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
+    if not error < COMPUTED or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
         return None
-    return replace(state, result=result, tolerance=float(max(TOLERANCE, 10 * error)))
+    return replace(state, result=result, tolerance=float(max(SOLVED, 10 * error)))
 
 
 def _right(program: Program, exact: dict[Node, Fraction]) -> tuple[float, ...]:

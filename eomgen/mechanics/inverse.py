@@ -31,9 +31,9 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve import cramer
 
-DEPENDENT = 1e-7  # what is left of a unit row that others make up
 NAME = "name the actuated coordinates or inputs, one for each degree of freedom"
 
 
@@ -177,7 +177,7 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     state = generic_state(ties)
     A = _numbers([x for column in columns for x in column], state, nu)
     J = _numbers([x for row in ties.J for x in row], state, nu)
-    whole, own = (dense.rank(rows, smallest=DEPENDENT) for rows in (np.vstack([A, J]), J))
+    whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     told = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:
         raise UsageError(f"{told}: {nu - whole} would be moved by nothing", mend=NAME)

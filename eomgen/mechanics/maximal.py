@@ -33,8 +33,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
 from eomgen.symbolic.numeric.dense import independent, solution, without_rounding
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-
-REDUNDANT = 1e-11  # singular values below which a closing row follows from others
+from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 State = dict[Node, Any]
 
@@ -118,8 +117,8 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     J = without_rounding(A[multipliers, speeds])
     A[:, multipliers] *= np.any(J, axis=1)  # what says nothing pushes nothing
     A[multipliers, speeds] = J
-    regular = independent(J, smallest=REDUNDANT)
-    return solution(A, right, regular=regular, smallest=REDUNDANT)[speeds]
+    regular = independent(J, smallest=LEAST_CHANGE)
+    return solution(A, right, regular=regular, smallest=LEAST_CHANGE)[speeds]
 
 
 def _put_bodies(numbers: Numbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:

@@ -22,10 +22,10 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted, symbo
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import CARRIED
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import has_period, roots, vanishes
 
-AGREES = 1e-8  # of an exact value with the number found before, relative to it and 1
 LIMIT = 20_000  # products of terms for making one equation readable
 PAGE = 1000  # characters of a root, and of an equation of a loop that is solved for one
 SHORT = 40  # characters of a root that is put into other equations first
@@ -52,7 +52,7 @@ class Located:
     def agrees(self, x: Scalar, node: Node) -> bool:
         """Whether x is worth what the node is worth there."""
         number = self.numbers.get(node, math.nan)
-        return abs(self.value(x) - number) <= AGREES * (1 + abs(number))
+        return abs(self.value(x) - number) <= CARRIED * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
         """The candidate that the node is worth there, whole turns added where the equation does not see them.

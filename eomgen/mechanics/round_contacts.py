@@ -18,12 +18,12 @@ from typing import Any
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import chosen, function, inner, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.solve.cramer import components
 
 STEPS = 6  # of Newton's method; each doubles the number of right digits
 REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding
 LEAST = Fraction(1, 10**30)  # an N below it is none [N]
-NONE = 1e-25  # of the largest entry, below which one is zero at a generic state
 
 Pair = tuple[Scalar, ...]
 Values = Callable[[Sequence[Scalar]], Sequence[Any]]
@@ -63,7 +63,7 @@ def _slopes(pairs: Mapping[Node, Pair], symbols: tuple[Node, ...], values: Value
     """G_rs, what vanishes at a generic state left out."""
     rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
     flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
-    least, worth = NONE * max(flat, default=0), iter(flat)
+    least, worth = ZERO_AT_50 * max(flat, default=0), iter(flat)
     kept = [[[g if next(worth) > least else 0 for g in slopes] for slopes in row] for row in rows]
     return [list(zip(*row, strict=True)) for row in kept]
 

@@ -28,13 +28,13 @@ from eomgen.symbolic.expression.derivative import depends_on, jacobian, substitu
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.numeric.tolerances import SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
 
 Push = PointForce | Couple
 
 LONG = 60  # characters of a gap that is not printed
 STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
-MEETS = 1e-12  # a gap at the model's own values, below which points that stand still meet
 
 
 @dataclass(frozen=True)
@@ -244,7 +244,7 @@ def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
 def _is_met(motion: Motion, gap: Scalar) -> bool:
     """Whether bodies that all stand still meet at the model's own values: 0.2 and r with r = 0.2."""
     worth = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
-    return worth is not None and abs(worth) < MEETS
+    return worth is not None and abs(worth) < SOLVED
 
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:

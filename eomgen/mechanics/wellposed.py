@@ -19,12 +19,7 @@ from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-
-REGULAR = 1e-9  # of the least eigenvalue of M, its diagonal 1: below it M is looked at closely
-FAINT = 1e-12  # of an entry of the diagonal of M, against the largest: it may be rounding
-NOTHING = 1e-60  # the same of 50 digits: a sum of squares that cancel
-IDLE = 1e-13  # of the least singular value of M and J, against the largest
-STILL = 1e-6  # of a speed, against the largest
+from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
 
 State = dict[Node, Any]
 
@@ -107,9 +102,9 @@ def _has_energy(assembly: Assembly, state: State) -> bool:
     values = {node: float(x) for node, x in state.items()}
     M = np.array(evaluate([x for row in assembly.M for x in row], values, FLOAT)).reshape(len(assembly.M), -1)
     sizes = np.diag(M)
-    if not np.all(np.isfinite(M)) or not np.all(sizes > FAINT * max(sizes)):
+    if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
         return False
-    return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > REGULAR)
+    return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > RANK)
 
 
 def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | None:
@@ -118,10 +113,10 @@ def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | Non
     entries = evaluate([x for row in (*assembly.M, *assembly.J) for x in row], state, fifty_digits())
     rows = np.array(entries, dtype=float).reshape(-1, len(u))
     sizes = np.diag(rows[: len(u)])
-    scale = 1 / np.sqrt(np.where(sizes > NOTHING * max(sizes), sizes, 1.0))
+    scale = 1 / np.sqrt(np.where(sizes > SQUARED_AT_50 * max(sizes), sizes, 1.0))
     M, J = scale[:, None] * rows[: len(u)] * scale, rows[len(u) :] * scale
     _, values, directions = np.linalg.svd(np.vstack([M, of_one_length(J)]))
-    if values[-1] > IDLE * values[0]:
+    if values[-1] > SUMMED * values[0]:
         return None
     least = scale * directions[-1]
     return dict(zip(u, least / np.max(np.abs(least)), strict=True))
@@ -129,10 +124,10 @@ def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | Non
 
 def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
     """Which body turns idly, or which coordinates move nothing."""
-    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > STILL]
+    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > SHARE]
     names = ", ".join(f"'{name}'" for name in moving)
     for link in system.motion.links:
-        if max(abs(w) for w in _spin(link, u, state)) > STILL:
+        if max(abs(w) for w in _spin(link, u, state)) > SHARE:
             what = f"body '{link.name}' can turn about an axis about which it has no inertia"
             mend = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
             return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", mend=mend)

@@ -17,9 +17,8 @@ from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.numeric.evaluation import FLOAT, ZERO_AT_50, NoValue, evaluate, fifty_digits
-
-ROUNDED = 1e-9  # what counts as zero of a number that comes from doubles
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 
 def known_parameters(scope: Scope) -> dict[Node, float]:

@@ -16,7 +16,7 @@ from eomgen.mechanics.contacts import CLOSED
 from eomgen.mechanics.friction import frictions, rubbing_contacts, sizes_of
 from eomgen.mechanics.kinematics import spin_between
 from eomgen.mechanics.loops.closure import generic_state, on_spheres
-from eomgen.mechanics.maximal import REDUNDANT, free_body_accelerations
+from eomgen.mechanics.maximal import free_body_accelerations
 from eomgen.mechanics.reacting.equilibrium import imbalance
 from eomgen.mechanics.reacting.reactions import reactions_of
 from eomgen.mechanics.system import System
@@ -25,10 +25,9 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of
 from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution, weighted, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LEAST_CHANGE
 
-FLOAT_TOLERANCE = 1e-9  # of a dense solve in double precision, relative
 SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
-DIFFERENCE_TOLERANCE = 1e-18  # of a central difference with a step of 1e-15 at 50 digits
 TRIES = 20
 
 State = dict[Node, Any]
@@ -46,7 +45,7 @@ def eliminated_rows(system: System) -> Check:
         rates = zip((row for row, _ in gaps), system.scope.time_derivative(tuple(x for _, x in gaps)), strict=True)
         size = 1 + sum(abs(x) for x in evaluate(system.scope.rates, state, fifty_digits()))
         for row, rate in (*((row, row.velocity) for row in rows), *rates):
-            if abs(evaluate((rate,), state, fifty_digits())[0]) > DIFFERENCE_TOLERANCE * size:
+            if abs(evaluate((rate,), state, fifty_digits())[0]) > DIFFERENCE_AT_50 * size:
                 return f"row {row.number} of '{row.tie}' opens"
         return ""
 
@@ -109,7 +108,7 @@ def twists(system: System) -> Check:
             spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
             velocity = apply(transposed(R_now), vector_of(rates[9:12]))
             pairs = zip(twist, (*spin, *velocity), strict=True)
-            if any(abs(a - b) > DIFFERENCE_TOLERANCE * (1 + abs(a)) for a, b in pairs):
+            if any(abs(a - b) > DIFFERENCE_AT_50 * (1 + abs(a)) for a, b in pairs):
                 return f"the twist of '{link.name}' is not the rate of its pose"
         return ""
 
@@ -132,7 +131,7 @@ def free_bodies(system: System, assembly: Assembly) -> Check:
 
     def check(state: State) -> str:
         free = free_body_accelerations(system, state)
-        return _difference("a", free, accelerations_at(assembly, state), FLOAT_TOLERANCE)
+        return _difference("a", free, accelerations_at(assembly, state), COMPUTED)
 
     return _at_a_state(system, "accelerations agree with those of the free bodies", "floating point", check)
 
@@ -172,7 +171,7 @@ def _holds(law: tuple[Scalar, ...], assembly: Assembly, state: State) -> bool:
     a = [digits.number(1) * float(value) for value in accelerations_at(assembly, state)]
     values = evaluate(law, state | dict(zip(assembly.symbols.a, a, strict=True)), digits)
     F, factor, *N = map(float, values)
-    return math.isclose(F, factor * math.hypot(*N), rel_tol=FLOAT_TOLERANCE, abs_tol=FLOAT_TOLERANCE)
+    return math.isclose(F, factor * math.hypot(*N), rel_tol=COMPUTED, abs_tol=COMPUTED)
 
 
 def balance(system: System, assembly: Assembly) -> Iterable[Check]:
@@ -202,7 +201,7 @@ def code(system: System, assembly: Assembly, rhs: RightHandSide) -> Check:
         )
         rates = [float(v) for v in evaluate(system.scope.rates, state, fifty_digits())]
         dx = rhs(float(state[symbols.t]), x, p, inputs)
-        return _difference("dx", dx, np.concatenate([rates, accelerations_at(assembly, state)]), FLOAT_TOLERANCE)
+        return _difference("dx", dx, np.concatenate([rates, accelerations_at(assembly, state)]), COMPUTED)
 
     return _at_a_state(system, f"the emitted code ({rhs.target}) returns the symbols' numbers", "floating point", check)
 
@@ -226,8 +225,8 @@ def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
     if k == 0:
         return np.linalg.solve(M, right)
     bordered = np.block([[M, -J.T], [J, np.zeros((k, k))]])
-    regular = independent(J, smallest=REDUNDANT)
-    return solution(bordered, right, regular=regular, smallest=REDUNDANT)[:n]
+    regular = independent(J, smallest=LEAST_CHANGE)
+    return solution(bordered, right, regular=regular, smallest=LEAST_CHANGE)[:n]
 
 
 def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:

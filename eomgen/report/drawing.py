@@ -24,6 +24,7 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 BODY, LOAD, REACTION = "#2f5d8a", "#b03a2e", "#2e7d4f"
 FILL, PAPER = "#c9d8e8", "#ffffff"
@@ -68,7 +69,7 @@ class Sketch:
         points = [self.position((link.name, own[name])) for name in part.points]
         if link.joint is not None and link.joint.carries_reaction:
             seat = self.position((link.name, link.point))
-            points[:0] = [] if any(math.dist(seat, p) < 1e-9 for p in points) else [seat]
+            points[:0] = [] if any(math.dist(seat, p) < COMPUTED for p in points) else [seat]
         return [_straightened(np.array(points))] if len(points) > 1 else []
 
     def outlines(self, link: Link) -> list[tuple[np.ndarray, str]]:
@@ -188,7 +189,7 @@ def _beside(line: np.ndarray) -> Place:
     a, b = _longest(line)
     x, y = b - a
     across = np.array([-y, x]) / (np.hypot(x, y) or 1.0)
-    up = across if across[1] > 1e-9 or (abs(across[1]) <= 1e-9 and across[0] < 0) else -across
+    up = across if across[1] > COMPUTED or (abs(across[1]) <= COMPUTED and across[0] < 0) else -across
     return float(AWAY * up[0]), float(AWAY * up[1])
 
 
@@ -202,7 +203,7 @@ def _straightened(points: np.ndarray) -> np.ndarray:
     """The points in their order; where all of them lie on one line, the two ends."""
     along = points[np.argmax(np.linalg.norm(points - points[0], axis=1))] - points[0]
     r = points - points[0]
-    if np.max(np.abs(r[:, 0] * along[1] - r[:, 1] * along[0])) > 1e-9 * float(along @ along):
+    if np.max(np.abs(r[:, 0] * along[1] - r[:, 1] * along[0])) > COMPUTED * float(along @ along):
         return points
     run = r @ along
     return points[[int(np.argmin(run)), int(np.argmax(run))]]

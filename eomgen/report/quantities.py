@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
+
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"))
 ROOMY = 10.0  # a prefix is used from so many of its units on
 FIGURES = 4
@@ -50,4 +52,4 @@ def scale_of(values: Iterable[float]) -> Scale:
 def figures(value: float) -> str:
     """A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05."""
     text = f"{value:.{FIGURES}g}"
-    return f"{float(text):.10f}".rstrip("0").rstrip(".") if 1e-6 <= abs(value) < 1e8 else text
+    return f"{float(text):.10f}".rstrip("0").rstrip(".") if SMALLEST_PLAIN <= abs(value) < 1e8 else text

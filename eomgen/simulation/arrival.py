@@ -13,15 +13,24 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import RunFailed
+from eomgen.symbolic.numeric.tolerances import (
+    BEST,
+    COMPUTED,
+    DIFFERENCE_STEP,
+    FINE_RUN,
+    FINEST_RUN,
+    ITERATED,
+    ROOT,
+    ROUGH_RUN,
+    ROUNDING,
+    SAME_PLACE,
+    SUMMED,
+)
 
 Function = Callable[[float, np.ndarray], Any]
 
-TOLERANCE = 1e-12  # of one step
-ROUGHLY = 1e-5  # of g: the tolerance with which it is integrated
 SAMPLES = 16  # of g in one step
 MOST_STEPS = 4000
-NOISE = 1e-10  # of g, against its largest value, below which it may be rounding
-TOUCHES = 1e-9  # of g at an extremum, against its largest value, below which it is zero there
 POLISHINGS = 3
 
 
@@ -82,7 +91,7 @@ def first_arrival(
 def _holds(valid: Function, solver: Any, found: Arrival | None) -> bool:
     """Whether the path may be followed up to the zero, or to the end of the step."""
     if found is not None:
-        return float(valid(found.s, found.x)) > -TOUCHES
+        return float(valid(found.s, found.x)) > -COMPUTED
     return float(valid(solver.t, solver.y[:-1])) > 0
 
 
@@ -106,9 +115,9 @@ class _Path:
             return np.append(rate, slope if np.isfinite(slope) else 0.0)
 
         steepness = abs(self._slope(Arrival(s, x), np.asarray(self.f(s, x), dtype=float)))
-        scale = max(abs(first), 0.01 * steepness, 1e-9)
-        atol = np.append(np.full(len(x), TOLERANCE), ROUGHLY * (scale if np.isfinite(scale) else 1.0))
-        return DOP853(both, s, np.append(x, 0.0), end, rtol=TOLERANCE, atol=atol)
+        scale = max(abs(first), 0.01 * steepness, COMPUTED)
+        atol = np.append(np.full(len(x), FINE_RUN), ROUGH_RUN * (scale if np.isfinite(scale) else 1.0))
+        return DOP853(both, s, np.append(x, 0.0), end, rtol=FINE_RUN, atol=atol)
 
     def in_step(self, solver: Any, old: np.ndarray, at_start: float | None) -> Arrival | None:
         """The first zero in the step just made.
@@ -128,13 +137,13 @@ class _Path:
         if not np.all(np.isfinite(values)):
             return None
         self.largest = max(self.largest, float(np.max(np.abs(values))))
-        if at_start is not None and abs(at_start) > NOISE * self.largest:
+        if at_start is not None and abs(at_start) > ITERATED * self.largest:
             self.last = at_start
         for k in range(1, len(s)):
             found = self._between(dense, s, values, k)
             if found is not None:
                 return self._polished(solver.t_old, old, found)
-            if abs(values[k]) > NOISE * self.largest:
+            if abs(values[k]) > ITERATED * self.largest:
                 self.last = values[k]
         return None
 
@@ -144,7 +153,7 @@ class _Path:
 
         if np.sign(self.last) * np.sign(values[k]) < 0:
             if np.sign(values[k - 1]) * np.sign(values[k]) < 0:
-                return float(brentq(lambda z: float(self.g(z, dense(z))), s[k - 1], s[k], xtol=1e-15, rtol=8.9e-16))
+                return float(brentq(lambda z: float(self.g(z, dense(z))), s[k - 1], s[k], xtol=BEST, rtol=ROOT))
             return float(s[k - 1])
         a, b = abs(values[k - 2]) if k > 1 else np.inf, abs(values[k])
         if self.last and k > 1 and abs(values[k - 1]) <= min(a, b):
@@ -161,12 +170,12 @@ class _Path:
         def slope(z: float) -> float:
             return float(self.g(z + h, dense(z + h)) - self.g(z - h, dense(z - h)))
 
-        near = minimize_scalar(size, bounds=(low, high), method="bounded", options={"xatol": 1e-13})
-        if near.fun > TOUCHES * self.largest:
+        near = minimize_scalar(size, bounds=(low, high), method="bounded", options={"xatol": SUMMED})
+        if near.fun > COMPUTED * self.largest:
             return None
         h = 1e-3 * (high - low)
         left, right = max(low, near.x - 10 * h), min(high, near.x + 10 * h)
-        return float(brentq(slope, left, right, xtol=1e-15)) if slope(left) * slope(right) < 0 else float(near.x)
+        return float(brentq(slope, left, right, xtol=BEST)) if slope(left) * slope(right) < 0 else float(near.x)
 
     def _polished(self, begin: float, x: np.ndarray, s: float) -> Arrival:
         """The state at s by steps that end there, then Newton's method on g."""
@@ -175,7 +184,7 @@ class _Path:
             rate = np.asarray(self.f(best.s, best.x), dtype=float)
             value, slope = float(self.g(best.s, best.x)), self._slope(best, rate)
             step = -value / slope if slope else 0.0
-            if value == 0 or not np.isfinite(step) or abs(step) > 1e-6 * (1 + abs(best.s)):
+            if value == 0 or not np.isfinite(step) or abs(step) > SAME_PLACE * (1 + abs(best.s)):
                 break  # there, or at an extremum, where g has no slope
             best = Arrival(best.s + step, best.x + step * rate)
         return best
@@ -183,7 +192,7 @@ class _Path:
     def _slope(self, at: Arrival, rate: np.ndarray) -> float:
         """dg/ds by a central difference along the path."""
         fastest = float(np.max(np.abs(rate) / (1 + np.abs(at.x)), initial=0.0))
-        h = 1e-5 / max(fastest, 1e-3)
+        h = DIFFERENCE_STEP / max(fastest, 1e-3)
         ahead, behind = self.g(at.s + h, at.x + h * rate), self.g(at.s - h, at.x - h * rate)
         return float(ahead - behind) / (2 * h)
 
@@ -192,5 +201,5 @@ class _Path:
 
         if end == begin:
             return x
-        run = solve_ivp(self.f, (begin, end), x, method="DOP853", rtol=1e-13, atol=1e-14)
+        run = solve_ivp(self.f, (begin, end), x, method="DOP853", rtol=FINEST_RUN, atol=ROUNDING)
         return run.y[:, -1]

@@ -11,14 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.simulation.arrival import Arrival, NeverReached, first_arrival
+from eomgen.symbolic.numeric.tolerances import BEST, COMPUTED, DIFFERENCE_STEP, GAP_CLOSED, RANK_NEARBY, WIDE_STEP
 
 STEP = 1e-3  # from a singular start, of the leading coordinate
 AROUND = 12.0  # steps: how far other coordinates may move in this one
 GUESSES = 60
-CLOSED = 1e-12  # of the gaps
 REACHES = (1.0, 10.0, 100.0)  # how far the leading coordinate is followed, in sizes of its start and 1
-SINGULAR = 1e-7  # of the slopes of the gaps, against those a little aside
-NEARER = 1 - 1e-9  # what the second sense must undercut: of two mirror images the first one is taken
+NEARER = 1 - COMPUTED  # what the second sense must undercut: of two mirror images the first one is taken
 ASIDE = 0.1
 
 Vector = Callable[[np.ndarray], np.ndarray]
@@ -78,7 +77,7 @@ class Configurations:
         if not regular:
             s = sense * STEP
             q = self._beside(q, s, near)
-        if y(q + (0 if not regular else 1e-4 * sense * self.direction(q))) < 0:
+        if y(q + (0 if not regular else WIDE_STEP * sense * self.direction(q))) < 0:
             raise NeverReached("the motion does not go this way from the start")
         return first_arrival(
             lambda s, q: self.direction(q),
@@ -100,14 +99,14 @@ class Configurations:
         aside = q.copy()
         aside[list(self.sought)] += ASIDE
         usual = np.linalg.norm(self._slopes(aside))
-        return bool(np.min(np.linalg.svd(self._slopes(q), compute_uv=False), initial=usual) > SINGULAR * usual)
+        return bool(np.min(np.linalg.svd(self._slopes(q), compute_uv=False), initial=usual) > RANK_NEARBY * usual)
 
     def _slopes(self, q: np.ndarray) -> np.ndarray:
         """d gaps / d sought coordinates, by central differences."""
         columns = []
         for k in self.sought:
             h = np.zeros(len(q))
-            h[k] = 1e-5 * (1 + abs(q[k]))
+            h[k] = DIFFERENCE_STEP * (1 + abs(q[k]))
             columns.append((self.gaps(q + h) - self.gaps(q - h)) / (2 * h[k]))
         return np.array(columns).T
 
@@ -142,8 +141,8 @@ class Configurations:
             moved[sought] = x
             return self.gaps(moved)
 
-        run = least_squares(gaps, q[sought], xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        if np.max(np.abs(run.fun), initial=0.0) > CLOSED:
+        run = least_squares(gaps, q[sought], xtol=BEST, ftol=BEST, gtol=BEST)
+        if np.max(np.abs(run.fun), initial=0.0) > GAP_CLOSED:
             return None
         closed = q.copy()
         closed[sought] = run.x

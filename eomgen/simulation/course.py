@@ -24,8 +24,9 @@ from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, path
 from eomgen.simulation.events import Crossing
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.settling import settled
-from eomgen.simulation.stage import GAP, Stage, Values, smallest_speed
+from eomgen.simulation.stage import Stage, Values, smallest_speed
 from eomgen.simulation.stages import Stages
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ def _apart(gap: float, rate: float, values: Values) -> bool:
 
 
 def _length(values: Values) -> float:
-    return 1e2 * GAP * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+    return 1e2 * COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
 
 
 def _refuse_overlap(course: Course, t: float, values: Values) -> None:

@@ -14,8 +14,7 @@ import numpy as np
 from eomgen.simulation.stage import Stage
 from eomgen.simulation.stretch import Stretch
 from eomgen.symbolic.expression.graph import Scalar
-
-MET = 1e-9  # of a condition's size, at which it holds
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 Condition = Callable[[Stage], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a stage."""
@@ -25,7 +24,7 @@ def met(stretch: Stretch, until: Condition) -> bool:
     """Whether the condition holds where a phase ends, and did not hold all along."""
     sizes = _sizes(stretch, until)
     largest = float(np.max(sizes))
-    return bool(sizes[-1] <= MET * max(1.0, largest) < largest)
+    return bool(sizes[-1] <= COMPUTED * max(1.0, largest) < largest)
 
 
 def ended(stretches: Iterable[Stretch], until: Condition) -> Iterator[Stretch]:
@@ -45,7 +44,7 @@ def ended(stretches: Iterable[Stretch], until: Condition) -> Iterator[Stretch]:
 def _begins(before: Stretch, stretch: Stretch, until: Condition) -> bool:
     """Whether the condition holds where a phase begins, and did not at the end of the one before."""
     last, largest = (float(find(_sizes(before, until))) for find in (lambda sizes: sizes[-1], np.max))
-    enough = MET * max(1.0, largest)
+    enough = COMPUTED * max(1.0, largest)
     return last > enough and bool(_sizes(stretch, until)[0] <= enough)
 
 

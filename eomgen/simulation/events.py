@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.symbolic.numeric.tolerances import CARRIED, ITERATED, SOLVED
+
 PARTS = 8  # of a step: how often the functions are looked at
 EDGE = 1e-3  # of a part: so near to the ends of a step they are looked at too, so that no extremum hides there
 TOUCH = 100.0  # relative tolerances of a step; so near to zero, against its largest value, a function touches it
@@ -32,7 +34,7 @@ class Events:
     values: Callable[[np.ndarray, np.ndarray], np.ndarray]
     floors: np.ndarray
     either: tuple[int, ...] = ()
-    touch: float = 1e-8
+    touch: float = CARRIED
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,7 @@ def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, close
         return None
     from scipy.optimize import minimize_scalar
 
-    least = minimize_scalar(value, bounds=(t[0], t[2]), method="bounded", options={"xatol": 1e-10 * (t[2] - t[0])})
+    least = minimize_scalar(value, bounds=(t[0], t[2]), method="bounded", options={"xatol": ITERATED * (t[2] - t[0])})
     return float(least.x), float(least.fun)
 
 
@@ -153,7 +155,7 @@ def _root(value: Callable[[float], float], before: float, after: float) -> float
         return before
     if not value(after) < 0:
         return after
-    xtol = 1e-12 * (after - before)
+    xtol = SOLVED * (after - before)
     root = float(brentq(value, before, after, xtol=xtol, rtol=RELATIVE))
     step = float(xtol + RELATIVE * abs(root))
     while root < after and value(root) > 0:

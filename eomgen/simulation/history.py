@@ -16,8 +16,9 @@ from eomgen.simulation.stage import Stage, Values
 from eomgen.simulation.stepping import Stepping
 from eomgen.simulation.stretch import Stretch
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import FINE_RUN
 
-FINE = Stepping(rtol=1e-12, atol=1e-12)
+FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN)
 
 
 @dataclass(frozen=True)

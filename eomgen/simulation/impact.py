@@ -21,9 +21,10 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, rows_of
-from eomgen.simulation.stage import RATE, Values, slack_name
+from eomgen.simulation.stage import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,7 @@ def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u:
         held: rows (J, sigma) of the ties.
         contacts: those of each contact; the first of them can only push.
     """
-    size = RATE * max(1.0, float(np.max(np.abs(u), initial=0.0)))
+    size = COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
     for count in range(len(contacts), -1, -1):
         for active in combinations(range(len(contacts)), count):
             after, impulses = _bordered(M, np.vstack([held, *(contacts[i] for i in active)]), u)
@@ -127,5 +128,5 @@ def _bordered(M: np.ndarray, J: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, 
     """(u+, impulses) with M (u+ - u) = J^T Lam and J u+ + sigma = 0; J holds sigma in its last column."""
     J, sigma = J[:, :-1], J[:, -1]
     columns = np.linalg.solve(M, J.T) if len(J) else np.zeros((len(u), 0))
-    impulses = np.linalg.lstsq(J @ columns, -(J @ u + sigma), rcond=1e-11)[0] if len(J) else np.zeros(0)
+    impulses = np.linalg.lstsq(J @ columns, -(J @ u + sigma), rcond=LEAST_CHANGE)[0] if len(J) else np.zeros(0)
     return u + columns @ impulses, impulses

@@ -17,9 +17,9 @@ from eomgen.simulation.solvers import METHODS, Slope
 from eomgen.simulation.stepping import MOST_STEPS, STABILIZATIONS, Run, Stepping
 from eomgen.simulation.track import measured
 from eomgen.simulation.trajectory import Phase, Trajectory
+from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001
-STANDING = 1e-12  # energy that moves, against all energy, below which it is rounding
 
 Function = Callable[[np.ndarray, np.ndarray], Any]
 
@@ -31,8 +31,8 @@ def integrate(
     x0: Sequence[float] | np.ndarray | None = None,
     p: Sequence[float] | np.ndarray | None = None,
     inputs: Callable[[float], Sequence[float]] | None = None,
-    rtol: float = 1e-9,
-    atol: float = 1e-9,
+    rtol: float = RUN,
+    atol: float = RUN,
     method: str = "DOP853",
     samples: int | Sequence[float] | None = SAMPLES,
     energy: Function | None = None,
@@ -114,7 +114,7 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
     E = T + V
     moving = max(np.max(np.abs(T), initial=0.0), np.max(np.abs(V - V[:1]), initial=0.0))
     standing = np.max(np.abs(E), initial=0.0)
-    scale = moving if moving > STANDING * standing else standing
+    scale = moving if moving > SOLVED * standing else standing
     return float(np.max(np.abs(E - E[:1]), initial=0.0) / (scale if scale > 0 else 1.0))
 
 

@@ -12,8 +12,7 @@ from typing import Any
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.expressions import Expression
-
-NEAR = 1e-12  # of the time, within which an instant counts as reached
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 
 def knots_of(model: Model) -> tuple[float, ...]:
@@ -31,7 +30,7 @@ def knots_of(model: Model) -> tuple[float, ...]:
 def step(solver: Any, knots: Sequence[float], end: float) -> None:
     """One step of an integrator, to the next of the knots at the latest; it goes on until the end."""
     if knots:
-        k = bisect_right(knots, solver.t + NEAR * max(1.0, abs(solver.t)))
+        k = bisect_right(knots, solver.t + SOLVED * max(1.0, abs(solver.t)))
         solver.t_bound = min([end, *knots[k : k + 1]])
         if hasattr(solver, "_lsoda_solver"):
             solver._lsoda_solver._integrator.rwork[0] = solver.t_bound

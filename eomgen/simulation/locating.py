@@ -35,11 +35,9 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import DEGENERATE, GAP_CLOSED, SOLVED
 from eomgen.symbolic.solve.solving import roots, vanishes
 
-RESTING = 1e-11  # of the rates at the start, against those of a configuration nearby
-TOLERANCE = 1e-12  # of a given time
-UNDETERMINED = 1e-6  # of a determinant at the start, below which rates by it are noise
 MEND = "give it a speed"
 
 State = dict[Node, Scalar]
@@ -166,7 +164,7 @@ class Locating:
         blocks = singular_blocks(self.system.elimination, self.system.scope)
         for block in blocks:
             determinant = self._function(block.determinant)
-            if abs(determinant(arrival.s, arrival.x)) < UNDETERMINED * abs(determinant(self.t0, self._x0)):
+            if abs(determinant(arrival.s, arrival.x)) < DEGENERATE * abs(determinant(self.t0, self._x0)):
                 raise RunFailed(
                     f"{block} at that instant ({PLACE})",
                     mend="leave out `dependent`: then their rates belong to the state",
@@ -176,7 +174,7 @@ class Locating:
         """The first t, from the start on, at which a condition on t alone holds."""
         t = self.system.symbols.t
         values = [float(evaluate((root,), self.values, FLOAT)[0]) for root in roots(self.condition, t)]
-        later = [value for value in values if value >= self.t0 - TOLERANCE]
+        later = [value for value in values if value >= self.t0 - SOLVED]
         if later:
             return min(later)
         if values:
@@ -199,7 +197,7 @@ class Locating:
         if self._is_moved_by_time:
             return False
         size = float(np.max(np.abs(usual), initial=0.0)) if np.all(np.isfinite(usual)) else 1.0
-        return float(np.max(np.abs(dx), initial=0.0)) <= RESTING * size
+        return float(np.max(np.abs(dx), initial=0.0)) <= GAP_CLOSED * size
 
     @property
     def _is_moved_by_time(self) -> bool:

@@ -23,12 +23,12 @@ from eomgen.simulation.nearness import Lookout, Nearness
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import Rate, Slope
 from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping, march
+from eomgen.symbolic.numeric.tolerances import FINEST_RUN, WIDE_STEP
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
 WINDOWS = ((20.0, 12), (40.0, 16), (10.0, 10))  # (W / tau, the degree)
 LOWER = 4  # degrees less, for the comparison
 SHORTEST = 4.0  # W / tau
-FINE = 1e-13  # tolerance of the motion that is continued
 AGREE = 100.0  # tolerances of one step by which both polynomials may differ
 REACHES = 4  # how often the far side is sought further on
 BEYOND = 0.5  # of the nearness: how far from the singular position the far side is
@@ -202,7 +202,7 @@ def _passed(
 def _time_to(flow: Flow, t: float, x: np.ndarray, nearness: Nearness) -> float | None:
     """tau = s/|s'|: how soon the nearness would vanish; None where it does not fall."""
     dx = flow.f(t, x)
-    step = 1e-4 * (1 + np.max(np.abs(x))) / (1 + np.max(np.abs(dx)))
+    step = WIDE_STEP * (1 + np.max(np.abs(x))) / (1 + np.max(np.abs(dx)))
     here, after = nearness.at(t, x), nearness.at(t + step * 1e-2, x + step * 1e-2 * dx)
     slope = (after - here) / (step * 1e-2)
     return here / -slope if slope < 0 else None
@@ -238,7 +238,7 @@ def _before(flow: Flow, t: float, x: np.ndarray, window: float, many: int) -> tu
 
     nodes = t - window / 2 * (1 - np.cos(np.pi * np.arange(many) / (many - 1)))
     with np.errstate(all="ignore"):
-        run = solve_ivp(flow.f, (t, t - window), x, method="DOP853", rtol=FINE, atol=FINE, t_eval=nodes)
+        run = solve_ivp(flow.f, (t, t - window), x, method="DOP853", rtol=FINEST_RUN, atol=FINEST_RUN, t_eval=nodes)
     good = run.success and run.y.shape[1] == many and np.all(np.isfinite(run.y))
     return nodes, run.y.T if good else None
 

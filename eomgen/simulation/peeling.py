@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SINGULAR = 1e-7  # of a column's distance from those before it, against its length
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 
 
 @dataclass(frozen=True)
@@ -79,5 +79,5 @@ def _regular(R: np.ndarray, block: np.ndarray) -> np.ndarray:
     pivots = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2))
     if pivots.shape[1] < size:
         return np.zeros(len(R), dtype=bool)
-    found: np.ndarray = (pivots > SINGULAR * np.linalg.norm(block, axis=1)).all(axis=1)
+    found: np.ndarray = (pivots > RANK_NEARBY * np.linalg.norm(block, axis=1)).all(axis=1)
     return found

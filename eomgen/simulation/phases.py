@@ -12,7 +12,7 @@ from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition as Ending
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.course import Course, Standing, at_start, course_of
-from eomgen.simulation.endings import MET, Condition, ended
+from eomgen.simulation.endings import Condition, ended
 from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.joined import joined
@@ -22,10 +22,10 @@ from eomgen.simulation.stage import Stage
 from eomgen.simulation.stepping import Run, Stepping
 from eomgen.simulation.stretch import Stretch
 from eomgen.simulation.trajectory import Trajectory
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_PHASES = 1000
 MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
-AT_ONCE = 1e-9  # s
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def passed(course: Course, here: Standing, plan: Plan) -> Iterator[Stretch]:
         if crossing is None or crossing.index >= len(stage.bounds):
             yield Stretch(here, stage, _at_edge(stage, run), None, None)
             return
-        soon = run.end - here.t <= AT_ONCE
+        soon = run.end - here.t <= COMPUTED
         hasty, count = hasty + 1 if soon else 0, count + 1
         ended = frozenset({*(ended if soon else ()), here.configuration})
         after = course.after(stage, crossing, ended)
@@ -123,7 +123,7 @@ def _events(stage: Stage, t: float, x: np.ndarray, plan: Plan) -> Events | None:
     def values(t: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.hstack([stage.watched(t, x), function.many(t, stage.inner(x), stage.p)])
 
-    floors = np.append(floors, np.full(len(further), MET))
+    floors = np.append(floors, np.full(len(further), COMPUTED))
     return Events(values, floors, either=(len(floors) - 1,) if asked else (), touch=TOUCH * plan.how.rtol)
 
 

@@ -28,10 +28,10 @@ from eomgen.mechanics.system import System
 from eomgen.mechanics.tree import branches_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import weighted, without_rounding
+from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
 
 ITERATIONS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed
-DAMPED = 1e-5  # singular values, of rows of length 1, from which on the ties resist too little to be trusted
 SHORT = 400  # operations up to which a function is not worth a compiler
 ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
 
@@ -139,7 +139,7 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
         moved = J.T
     S = J @ moved
     d = 1 / np.sqrt(np.where(np.diagonal(S) > 0, np.diagonal(S), 1.0))
-    lam = d * np.linalg.solve(d[:, None] * S * d + DAMPED**2 * np.eye(len(S)), d * right)
+    lam = d * np.linalg.solve(d[:, None] * S * d + NEARLY_SINGULAR**2 * np.eye(len(S)), d * right)
     found: np.ndarray = moved @ lam
     return found
 

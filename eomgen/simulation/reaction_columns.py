@@ -22,15 +22,13 @@ from eomgen.mechanics.reacting.balance import BodyEquation
 from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reacting.reactions import Reactions
 from eomgen.simulation.first_slide import begun
-from eomgen.simulation.peeling import SINGULAR, Step, solved, steps_of
+from eomgen.simulation.peeling import Step, solved, steps_of
 from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import balanced
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE, SUMMED, UNBALANCED
 
-TRACELESS = 1e-6  # of an asked reaction's part in the null space
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once
-ROUNDING = 1e-13  # of the largest entry of its column, below which an entry of A is none: no row is made of these
-BALANCED = 1e-6  # of what the bodies' equations leave over, against their right side
 
 
 @dataclass(frozen=True)
@@ -154,7 +152,7 @@ def _solutions(
     if not A.shape[2] or not sound.any():
         found[sound] = 0.0
         return found
-    A = np.where(np.abs(A) > ROUNDING * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
+    A = np.where(np.abs(A) > SUMMED * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
     rho, regular = solved(A[sound], b[sound], order(A[sound]))
@@ -168,12 +166,12 @@ def _solutions(
 def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
     """C rho, nan where the null space of A has a part in it; all nan where no finite rho holds the balance."""
     U, sizes, V = np.linalg.svd(A)
-    rank = int(np.sum(sizes > SINGULAR * max(sizes, default=0.0)))
+    rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
     rho = V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
-    if np.linalg.norm(A @ rho - b) > BALANCED * np.linalg.norm(b):
+    if np.linalg.norm(A @ rho - b) > UNBALANCED * np.linalg.norm(b):
         return np.full(len(C), np.nan)
     traces = np.abs(C @ V[rank:].T).max(axis=1, initial=0.0)
-    return np.where(traces > TRACELESS * np.linalg.norm(C, axis=1), np.nan, C @ rho)
+    return np.where(traces > SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
 
 
 # -- over a trajectory -----------------------------------------------------------------------------

@@ -19,9 +19,10 @@ from eomgen.mechanics.reacting.balance_solution import Indeterminate
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, on_pieces
-from eomgen.simulation.stage import FORCE, Stage, Values, smallest_speed
+from eomgen.simulation.stage import Stage, Values, smallest_speed
 from eomgen.simulation.stages import OPEN, Stages
 from eomgen.simulation.watching import stopped_below
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_TRIED = 2000  # configurations at one instant
 STICKS = Mode(sense=0)
@@ -144,7 +145,7 @@ def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int]
     asked = [contact for contact in stage.contacts if contact.name not in apart]
     signs = [_signs(stage.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
     return not any(
-        force < -FORCE * forces or acceleration < -FORCE * accelerations
+        force < -COMPUTED * forces or acceleration < -COMPUTED * accelerations
         for pairs in signs
         for force, acceleration in pairs
     )
@@ -163,7 +164,7 @@ def _standing(
             accelerations[name] = found[name, "slide'"]
         elif not mode.closed and name not in apart:
             accelerations[name] = found[name, "gap''"]
-    return tuple(name for name, a in accelerations.items() if abs(a) <= FORCE * size)
+    return tuple(name for name, a in accelerations.items() if abs(a) <= COMPUTED * size)
 
 
 def _signs(

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from eomgen.simulation.trajectory import Trajectory
+from eomgen.symbolic.numeric.tolerances import RUN, RUNS_AGREE
 
-AGREE = 1e-7  # of the motion's size: a difference between both integrations that is none
 STEPS = 100  # tolerances of one step by which they may differ
 NEAR = 0.02  # of a determinant's largest value: how small a minimum may be the sign of a zero
 LAST = 1e-2  # of a determinant's largest value: where it is larger, the end of a run has another reason
@@ -29,7 +29,7 @@ def ended_where_singular(
     what: Sequence[str],
     again: Again,
     *,
-    rtol: float = 1e-9,
+    rtol: float = RUN,
     place: str = "a dead centre or a change point",
 ) -> Trajectory:
     """The run, cut where a vanishing determinant led it astray.
@@ -47,7 +47,7 @@ def ended_where_singular(
         values = np.nan_to_num(np.reshape(determinants(run.t, run.x), (len(run.t), len(what))))
     largest = np.max(np.abs(values), axis=0)
     values = values / np.where(largest > 0, largest, 1.0)
-    allowed = max(AGREE, STEPS * rtol)
+    allowed = max(RUNS_AGREE, STEPS * rtol)
     zeros = sorted((i, k) for k in range(len(what)) for i in _zeros(values[:, k]) if not _carried(run, i))
     for i, number in zeros:
         if not _passed(run, i, again, allowed):

@@ -17,10 +17,10 @@ from eomgen.mechanics.system import System
 from eomgen.simulation.solvers import Slope
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 LONG = 60_000  # operations from which on differences are cheaper than the derivative
 SHORT = 400  # operations up to which a function is not worth a compiler
-DEPENDENT = 1e-12  # of the largest singular value: rows that follow from others
 
 
 def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | None = None) -> Slope | None:
@@ -44,7 +44,7 @@ def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | No
         rates, residual, M, J = np.split(np.asarray(function(t, x, p)), ends)
         M, J = M.reshape(n, n), J.reshape(k, n)
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
-        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=DEPENDENT)[0]
+        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=LEAST_CHANGE)[0]
         return np.vstack([rates.reshape(-1, m), solved[:n]])
 
     return slope

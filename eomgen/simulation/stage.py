@@ -28,12 +28,10 @@ from eomgen.simulation.solvers import Slope
 from eomgen.simulation.watching import Bound, Watch, stopped_below
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
 
 Values = Mapping[str, float]
 """Coordinates and rates by name, those of every phase alike: {"theta": 0.1, "theta'": 0}."""
-
-FORCE, RATE, GAP = 1e-9, 1e-9, 1e-9  # what is rounding, against the size of forces, speeds, places
-TINY = 1e-13
 
 
 @dataclass(frozen=True)
@@ -180,9 +178,9 @@ class Stage:
         """What is rounding in each of the bounds, at one state; a speed that has just come near to 0 may pass it."""
         n = len(self.coordinates)
         places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
-        size = {"force": FORCE * self.sizes(t, x)[0], "rate": RATE * rates, "gap": GAP * places}
+        size = {"force": COMPUTED * self.sizes(t, x)[0], "rate": COMPUTED * rates, "gap": COMPUTED * places}
         passing = [float(stopped_below(self.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.bounds]
-        return np.maximum([size[bound.unit] for bound in self.bounds], passing) + TINY
+        return np.maximum([size[bound.unit] for bound in self.bounds], passing) + SUMMED
 
     def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The bounds along the states, n x k; nan where a reaction has no single value."""
@@ -231,7 +229,7 @@ class Stage:
             return False
         x = self.state(values)
         _, size = self.sizes(t, x)
-        return bool(np.max(np.abs(self.rate(t, x)), initial=0.0) <= RATE * size)
+        return bool(np.max(np.abs(self.rate(t, x)), initial=0.0) <= COMPUTED * size)
 
     # -- compiled --------------------------------------------------------------------------------
 
@@ -283,7 +281,7 @@ class Stage:
 
 def smallest_speed(values: Values) -> float:
     """What is no rounding any more, against the fastest of the rates."""
-    return RATE * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
+    return COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
 def slack_name(tie: str) -> str:

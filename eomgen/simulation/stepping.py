@@ -17,11 +17,11 @@ from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import NotFinite, Rate, Slope, put, solver_of
 from eomgen.simulation.track import Track
 from eomgen.simulation.trajectory import Status
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_RTOL, RUN
 
 MOST_STEPS = 10_000_000
 LOOKED_OUT = -1  # the index of a crossing that a lookout found
 SHARE = 0.1  # of the tolerances of a run: those of one step
-LEAST = 2.3e-14  # rtol, below which rounding is larger
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
 STABILIZATIONS = ("projection", "baumgarte", "none")
 
@@ -44,8 +44,8 @@ class Stepping:
     """
 
     method: str = "DOP853"
-    rtol: float = 1e-9
-    atol: float = 1e-9
+    rtol: float = RUN
+    atol: float = RUN
     most_steps: int = MOST_STEPS
     stabilization: str = "projection"
     every: int | None = None
@@ -54,7 +54,7 @@ class Stepping:
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
-        return replace(self, rtol=max(SHARE * self.rtol, LEAST), atol=SHARE * self.atol)
+        return replace(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
 
     def hold(self, spheres: Sequence[Places], projection: Projection | None) -> Hold:
         """What keeps the states of one run where they belong; the norms of quaternions always."""
@@ -212,7 +212,7 @@ def _stepped(
 
 def _failed(f: Rate, solver: Any) -> tuple[Status, str]:
     """Why the step size went to nothing."""
-    ahead = solver.t + 1e-9 * max(1.0, abs(solver.t))
+    ahead = solver.t + COMPUTED * max(1.0, abs(solver.t))
     if not np.all(np.isfinite(f(ahead, solver.y + (ahead - solver.t) * f(solver.t, solver.y)))):
         return "not finite", _no_value(solver.t)
     return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero."

@@ -9,15 +9,15 @@ import numpy as np
 
 from eomgen.codegen.spheres import Places
 from eomgen.simulation.arrival import Arrival, NeverReached
-from eomgen.simulation.endings import MET
 from eomgen.simulation.events import TOUCH, Events
 from eomgen.simulation.nearness import Nearness
 from eomgen.simulation.passages import Flow, march_across
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import Rate
 from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping
+from eomgen.symbolic.numeric.tolerances import COMPUTED, FAIR_RUN, FINE_RUN
 
-TOLERANCES = (1e-12, 1e-10)  # of one step; the coarser where the finer does not come across
+TOLERANCES = (FINE_RUN, FAIR_RUN)  # of one step; the coarser where the finer does not come across
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
 MOST_STEPS = 4000  # of a search
 FINE = Stepping(rtol=TOLERANCES[0], atol=TOLERANCES[0], most_steps=100_000)
@@ -57,7 +57,7 @@ class Way:
         message = "not looked for"
         for tolerance in TOLERANCES:
             how = replace(FINE, rtol=tolerance, atol=tolerance, most_steps=MOST_STEPS)
-            events = Events(condition, np.full(1, MET), (0,), TOUCH * tolerance)
+            events = Events(condition, np.full(1, COMPUTED), (0,), TOUCH * tolerance)
             for horizon in HORIZONS:
                 run, passed = self.until(self.t0 + horizon, how, events)
                 if run.crossing is not None and run.crossing.index != LOOKED_OUT:

@@ -30,11 +30,11 @@ from eomgen.report.reaction_payload import null_space
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
+from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.verbs.given import assignments, nearest
 from eomgen.verbs.outcome import Outcome, listed
 
 NO_VALUE = "it has no single value at the start"
-ROUNDING = 1e-14  # of the largest reaction: smaller numbers are 0
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
 
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import accumulate, chain
 
+from eomgen.codegen import solving
 from eomgen.codegen.sparsity import Places, Zeros
+from eomgen.symbolic.numeric import tolerances
 
 HEAD_TEXT = """\
 #include <string.h>
 
 enum {{ N = {n}, K = {k} }}; /* accelerations, multipliers */
+
+/* Shares below which a pivot is rounding, a diagonal entry is not relied on, a row depends on those before it. */
+{limits}
 
 /* What may not be zero in the factors of M, and in those of M + J^T W J: in column j of L the rows from
    partner[first[j]] up to partner[first[j + 1] - 1]; in row m of Y the places reach[start[m]], ...; at place j the
@@ -62,7 +67,7 @@ DENSE_TEXT = """\
 /* f becomes a of M a = f (upper triangle of M); all NAN where M is not positive definite */
 static void solve(double *M, double *f)
 {
-    if (factored(&ways[0], M, 1e-14)) {
+    if (factored(&ways[0], M, ROUNDING)) {
         for (int j = 0; j < N; j++) forward(&ways[0], M, j, f);
         backward(&ways[0], M, f);
         return;
@@ -79,7 +84,7 @@ static void inverted(double *size)
 {
     double nothing = 0;
     for (int m = 0; m < K; m++) if (size[m] > nothing) nothing = size[m];
-    nothing *= 1e-28;
+    nothing *= ROUNDING_SQUARED;
     for (int m = 0; m < K; m++) size[m] = size[m] > nothing ? 1/size[m] : 0;
 }
 
@@ -105,7 +110,7 @@ static const struct zeros *chosen(const double *M, const double *J, struct facto
     const struct zeros *z = &ways[1];
     memcpy(F->L, M, sizeof F->L);
     for (int m = 0; m < K; m++) F->weight[m] = 0;
-    if (factored(&ways[0], F->L, 1e-6)) return &ways[0];
+    if (factored(&ways[0], F->L, DEGENERATE)) return &ways[0];
     memcpy(F->L, M, sizeof F->L);
     weigh(M, J, F->weight);
     for (int m = 0; m < K; m++)
@@ -114,7 +119,7 @@ static const struct zeros *chosen(const double *M, const double *J, struct facto
                 const int i = z->reach[a], j = z->reach[b];
                 F->L[i*N + j] += F->weight[m]*J[m*N + i]*J[m*N + j];
             }
-    return factored(z, F->L, 1e-14) ? z : NULL;
+    return factored(z, F->L, ROUNDING) ? z : NULL;
 }
 
 static void exchange(double *a, double *b) { const double kept = *a; *a = *b; *b = kept; }
@@ -145,7 +150,7 @@ static void eliminated(struct factors *F)
     for (F->rank = 0; F->rank < K; F->rank++) {
         const int c = F->rank;
         int pivot = -1;
-        double best = 1e-11;
+        double best = PIVOT;
         for (int m = c; m < K; m++)
             if (S[m*K + m]*whole[m] > best) { best = S[m*K + m]*whole[m]; pivot = m; }
         if (pivot < 0) break;
@@ -256,8 +261,9 @@ static void solve(const double *M, const double *J, double *f, double *g)
 def solving_text(ways: tuple[Zeros, Zeros]) -> str:
     """The functions that a solve with these zeros needs."""
     n, k = len(ways[0].partners), len(ways[0].reach)
+    limits = "\n".join(f"#define {name} {getattr(tolerances, name)!r}" for name in solving.TOLERANCES)
     lists = ",\n".join(f"    {{ {', '.join(_lists(way))} }}" for way in ways)
-    return f"{HEAD_TEXT.format(n=n, k=k, ways=lists)}\n{SOLVE_TEXT}\n{BORDER_TEXT if k else DENSE_TEXT}"
+    return f"{HEAD_TEXT.format(n=n, k=k, limits=limits, ways=lists)}\n{SOLVE_TEXT}\n{BORDER_TEXT if k else DENSE_TEXT}"
 
 
 def _lists(way: Zeros) -> list[str]:

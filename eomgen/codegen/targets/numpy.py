@@ -13,6 +13,7 @@ from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
 from eomgen.codegen.targets.samples import python_samples
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric import tolerances
 
 SCALARS = {
     **{name: f"math.{name}" for name in "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()},
@@ -246,7 +247,8 @@ def _solving_text(solve: Solve) -> str:
     text = inspect.getsource(solving)
     sizes = f"SIZES = {len(solve.matrix)}, {len(solve.border)}  # accelerations, multipliers"
     zeros = f"ZEROS = {solve.lists!r}  # what may not be zero in the factors: (partners, reach, rows)"
-    return "\n".join([text[text.index("DEPENDENT") :], "", sizes, zeros, _SOLVED])
+    limits = [f"{name} = {getattr(tolerances, name)!r}" for name in solving.TOLERANCES]
+    return "\n".join([*limits, "", text[text.index("\ndef ") :], "", sizes, zeros, _SOLVED])
 
 
 TARGET = Target("numpy", python_text, files, load)

@@ -20,12 +20,10 @@ from eomgen.mechanics.loops.consistency import is_guess
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
 from eomgen.symbolic.solve.solving import vanishes
 
 ASIDE = 0.01  # by which a place of rest beside the first is sought
-FOLLOWS = 1e-8  # of a column of the scaled A
-ROUNDING = 1e-13  # of an entry of A against the largest of its row, below which it is 0
-MOVED = 1e-6  # of a coordinate
 
 
 @dataclass(frozen=True)
@@ -96,13 +94,13 @@ class _Near:
         floats |= dict(zip(self.statics.unknowns, map(float, place), strict=True))
         slopes = jacobian(self.statics.equations, self.statics.unknowns)
         A = self.statics.slopes(slopes, place[: len(self.statics.q)], floats)
-        A = dense.balanced(dense.without_noise(A, ROUNDING, axis=1))[0]
+        A = dense.balanced(dense.without_noise(A, SUMMED, axis=1))[0]
         n = len(self.statics.q)
         order = [*range(n, A.shape[1]), *sorted(range(n), key=self._place_in_order)]
-        kept = {order[i] for i in dense.independent_rows(A.T[order], FOLLOWS)}
+        kept = {order[i] for i in dense.independent_rows(A.T[order], RANK)}
         return [q for k, q in enumerate(self.statics.q) if k not in kept]
 
     def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
         """First what does not rest where it starts, then what nobody gave."""
-        still = abs(self.here[k] - self.guess[k]) <= MOVED * (1 + abs(self.guess[k]))
+        still = abs(self.here[k] - self.guess[k]) <= SAME_PLACE * (1 + abs(self.guess[k]))
         return bool(still), not is_guess(self.statics.system.scope.model, self.statics.q[k].name), -k

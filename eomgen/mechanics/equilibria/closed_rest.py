@@ -23,6 +23,7 @@ from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import solved
 from eomgen.symbolic.solve.solving import vanishes
@@ -32,7 +33,6 @@ MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those
 LONGEST = 600  # characters of these equations
 PATIENCE = 2  # places without a closed form, before equations are no more tried at others
 HALF = Fraction(1, 2)
-NEAR = 1e-9  # of an angle to a quarter turn, or of a coordinate to its start, at which that is tried exactly
 
 State = Mapping[Node, Scalar]
 
@@ -115,7 +115,7 @@ class ClosedForms:
             if q in turning:
                 candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
             candidates += [start_value(scope, scope.model.coordinates[q.name])] * starts
-            near = [x for x in candidates if abs(located.value(x) - number) <= NEAR * (1 + abs(number))]
+            near = [x for x in candidates if abs(located.value(x) - number) <= COMPUTED * (1 + abs(number))]
             if near:
                 found[q] = near[0]
         return found

@@ -15,11 +15,7 @@ from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-
-SAME = 1e-6  # of V and of the eigenvalues of K, against the largest
-FLAT = 1e-8  # of an eigenvalue, below which it is 0
-NOTHING = 1e-25  # of a quaternion's component, which is known to 50 digits
-NEAR = 1e-6  # distance of two places that are one
+from eomgen.symbolic.numeric.tolerances import CARRIED, SAME_PLACE, TINIEST, ZERO_AT_50
 
 
 def nearest_first(statics: StaticEquations, found: Sequence[np.ndarray], guess: np.ndarray) -> list[np.ndarray]:
@@ -56,7 +52,7 @@ def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.nd
         places = [statics.q.index(e) for e in four if e in statics.q]
         if places and float(z[places] @ guess[places]) < 0:
             z[places] = -z[places]
-        z[places] = np.where(abs(z[places]) < NOTHING, 0.0, z[places])
+        z[places] = np.where(abs(z[places]) < ZERO_AT_50, 0.0, z[places])
     return z
 
 
@@ -66,7 +62,7 @@ def _marks(statics: StaticEquations, slopes, z: np.ndarray, values: Mapping[Node
     J = statics.slopes(statics.J, z[:n], values)
     H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)
     _, sizes, axes = np.linalg.svd(J)
-    Z = axes[int(np.sum(sizes > FLAT * sizes[0])) :].T
+    Z = axes[int(np.sum(sizes > CARRIED * sizes[0])) :].T
     symbols = statics.system.symbols
     given = {**{x: 0.0 for x in (*symbols.q, *symbols.u)}, symbols.t: 0.0}
     (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
@@ -82,8 +78,8 @@ def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node,
 def _is_one(statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
     """Whether two places are the same, or of one family."""
     (z, marks), (y, others) = one, other
-    if np.all(abs(z - y)[: len(statics.q)] <= NEAR):
+    if np.all(abs(z - y)[: len(statics.q)] <= SAME_PLACE):
         return True
-    size = 1e-300 + np.max(abs(np.concatenate([marks, others])))
-    flat = np.min(abs(marks[1:]), initial=np.inf) <= FLAT * size
-    return bool(flat and np.all(abs(marks - others) <= SAME * size))
+    size = TINIEST + np.max(abs(np.concatenate([marks, others])))
+    flat = np.min(abs(marks[1:]), initial=np.inf) <= CARRIED * size
+    return bool(flat and np.all(abs(marks - others) <= SAME_PLACE * size))

@@ -14,10 +14,10 @@ from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.solve import cramer
 
 WORK = 20_000  # products of terms for P
-ZERO = 1e-9  # of a derivative against its size nearby, below which it is 0
 HIGHEST = 8  # derivative of V that is looked at
 MOST_COORDINATES = 6  # of ties along which derivatives are taken
 
@@ -48,7 +48,7 @@ class _Way:
         for order in range(1, HIGHEST + 1):
             value, size = self._value_and_size(P)
             sizes.append(size)
-            if abs(value) > ZERO * max(sizes) and order > 1:
+            if abs(value) > COMPUTED * max(sizes) and order > 1:
                 kind = STABLE if order % 2 == 0 and value < 0 else UNSTABLE
                 return kind, f"the first derivative of V that does not vanish is number {order}"
             P = sum((a * b for a, b in zip(gradient(P, self.statics.q), w, strict=True)), start=0)

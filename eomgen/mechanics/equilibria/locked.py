@@ -21,9 +21,8 @@ from eomgen.mechanics.kinematics import Motion
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import ASIDE_STEP, DEGENERATE
 
-LOCKED = 1e-6  # of the axes' determinant
-BESIDE = 1e-6  # how far from the place the moment is taken [rad]
 LEFT = 1e-3  # of the largest force nearby: a moment that is left
 
 State = Mapping[Node, float]
@@ -42,7 +41,7 @@ def is_balanced(statics: StaticEquations, place: State) -> bool:
     return all(
         _is_free(statics, motion, lock, state)
         for lock in locks_of(motion)
-        if abs(_numbers([lock.determinant], state)[0]) < LOCKED
+        if abs(_numbers([lock.determinant], state)[0]) < DEGENERATE
     )
 
 
@@ -56,7 +55,7 @@ def _is_free(statics: StaticEquations, motion: Motion, lock: Lock, state: dict[N
     left, largest = np.inf, 0.0
     for _ in range(3):
         aside = rng.uniform(0.5, 1, len(statics.q))
-        beside = _shifted(statics, state, BESIDE * aside)
+        beside = _shifted(statics, state, ASIDE_STEP * aside)
         W, D = _numbers(axes, beside).reshape(3, 3).T, _numbers(slopes, beside).reshape(3, -1)
         if np.linalg.matrix_rank(D) < 3:  # the angles are not free each: it cannot turn about n
             return True

@@ -13,8 +13,7 @@ from eomgen.model.contacts import contacts_of
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-
-PULLS = -1e-9  # of a reaction against the largest of its kind and 1
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
@@ -43,6 +42,6 @@ def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, 
             except Indeterminate:
                 continue
             known = all(x in values for x in symbols_of((value,)))
-            if known and evaluate((value,), values, FLOAT)[0] < PULLS:
+            if known and evaluate((value,), values, FLOAT)[0] < -COMPUTED:
                 found.append(component.owner)
     return tuple(dict.fromkeys(found))

@@ -18,6 +18,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
 from eomgen.symbolic.numeric.newton import Descent
+from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.solving import has_period
 
@@ -33,10 +34,7 @@ LONG = 500  # operations
 MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn freely
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
-SAME = 1e-6  # distance of two places that are one
 CLUSTER = 1e-3  # distance of an undecided box from a root, at which it belongs to that root
-SINGULAR = 1e-5  # of the ties: singular values below this part of the largest count as 0
-UNHELD = 1e-6  # of the forces: what singular ties leave, above which they hold it by forces without limit
 WORK = 20_000  # products of terms for the equation of one freedom
 
 
@@ -228,8 +226,8 @@ class _Search:
         if not J.size or not np.all(np.isfinite(J)):
             return True
         Q, *others = (self.statics.slopes((self.statics.Q,), z[:n] + d, self.floats)[0] for d in (0, 0.3, -0.2))
-        lam = np.linalg.lstsq(J.T, -Q, rcond=SINGULAR)[0]
-        return bool(np.all(abs(Q + J.T @ lam) <= UNHELD * np.nanmax(np.abs([Q, *others]))))
+        lam = np.linalg.lstsq(J.T, -Q, rcond=NEARLY_SINGULAR)[0]
+        return bool(np.all(abs(Q + J.T @ lam) <= UNBALANCED * np.nanmax(np.abs([Q, *others]))))
 
     # -- in order ----------------------------------------------------------------------------------
 
@@ -242,8 +240,8 @@ class _Search:
             for k, q in enumerate(self.statics.q):
                 if q in self._turning:
                     z[k] = -((-z[k] + math.pi) % math.tau - math.pi)
-                    z[k] = math.pi if abs(z[k] + math.pi) < SAME else z[k]
-            if not any(np.all(abs(z[:n] - other[:n]) <= SAME * (1 + abs(z[:n]))) for other in unique):
+                    z[k] = math.pi if abs(z[k] + math.pi) < SAME_PLACE else z[k]
+            if not any(np.all(abs(z[:n] - other[:n]) <= SAME_PLACE * (1 + abs(z[:n]))) for other in unique):
                 unique.append(z)
         unique.sort(key=lambda z: self._distance(z[:n]))
         return Places(tuple(unique), complete, where, self._turning if self.statics.q else frozenset())
@@ -260,4 +258,4 @@ def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """The multipliers for which Q + J^T lam is least; 0 where it has no value."""
     if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
         return np.zeros(len(J))
-    return np.linalg.lstsq(J.T, -Q, rcond=1e-9)[0]
+    return np.linalg.lstsq(J.T, -Q, rcond=RANK)[0]

@@ -35,8 +35,7 @@ from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-
-NOTHING = 1e-25  # of a coordinate or multiplier, which is known to 50 digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 State = Mapping[Node, Scalar]
 
@@ -286,4 +285,4 @@ class _Search:
         single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
         kept = dict(zip(statics.q, z[:n], strict=True))
         kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
-        return {node: 0.0 if abs(x) < NOTHING else float(x) for node, x in kept.items()}
+        return {node: 0.0 if abs(x) < ZERO_AT_50 else float(x) for node, x in kept.items()}

@@ -30,15 +30,12 @@ from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import balanced, without_noise
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE, RANK_NEARBY, ROUNDING, TINIEST
 from eomgen.symbolic.solve import cramer, linear
 from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one entry of K
 MOST_EXACT = 6  # freedoms of a K that is written exactly
-ZERO = 1e-9  # of an eigenvalue of the scaled K, or of a derivative, below which it is 0
-SINGULAR = 1e-7  # of the ties at the place: singular values below this part of the largest are 0
-NOISE = 1e-14  # of an entry of K against its terms
-ROUNDING = 1e-14  # of an entry of J against the largest of its row, below which it is 0
 
 Matrix = tuple[tuple[Any, ...], ...]
 """Of scalars, or of floats where they are not known exactly."""
@@ -141,13 +138,13 @@ class _Place:
         if not len(J):
             return list(range(n))
         scaled = balanced(without_noise(J, ROUNDING, axis=1))[0]
-        r = int(np.linalg.matrix_rank(scaled, tol=SINGULAR))
+        r = int(np.linalg.matrix_rank(scaled, tol=RANK_NEARBY))
         if r < self._generic_rank:
             return None
         following: list[int] = []
         for k in sorted(range(n), key=self._late):  # columns of the dependent coordinates, one by one
             more = [*following, k]
-            if len(following) < r and np.linalg.matrix_rank(scaled[:, more], tol=SINGULAR) > len(following):
+            if len(following) < r and np.linalg.matrix_rank(scaled[:, more], tol=RANK_NEARBY) > len(following):
                 following = more
         return [k for k in range(n) if k not in following]
 
@@ -184,7 +181,7 @@ class _Place:
         Z[list(along), range(len(along))] = 1
         others = [k for k in range(len(self.statics.q)) if k not in along]
         if others:
-            Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=1e-12)[0]
+            Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=LEAST_CHANGE)[0]
         return Z.T @ self._numbers(self._H) @ Z
 
     def _exact_K(self, along: Sequence[int]) -> Matrix | None:
@@ -236,7 +233,7 @@ class _Place:
         if self._is_conservative and self.chosen is None:
             return True
         K = self._numeric_K(self._numbers(self.statics.J), along)
-        return bool(np.all(abs(K - K.T) <= ZERO * np.max(abs(K), initial=0)))
+        return bool(np.all(abs(K - K.T) <= COMPUTED * np.max(abs(K), initial=0)))
 
     @cached_property
     def _is_conservative(self) -> bool:
@@ -266,17 +263,17 @@ class _Place:
     def _by_numbers(self, K: np.ndarray, single: bool) -> tuple[str, str]:
         size = np.abs(np.diagonal(K)) + np.max(np.abs(K), axis=1, initial=0)
         terms = self._size_of_terms
-        scale = 1 / np.sqrt(np.where(size > ZERO * terms, size, max(terms, 1e-300)))
+        scale = 1 / np.sqrt(np.where(size > COMPUTED * terms, size, max(terms, TINIEST)))
         eigenvalues = np.linalg.eigvalsh((K + K.T) / 2 * np.outer(scale, scale))
-        if np.min(eigenvalues) > ZERO:
+        if np.min(eigenvalues) > COMPUTED:
             return STABLE, "V has a minimum there"
-        if np.min(eigenvalues) < -ZERO:
+        if np.min(eigenvalues) < -COMPUTED:
             highest = np.max(eigenvalues)
-            if abs(highest) <= ZERO:
+            if abs(highest) <= COMPUTED:
                 return UNSTABLE, "V falls from there"
             return UNSTABLE, f"V has a {'maximum' if highest < 0 else 'saddle'} there"
         if self.chosen is not None and self.chosen.smooth:
-            return _drifting(int(np.sum(eigenvalues <= ZERO)), len(K))
+            return _drifting(int(np.sum(eigenvalues <= COMPUTED)), len(K))
         if single and self.chosen is None:
             return by_higher_derivatives(self.statics, self.state)
         return "undecided", "the second variation of V vanishes in some direction"
@@ -304,7 +301,7 @@ def _drifting(neutral: int, freedoms: int) -> tuple[str, str]:
 
 def _as_exact(K: np.ndarray, size: float) -> Matrix:
     """The entries, what is rounding of their terms 0."""
-    return tuple(tuple(float(x) if abs(x) > NOISE * size else 0.0 for x in row) for row in K)
+    return tuple(tuple(float(x) if abs(x) > ROUNDING * size else 0.0 for x in row) for row in K)
 
 
 def _minors(K: Matrix) -> tuple[Scalar, ...]:

@@ -31,11 +31,11 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 5_000  # products of terms for one equation
-RANK = 1e-9  # of the largest singular value of scaled rows, below which one is 0
 
 Row = tuple[Scalar, ...]
 State = Mapping[Node, Scalar]

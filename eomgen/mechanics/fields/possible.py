@@ -21,7 +21,8 @@ from eomgen.mechanics.system import System
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, vector_of
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, ZERO_AT_50
 
 CORRECTIONS = 4  # each adds about 15 digits
 SEEDS = (1, 2)
@@ -98,6 +99,6 @@ def _closed(J: Sequence[Scalar], rows: Sequence[Scalar], unknowns: Sequence[Node
         size = max(map(abs, left))
         if not size:
             break
-        step = np.linalg.lstsq(slopes, np.array([-float(x / size) for x in left]), rcond=1e-11)[0]
+        step = np.linalg.lstsq(slopes, np.array([-float(x / size) for x in left]), rcond=LEAST_CHANGE)[0]
         state = state | {node: state[node] + size * float(d) for node, d in zip(unknowns, step, strict=True)}
     return state

@@ -22,13 +22,11 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
 from eomgen.symbolic.solve.linear import solved
 
 WORK = 50_000  # products of terms for one entry
-RANK = 1e-9  # of a row's distance from those before it, against its length
-EXACT = 1e-20  # of an entry, against the largest of its row
 UNSAID = ""  # what nobody wrote, as the norm of a quaternion
-OPEN = 1e-9  # of a gap, against the size of the mechanism
 
 Values = Mapping[Node, Any]
 
@@ -147,7 +145,7 @@ def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
     rows = [(row, row.gap) for row in system.ties.closing if row.gap is not None]
     gaps = substituted([gap for _, gap in rows], places)
     for (row, _), gap in zip(rows, gaps, strict=True):
-        if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > OPEN:
+        if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > COMPUTED:
             along = f" along {row.component}" if row.component in ("x", "y", "z") else ""
             raise DerivationError(
                 f"'{row.tie}' does not close at the start: it is open by {value:.4g}{along}",
@@ -191,7 +189,7 @@ def solution_of(
         [line.right for line in lines],
         len(unknowns),
         lambda scalars: evaluate(scalars, values, fifty_digits()),
-        tolerance=EXACT if near is None else RANK,
+        tolerance=ELIMINATED_AT_50 if near is None else RANK,
     )
     result = {}
     for j, constant in found.constants.items():

@@ -13,14 +13,14 @@ from eomgen.mechanics.kinematics import Link
 from eomgen.mechanics.loops.freedom import is_particle
 from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.system import System
-from eomgen.mechanics.worth import ROUNDED, Worth
+from eomgen.mechanics.worth import Worth
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, dot, vector_of
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 from eomgen.symbolic.print.text import text_size
 
 WORK = 50_000  # products of terms for one value
@@ -149,7 +149,7 @@ class KinematicState:
     @cached_property
     def worth(self) -> Worth:
         """What scalars are worth."""
-        return Worth(self.system.scope, ZERO_AT_50 if self.exact else ROUNDED)
+        return Worth(self.system.scope, ZERO_AT_50 if self.exact else COMPUTED)
 
     def number(self, x: Scalar) -> float | None:
         """What a scalar is worth at the model's parameters; None where some have no value."""

@@ -15,8 +15,7 @@ from eomgen.mechanics.system import System
 from eomgen.model.forces.load import PointForce
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-
-IN_LINE = 1e-9  # of the triangle's area, against its longest sides
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 @dataclass(frozen=True)
@@ -69,6 +68,6 @@ def _is_left(system: System, state: Mapping[Node, Any], links: list[Link], pushe
     P, Q, R, *others = [complex(*numbers[k : k + 2]) for k in range(0, len(numbers), 2)]
     area = ((Q - P).conjugate() * (R - P)).imag
     size = max(abs(Q - P), abs(R - P)) ** 2
-    if any(abs(other - R) ** 2 > IN_LINE * size for other in others):
+    if any(abs(other - R) ** 2 > COMPUTED * size for other in others):
         return None
-    return None if abs(area) <= IN_LINE * size else area > 0
+    return None if abs(area) <= COMPUTED * size else area > 0

@@ -27,15 +27,19 @@ from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import (
+    BRANCHES_MEET,
+    COMPUTED,
+    GAP_CLOSED,
+    LEAST_CHANGE,
+    RANK_NEARBY,
+    SAME_PLACE,
+    SOLVED,
+)
 
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these
 STEPS = 40
-CLOSED = 1e-11  # of a gap
-SAME = 1e-6
-ROUNDING = 1e-12
-INDEPENDENT = 1e-7
-SINGULAR = 1e-4  # of the largest singular value: two branches meet there
 
 State = dict[Node, Any]
 
@@ -132,8 +136,8 @@ class _Search:
             phi, J = self._at(place)
             if not np.all(np.isfinite(J)):
                 return None
-            place = place - np.linalg.lstsq(J, phi, rcond=1e-12)[0]
-            if np.max(np.abs(phi)) < CLOSED:
+            place = place - np.linalg.lstsq(J, phi, rcond=LEAST_CHANGE)[0]
+            if np.max(np.abs(phi)) < GAP_CLOSED:
                 fits = self.is_regular(J) and self._is_upright(place)
                 return self.here + self.apart(place, self.here) if fits else None
         return None
@@ -142,7 +146,7 @@ class _Search:
         """Whether no other branch meets this one there: slopes against those at the start."""
         scale = np.linalg.norm(self._at(self.here)[1], axis=0)
         sizes = np.linalg.svd(J / np.where(scale > 0, scale, 1.0), compute_uv=False)
-        return bool(sizes[-1] > SINGULAR * sizes[0])
+        return bool(sizes[-1] > BRANCHES_MEET * sizes[0])
 
     def _is_upright(self, place: np.ndarray) -> bool:
         return all(x > 0 for x in evaluate(self.agreeing, self._state(place), FLOAT))
@@ -161,7 +165,7 @@ class _Search:
         return np.where(self.turns, (d + np.pi) % (2 * np.pi) - np.pi, d)
 
     def same(self, one: np.ndarray, other: np.ndarray) -> bool:
-        return bool(np.max(np.abs(self.apart(one, other))) < SAME)
+        return bool(np.max(np.abs(self.apart(one, other))) < SAME_PLACE)
 
     def branch(self, place: np.ndarray) -> Branch:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
@@ -173,8 +177,8 @@ class _Search:
 
 
 def _plain(x: float) -> float:
-    """A value found to CLOSED; what is rounding of it is 0."""
-    return float(x) if abs(x) > ROUNDING else 0.0
+    """A value found by an iteration; what is rounding of it is 0."""
+    return float(x) if abs(x) > SOLVED else 0.0
 
 
 def _search(system: System, start: Mapping[str, float]) -> _Search | None:
@@ -189,7 +193,7 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     known |= {q: start[q.name] for q in symbols.q}
     J = np.array(evaluate([x for row in jacobian(gaps, free) for x in row], known, FLOAT)).reshape(len(gaps), -1)
     sought = _following(system, free, J)
-    rows = independent_rows(J[:, [free.index(q) for q in sought]], INDEPENDENT)
+    rows = independent_rows(J[:, [free.index(q) for q in sought]], RANK_NEARBY)
     if not 0 < len(sought) <= MOST or len(rows) < len(sought):
         return None
     slopes = tuple(x for row in jacobian(gaps, sought) for x in row)
@@ -214,11 +218,11 @@ def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node
         return free[k].name not in dependent, not is_guess(system.scope.model, free[k].name), -k
 
     order = sorted(range(len(free)), key=place)
-    chosen = {order[i] for i in independent_rows(J[:, order].T, INDEPENDENT)}
+    chosen = {order[i] for i in independent_rows(J[:, order].T, RANK_NEARBY)}
     return [q for k, q in enumerate(free) if k in chosen]
 
 
 def _is_angle(gaps: Sequence[Any], known: State, q: Node) -> bool:
     """Whether a whole turn changes no gap."""
     before, after = (evaluate(gaps, {**known, q: known[q] + turn}, FLOAT) for turn in (0.3, 0.3 + 2 * math.pi))
-    return bool(np.allclose(before, after, atol=1e-9))
+    return bool(np.allclose(before, after, atol=COMPUTED))

@@ -19,10 +19,9 @@ from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
 STEPS = 60  # of the search
-CLOSED = 1e-28  # of a gap, against a size of 1
-ROUNDED = 1e-13  # of a gap that comes no nearer: redundant rows may differ by the rounding of given decimals
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 State = dict[Node, Any]
@@ -133,9 +132,9 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
         for _ in range(STEPS):
             phi = evaluate(gaps, state, fifty_digits())
             size = max((abs(x) for x in phi), default=0)
-            if size < CLOSED:
+            if size < CLOSED_AT_50:
                 return state
-            if left < ROUNDED and size > left / 2:
+            if left < SUMMED and size > left / 2:
                 return before
             before, left = state, size
             slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
@@ -158,5 +157,5 @@ def _moving(ties: Ties, state: State) -> State:
     values = [float(x) for x in evaluate(entries, state, fifty_digits())]
     k = len(ties.closing)
     J, open_rate = np.reshape(values[:-k], (k, len(u))), np.array(values[-k:])
-    step = np.linalg.lstsq(J, -open_rate, rcond=1e-11)[0]
+    step = np.linalg.lstsq(J, -open_rate, rcond=LEAST_CHANGE)[0]
     return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}

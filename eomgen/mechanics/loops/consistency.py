@@ -18,23 +18,19 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.loops.closure import CLOSED, closed, gaps_of, generic_state, movable, scattered_state
+from eomgen.mechanics.loops.closure import closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.ties import Ties
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.derivative import depends_on, jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, DEGENERATE, RANK, SAME_PLACE, SOLVED
 
 ROUNDS = 12  # of walking along the ties towards the values given
-STILL = 1e-12  # of a step of such a walk, against a turn of 1 rad
-DEPENDENT = 1e-9  # of a singular value of the balanced rows
-APART = 1e-6  # of two configurations
 LEAP = 1.0  # of a guess [rad, m], beyond which other guesses are tried too
 SPREADS = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
 EASY = 1e3  # times farther a guess may move than a given value, for the same
-ROUNDING = 1e-12  # of a coordinate
-FLAT = 1e-6  # of the largest slope: what moves the gaps by less counts as if it moved them by that
 
 State = dict[Node, Any]
 Tiers = Sequence[Sequence[Node]]
@@ -80,7 +76,7 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None)
         step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
         found = found + J[:, columns[k]] @ step[columns[k]]
     size = np.max(abs(J) @ abs(step) + abs(open_rate))
-    if np.any(abs(J @ step + open_rate) > DEPENDENT * size):
+    if np.any(abs(J @ step + open_rate) > RANK * size):
         return None
     return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
 
@@ -92,12 +88,12 @@ def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray, M: np.ndarray | 
     P = np.eye(len(J))
     if others.shape[1]:
         unit = others / _slopes(others)
-        P = P - unit @ np.linalg.pinv(unit, rcond=DEPENDENT)
+        P = P - unit @ np.linalg.pinv(unit, rcond=RANK)
     unit = _unit(J, M)
     rows = P @ J @ unit
-    rows = np.where(abs(rows) > DEPENDENT * np.max(abs(J @ unit)), rows, 0.0)
-    open_ = np.where(abs(P @ left) > ROUNDING * np.max(abs(left), initial=0.0), P @ left, 0.0)
-    found: np.ndarray = unit @ np.linalg.lstsq(rows, -open_, rcond=DEPENDENT)[0]
+    rows = np.where(abs(rows) > RANK * np.max(abs(J @ unit)), rows, 0.0)
+    open_ = np.where(abs(P @ left) > SOLVED * np.max(abs(left), initial=0.0), P @ left, 0.0)
+    found: np.ndarray = unit @ np.linalg.lstsq(rows, -open_, rcond=RANK)[0]
     return found
 
 
@@ -122,7 +118,7 @@ def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:
     J = [_slope(ties, each, free) for each in (state, _another(ties, state, free))]
     _, rows, columns = balanced(J[1])
     here, there = (np.linalg.svd(rows[:, None] * each * columns, compute_uv=False) for each in J)
-    smallest = DEPENDENT * np.max(there, initial=0.0)
+    smallest = RANK * np.max(there, initial=0.0)
     return bool(np.sum(here > smallest) >= np.sum(there > smallest))
 
 
@@ -132,7 +128,7 @@ def _another(ties: Ties, state: State, free: Sequence[Node]) -> State:
         other = generic_state(ties)
     except EomgenError:
         return scattered_state(ties)
-    same = all(abs(other[q] - state[q]) < APART for q in free)
+    same = all(abs(other[q] - state[q]) < SAME_PLACE for q in free)
     return scattered_state(ties) if same else other
 
 
@@ -168,7 +164,7 @@ def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
         values = evaluate(gaps, state, fifty_digits())
     except (NoValue, ZeroDivisionError):
         return None
-    if any(abs(x) > ROUNDING * max(size, FLAT) for x, size in zip(values, sizes, strict=True)):
+    if any(abs(x) > SOLVED * max(size, DEGENERATE) for x, size in zip(values, sizes, strict=True)):
         return None
     return replace(ties, rows=tuple(row for row in ties.rows if row not in others))
 
@@ -197,7 +193,7 @@ def _turned_back(ties: Ties, before: State, found: State, guessed: Sequence[Node
         if not turns:
             continue
         back = found | {q: found[q] - turns * turn}
-        if all(abs(x) <= CLOSED for x in evaluate(gaps_of(ties), back, fifty_digits())):
+        if all(abs(x) <= CLOSED_AT_50 for x in evaluate(gaps_of(ties), back, fifty_digits())):
             found = back
     return found
 
@@ -221,8 +217,8 @@ def _walked(
         assert found is not None
         J = _slope(ties, found, free) * sizes
         left = np.array([float(wanted[q] - found[q]) for q in free]) / sizes
-        along = left - np.linalg.pinv(J, rcond=DEPENDENT) @ (J @ left)
-        if np.max(abs(along), initial=0.0) < STILL:
+        along = left - np.linalg.pinv(J, rcond=RANK) @ (J @ left)
+        if np.max(abs(along), initial=0.0) < SOLVED:
             break
         moved = found | {q: found[q] + float(d) for q, d in zip(free, sizes * along, strict=True)}
         found = closed(ties, moved, free, sizes) or found
@@ -242,7 +238,7 @@ def _slope(ties: Ties, state: State, free: Sequence[Node]) -> np.ndarray:
 def _slopes(J: np.ndarray) -> np.ndarray:
     """How far each column moves the gaps, none of them nothing."""
     lengths = np.linalg.norm(J, axis=0)
-    return np.maximum(lengths, FLAT * (np.max(lengths, initial=0.0) or 1.0))
+    return np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0))
 
 
 def bilateral(ties: Ties, ending: Sequence[str], holds: Sequence[str]) -> Ties:

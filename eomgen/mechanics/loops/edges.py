@@ -9,8 +9,7 @@ from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.loads import SystemScene
 from eomgen.model.constraints.row import Edge
 from eomgen.symbolic.expression.graph import Scalar
-
-NEAR = 1e-5  # of what vanishes at an edge: a motion ends there
+from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE
 
 
 def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
@@ -21,7 +20,7 @@ def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
 
 def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
     """What is left until a motion ends at each of them."""
-    return tuple(edge.vanishes - Fraction(NEAR) for edge in edges)
+    return tuple(edge.vanishes - Fraction(AT_AN_EDGE) for edge in edges)
 
 
 def stopped_at(edge: Edge, t: float) -> str:

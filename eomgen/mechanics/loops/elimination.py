@@ -24,9 +24,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.dense import independent
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
-
-REDUNDANT = 1e-9  # of a balanced row: what is left of it, below which it follows from others
 
 Label = tuple[str, int]
 
@@ -125,7 +124,7 @@ def _determining_rows(ties: Ties, J_d: np.ndarray) -> list[int]:
     speeds = _dependent_speeds(ties)
     chosen: list[int] = []
     for i in sorted(range(len(ties.closing)), key=lambda i: (*_difficulty(ties, i, speeds), i)):
-        if len(chosen) < J_d.shape[1] and np.any(J_d[i]) and independent(J_d[[*chosen, i]], smallest=REDUNDANT):
+        if len(chosen) < J_d.shape[1] and np.any(J_d[i]) and independent(J_d[[*chosen, i]], smallest=RANK):
             chosen.append(i)
     return sorted(chosen)
 
@@ -148,7 +147,7 @@ def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept:
     """The rows that hold wherever the chosen ones do: J_i - J_d (J_d of the chosen)^-1 J_i of the chosen = 0."""
     found = []
     for i in range(len(J)):
-        if i not in rows and not independent(J[[*rows, i]][:, [*dependent, *kept]], smallest=REDUNDANT):
+        if i not in rows and not independent(J[[*rows, i]][:, [*dependent, *kept]], smallest=RANK):
             found.append(i)
     return found
 
@@ -156,7 +155,7 @@ def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept:
 def _released_by(J_d: np.ndarray) -> list[int]:
     """Of each row a dependent speed of its own that moves where that row alone is taken away: J_d^-1 is not zero."""
     moved = abs(np.linalg.inv(J_d)).T
-    found = cramer.matching([np.flatnonzero(row > REDUNDANT * max(row)).tolist() for row in moved])
+    found = cramer.matching([np.flatnonzero(row > RANK * max(row)).tolist() for row in moved])
     return [found[i] for i in range(len(J_d))]
 
 
@@ -164,7 +163,7 @@ def _undetermined(names: tuple[str, ...], J_d: np.ndarray, ties: Ties) -> Deriva
     """Names the coordinates that the rows leave free."""
     solved: list[int] = []
     for k in range(J_d.shape[1]):
-        if independent(J_d[:, [*solved, k]].T, smallest=REDUNDANT):
+        if independent(J_d[:, [*solved, k]].T, smallest=RANK):
             solved.append(k)
     left = [name for k, name in enumerate(names) if k not in solved]
     what = f"'{left[0]}' is dependent, but " + _why(ties, len(left))

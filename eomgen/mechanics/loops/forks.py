@@ -21,14 +21,10 @@ from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, RANK, SHARE, SOLVED, TINIEST
 
-DEPENDENT = 1e-9  # of a singular value of J, rows of length 1
-SHARE = 1e-6  # of a row in a combination that vanishes
-LEADS = 1e-8  # of n^T gamma, against the size of its terms
-MEETS = 1e-12  # of what is left of both equations, when speeds are sought
 TRIES = 12  # places from which they are sought
 STEPS = 50
-STILL = 1e-12  # a speed that is none, against 1
 
 State = Mapping[Node, Any]
 
@@ -65,7 +61,7 @@ def fork_at(ties: Ties, state: State) -> Fork | None:
     J = _matrix(ties, state)
     lengths = np.linalg.norm(J, axis=1, keepdims=True)
     U, sizes, _ = np.linalg.svd(of_one_length(J))
-    here = int(np.sum(sizes > DEPENDENT))
+    here = int(np.sum(sizes > RANK))
     if here == len(ties.closing):
         return None
     more = rank_of_ties(ties) - here
@@ -78,12 +74,12 @@ def fork_at(ties: Ties, state: State) -> Fork | None:
 
 def leads_on(ties: Ties, fork: Fork, state: State) -> bool:
     """Whether accelerations exist with these speeds: J a + gamma = 0."""
-    return bool(_Search(ties, fork, state, ()).size(np.zeros(0)) <= LEADS)
+    return bool(_Search(ties, fork, state, ()).size(np.zeros(0)) <= CARRIED)
 
 
 def at_rest(ties: Ties, state: State) -> bool:
     """Whether all speeds are 0 there."""
-    return all(abs(state[u]) <= STILL for u in ties.motion.scope.symbols.u)
+    return all(abs(state[u]) <= SOLVED for u in ties.motion.scope.symbols.u)
 
 
 def speeds_along(ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]) -> dict[Node, Any] | None:
@@ -127,9 +123,9 @@ class _Search:
     def _arrived(self, d: np.ndarray) -> np.ndarray | None:
         for _ in range(STEPS):
             f, size = self._left(d)
-            if size < MEETS:
+            if size < SOLVED:
                 return d
-            d = d - np.linalg.lstsq(self._slope(d), f, rcond=1e-10)[0]
+            d = d - np.linalg.lstsq(self._slope(d), f, rcond=RANK)[0]
         return None
 
     def _left(self, d: np.ndarray) -> tuple[np.ndarray, float]:
@@ -138,10 +134,10 @@ class _Search:
         values = self._at(d, (*(row.velocity for row in self.ties.closing), *self.ties.gamma))
         u = np.array([float(self._moved(d)[x]) for x in self.ties.motion.scope.symbols.u])
         J, fastest = np.abs(_matrix(self.ties, self.state)), np.max(np.abs(u), initial=0.0)
-        of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), 1e-300)
+        of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), TINIEST)
         own = np.abs(self.fork.left) @ (np.abs(values[k:]) + np.max(J, initial=0.0) * fastest**2)
         f = np.append(values[:k], self.fork.left @ values[k:])
-        sizes = np.append(np.full(k, of_speed), np.maximum(own, 1e-300))
+        sizes = np.append(np.full(k, of_speed), np.maximum(own, TINIEST))
         return f, float(np.max(np.abs(f) / sizes, initial=0.0))
 
     def _slope(self, d: np.ndarray) -> np.ndarray:

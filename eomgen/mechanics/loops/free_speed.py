@@ -27,9 +27,8 @@ from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.solve.solving import vanishes
-
-STILL = 1e-9  # of the parts of 2 A u_s + B, below which it is 0
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class FreeSpeed:
         """
         (bias,) = substituted((slope,), {self._speed: 0})
         found, own = self._number(slope), self._number(bias)
-        if abs(found) <= STILL * (abs(found - own) + abs(own)):
+        if abs(found) <= COMPUTED * (abs(found - own) + abs(own)):
             found = 0.0 if self.accelerations is None else self._number(self._acceleration)
         return -1 if found < 0 else 1
 

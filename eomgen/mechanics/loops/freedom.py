@@ -26,11 +26,10 @@ from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE
 
 Columns = tuple[tuple[Vector, Vector], ...]
 RowName = tuple[str, int]  # of a tie, from 1
-
-DEPENDENT = 1e-7  # what is left of a unit row that the rows before it make up
 
 
 @dataclass(frozen=True)
@@ -196,7 +195,7 @@ def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, .
         return ()
     entries = evaluate([x for row in ties.J for x in row], state or generic_state(ties), fifty_digits())
     J = np.array([float(x) for x in entries]).reshape(len(closing), len(ties.motion.scope.symbols.u))
-    kept = independent_rows(J, DEPENDENT)
+    kept = independent_rows(J, RANK_NEARBY)
     return tuple(
         Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
         for i, row in enumerate(closing)
@@ -209,5 +208,5 @@ def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> t
     if not kept:
         return ()
     shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
-    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > 1e-6)
+    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > SHARE)
     return tuple(name for name in dict.fromkeys(names) if name != tie)

@@ -30,12 +30,11 @@ from eomgen.symbolic.expression.derivative import gradient, jacobian, tangent
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import linear
 
-VANISHES = 1e-9  # of numbers from 50 digits, against their own size
 WORK = 5_000  # products of terms for making an integral readable
-NOISE = 1e-30  # of a bracket that vanishes, in 50 digits
 LONGEST = 400  # characters of a form that is integrated in closed form
 
 Form = tuple[Scalar, ...]
@@ -98,7 +97,7 @@ class _Forms:
         rows = [self.numbers(form) for form in (*self.held, *forms)]
         A = np.array([row / (np.linalg.norm(row) or 1) for row in rows])
         _, sizes, V = np.linalg.svd(A)
-        return V[int(np.sum(sizes > VANISHES)) :].T
+        return V[int(np.sum(sizes > RANK)) :].T
 
     def closes(self, form: Form, allowed: np.ndarray) -> bool:
         """dw(X, Y) = 0 of all that is allowed."""
@@ -106,7 +105,7 @@ class _Forms:
         slopes = self.numbers([x for row in jacobian(form, self.y) for x in row]).reshape(n, n)
         turning = slopes.T - slopes  # entry (a, b): dw_b/dy_a - dw_a/dy_b
         size = max(1.0, float(np.abs(turning).max(initial=0)))
-        return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < VANISHES * size)
+        return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < RANK * size)
 
 
 def integrability_of(ties: Ties) -> Integrability | None:
@@ -164,7 +163,7 @@ def _reached(forms: _Forms) -> int:
         newest = []
         for field in brackets:
             value = forms.numbers(field)
-            if np.linalg.norm(value) > NOISE and _rank([*(v for _, v in found), value]) > len(found):
+            if np.linalg.norm(value) > CERTAIN_AT_50 and _rank([*(v for _, v in found), value]) > len(found):
                 found.append((field, value))
                 newest.append(field)
     return len(found)
@@ -189,7 +188,7 @@ def _bracket(y: Sequence[Node], X: Form, Y: Form) -> Form:
 
 def _rank(rows: Sequence[np.ndarray]) -> int:
     scaled = [row / (np.linalg.norm(row) or 1) for row in rows]
-    return int(np.linalg.matrix_rank(np.array(scaled), tol=VANISHES)) if scaled else 0
+    return int(np.linalg.matrix_rank(np.array(scaled), tol=RANK)) if scaled else 0
 
 
 # -- in closed form --------------------------------------------------------------------------------

@@ -18,13 +18,11 @@ from eomgen.mechanics.system import System
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.tolerances import BEST, COMPUTED, OPEN_GAP, SAME_PLACE
 
 TRIES = 12
 REACH = 1.5  # how far from the place others are tried [rad, m]
-CLOSED = 1e-9  # of a gap
 FAILED = 1e6  # stands for a gap that has no value
-FLAT = 1e-6  # of a coordinate where a gap is least, which is known to the root of rounding
-OPEN = 1e-6  # of a gap that stays open, against the largest
 
 
 @dataclass(frozen=True)
@@ -54,13 +52,13 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     rng = Random(1)
     starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
     found = [search.least(start) for start in starts]
-    best = min(found, key=lambda place: (round(search.size(place) / CLOSED), float(np.linalg.norm(place - here))))
+    best = min(found, key=lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here))))
     values = search.at(best)[: len(gaps)]
     size = float(np.max(np.abs(values), initial=0.0))
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
-    named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN * size]
-    places = {q.name: float(x) if abs(x) > FLAT else 0.0 for q, x in zip(free, best, strict=True)}
-    return Miss(places, size if size > CLOSED else 0.0, tuple(dict.fromkeys(named)) if size > CLOSED else ())
+    named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
+    places = {q.name: float(x) if abs(x) > SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
+    return Miss(places, size if size > COMPUTED else 0.0, tuple(dict.fromkeys(named)) if size > COMPUTED else ())
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class _Search:
     def least(self, start: np.ndarray) -> np.ndarray:
         from scipy.optimize import least_squares
 
-        found: np.ndarray = least_squares(self.at, start, self._slopes_at, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+        found: np.ndarray = least_squares(self.at, start, self._slopes_at, xtol=BEST, ftol=BEST, gtol=BEST).x
         return found
 
     def _slopes_at(self, place: np.ndarray) -> np.ndarray:

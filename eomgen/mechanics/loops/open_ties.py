@@ -17,9 +17,7 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-
-OPEN = 1e-6  # of a gap or of its rate, against the size of its terms
-NEGLIGIBLE = 1e-9  # of a coordinate or speed: what would close a gap by so little is rounding
+from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP
 
 State = dict[Node, Any]
 
@@ -101,7 +99,7 @@ def excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:
     except (NoValue, ZeroDivisionError):
         return float("inf")
     steepest = float(max((abs(slope) for slope in slopes), default=0))
-    return value if value > OPEN * terms and value > NEGLIGIBLE * steepest else 0.0
+    return value if value > OPEN_GAP * terms and value > COMPUTED * steepest else 0.0
 
 
 def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:

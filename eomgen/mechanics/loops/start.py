@@ -20,7 +20,7 @@ from eomgen.mechanics.loops.closure import closed, gaps_of, number
 from eomgen.mechanics.loops.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.loops.elimination import dependent_coordinates
 from eomgen.mechanics.loops.forks import Fork, at_rest, fork_at, leads_on, speeds_along
-from eomgen.mechanics.loops.open_ties import NEGLIGIBLE, excess, listed, refuse_open_gaps, refuse_open_rates
+from eomgen.mechanics.loops.open_ties import excess, listed, refuse_open_gaps, refuse_open_rates
 from eomgen.mechanics.system import System
 from eomgen.mechanics.ties import Row, Ties
 from eomgen.mechanics.tree import branches_of
@@ -32,8 +32,7 @@ from eomgen.model.values import exact_parameters, first_guesses, numeric_paramet
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-
-ROUNDING = 1e-17  # of a coordinate or speed found by the ties, in SI: 0
+from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50
 
 State = dict[Node, Any]
 
@@ -218,7 +217,7 @@ def _changes(
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in start)
         for x in own
-        if abs(after[x.name] - before[x.name]) > NEGLIGIBLE * (1 + abs(before[x.name]))
+        if abs(after[x.name] - before[x.name]) > COMPUTED * (1 + abs(before[x.name]))
     )
 
 
@@ -232,7 +231,7 @@ def _change(model: Model, name: str, values: tuple[float, float], called: bool) 
 
 def _rounded(x: Any, given: float) -> float:
     """A number of 50 digits as a float; 0 where it is rounding, and not given."""
-    return 0.0 if abs(x) < ROUNDING and float(x) != given else float(x)
+    return 0.0 if abs(x) < COORDINATE_AT_50 and float(x) != given else float(x)
 
 
 def start_speeds(system: System) -> dict[Node, Scalar]:

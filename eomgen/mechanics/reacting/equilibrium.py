@@ -28,8 +28,7 @@ from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, plus, times
-
-TOLERANCE = 1e-9  # against the sum of the sizes: the accelerations come from a solve in double precision
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
@@ -66,7 +65,7 @@ def _of_bodies(balance: Balance, numbers: Numbers, x: np.ndarray) -> str:
     for (i, j, _), value in zip(entries, numbers.array(tuple(value for _, _, value in entries)), strict=True):
         total[i] += value * x[j]
         size[i] += abs(value * x[j])
-    wrong = np.flatnonzero(~(np.abs(total) <= TOLERANCE * size))
+    wrong = np.flatnonzero(~(np.abs(total) <= COMPUTED * size))
     if not len(wrong):
         return ""
     e = balance.equations[wrong[0]]
@@ -136,7 +135,7 @@ def _of_pairs(wrenches: _Wrenches) -> str:
         if not _is_inner(wrenches.system, component):
             continue
         rows = [k for k in wrenches.rows if k < 3 or not _takes_a_couple(wrenches.system, component)]
-        if any(abs(total[j, k]) > TOLERANCE * (1 + size[j].max()) for k in rows):
+        if any(abs(total[j, k]) > COMPUTED * (1 + size[j].max()) for k in rows):
             return f"{component.name} does not act on its bodies in opposite ways"
     return ""
 
@@ -173,7 +172,7 @@ def _of_the_whole(wrenches: _Wrenches, x: np.ndarray) -> str:
     applied = _applied(wrenches)
     total = x @ unit + applied - rates
     scale = 1 + np.abs(x) @ size.max(axis=1, initial=0.0) + np.abs(applied).max() + np.abs(rates).max()
-    wrong = [k for k in wrenches.rows if not abs(total[k]) <= TOLERANCE * scale]
+    wrong = [k for k in wrenches.rows if not abs(total[k]) <= COMPUTED * scale]
     return f"all forces and reactions do not make up the rate of the momentum: {DIRECTIONS[wrong[0]]}" if wrong else ""
 
 

@@ -21,10 +21,10 @@ from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve import cramer
 
 FEW = 3  # freedoms
-INDEPENDENT = 1e-7
 
 
 def by_independent(system: System, assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scalar]:
@@ -69,7 +69,7 @@ def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
     many = len(system.symbols.u)
     for state in _states(system):
         columns = np.array([float(x) for x in evaluate(entries, state, fifty_digits())]).reshape(len(J), many).T
-        found = sorted(many - 1 - k for k in independent_rows(columns[::-1], INDEPENDENT))
+        found = sorted(many - 1 - k for k in independent_rows(columns[::-1], RANK_NEARBY))
         if len(found) == len(J):
             break
     return found

@@ -25,9 +25,8 @@ from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve.linear import Solution
-
-HELD = 1e-7  # of a free motion of unit size: what a body may move that no coordinate moves
 
 
 def refuse_unheld(balance: Balance, solution: Solution) -> None:
@@ -46,7 +45,7 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
     worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
-    if np.max(np.abs(unheld)) < HELD:
+    if np.max(np.abs(unheld)) < RANK_NEARBY:
         return
     equation = balance.equations[worst]
     direction = DIRECTIONS[equation.direction]
@@ -88,7 +87,7 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
         if e.coefficients:
             G[i, list(e.coefficients)] = numbers(list(e.coefficients.values()))
     U, sizes, _ = np.linalg.svd(G)
-    free = U[:, int(np.sum(sizes > HELD * max(sizes, default=1.0))) :]
+    free = U[:, int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :]
     return free, _allowed(balance, numbers)
 
 
@@ -111,4 +110,4 @@ def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
         return moved
     J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
     _, sizes, V = np.linalg.svd(J)
-    return moved @ V[int(np.sum(sizes > HELD * max(sizes, default=1.0))) :].T
+    return moved @ V[int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :].T

@@ -17,15 +17,17 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import (
+    COEFFICIENT_AT_50,
+    NEARLY_SINGULAR,
+    RANK,
+    ROUNDING,
+    SAME_EIGENVALUE,
+    WIDE_SPECTRUM,
+)
 
-WIDE = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
 MOST_BY_DIGITS = 30  # rows of a matrix whose eigenvalues are sought with more digits
 DIGITS = 40
-VANISHING = 1e-36  # of a coefficient of 50 digits, made free of units
-ROUNDING = 1e-14  # of an entry of a matrix against its largest
-RANK = 1e-10  # of balanced rows, below which one follows from others
-MET = 1e-7  # distance of two eigenvalues that are one, against their size
-NULL = 1e-5  # of balanced rows at an eigenvalue that others have met
 
 
 def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -58,7 +60,7 @@ def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _is_wide(values: np.ndarray) -> bool:
     sizes = abs(values)
-    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < WIDE * sizes.max()
+    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < WIDE_SPECTRUM * sizes.max()
 
 
 def _as_floats(A: Any, kind: type) -> np.ndarray:
@@ -89,7 +91,7 @@ def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[No
         return None
     unit = fifty_digits().number(1) * float(largest)
     sizes = [abs(c) * unit**k for k, c in enumerate(evaluate(polynomial.coefficients, trial, fifty_digits()))]
-    return next((k for k, x in enumerate(sizes) if x > VANISHING * sizes[-1]), None)
+    return next((k for k, x in enumerate(sizes) if x > COEFFICIENT_AT_50 * sizes[-1]), None)
 
 
 def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
@@ -125,7 +127,7 @@ def met(values: np.ndarray) -> np.ndarray:
     values = values.copy()
     for group in _groups(values):
         mean = values[group].mean()
-        if len(group) > 1 and abs(mean.real) <= MET**1.5 * abs(mean):
+        if len(group) > 1 and abs(mean.real) <= SAME_EIGENVALUE**1.5 * abs(mean):
             values[group] = 1j * values[group].imag
     return values
 
@@ -133,7 +135,7 @@ def met(values: np.ndarray) -> np.ndarray:
 def _groups(values: Sequence[complex] | np.ndarray) -> list[list[int]]:
     groups: list[list[int]] = []
     for k in np.argsort(np.imag(values), kind="stable"):
-        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= MET * abs(values[k])]
+        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= SAME_EIGENVALUE * abs(values[k])]
         near[0].append(int(k)) if near else groups.append([int(k)])
     return groups
 
@@ -145,6 +147,6 @@ def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
         x = 1j * np.mean([values[k].imag for k in group])
         if len(group) > 1 and x.imag > 0 and not any(values[k].real for k in group):
             whole = np.block([[A, x.imag * B], [-x.imag * B, A]])  # of real and imaginary parts
-            if len(whole) - dense.rank(whole, smallest=NULL) < 2 * len(group):
+            if len(whole) - dense.rank(whole, smallest=NEARLY_SINGULAR) < 2 * len(group):
                 return True
     return False

@@ -24,11 +24,9 @@ from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING, SOLVED
 
-NOISE = 1e-14  # of a row, below which an entry is what is left of 0 at a place that is known in numbers
-RANK = 1e-9  # of balanced rows, below which one follows from others
 OWN = 0.2  # of what a column adds to those chosen, against the best
-SAME = 1e-12  # of a coefficient, here and elsewhere, against the largest
 
 Rows = Sequence[Sequence[Scalar]]
 
@@ -178,7 +176,7 @@ def _elsewhere(reference: Reference) -> dict[Node, Any]:
 
 def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     """Of each column whether it is the same in both."""
-    return np.all(abs(A - B) <= SAME * abs(A).max(initial=0), axis=0)
+    return np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0)
 
 
 def _floats(A: Matrix, columns: int) -> np.ndarray:
@@ -192,7 +190,7 @@ def determined(A: np.ndarray, late: Sequence[tuple[int, float]]) -> tuple[tuple[
     """
     if not len(A):
         return (), ()
-    scaled = dense.balanced(dense.without_noise(A, NOISE, axis=1))[0]
+    scaled = dense.balanced(dense.without_noise(A, ROUNDING, axis=1))[0]
     rows = dense.independent_rows(scaled, RANK)
     left = scaled[rows].copy()
     chosen: list[int] = []

@@ -19,11 +19,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Field, Matrix, negative, product, solved, total, turned
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.numeric.dense import without_noise
-
-NOTHING = 1e-9  # of a coefficient, against the largest of its matrix and 1e-3 of it
-ROUNDING = 1e-12  # of an entry against the largest of its row and of its column, below which it is 0
-LEAST = 1e-14  # the same against the largest of all
-REGULAR = 1e-9  # of the rates as functions of the speeds
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
 
 Indices = Sequence[int]
 
@@ -45,7 +41,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
     """
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
-    K, F = without_noise(K, NOTHING), without_noise(F, NOTHING)
+    K, F = without_noise(K, COMPUTED), without_noise(F, COMPUTED)
     while len(kept) > len(equations.speeds):
         unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
         still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
@@ -59,7 +55,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
     """Of these coordinates those on which the motion depends, and those with a speed of their own."""
-    K, F, E = (without_noise(floats(x), NOTHING) for x in (equations.K, equations.F, equations.E))
+    K, F, E = (without_noise(floats(x), COMPUTED) for x in (equations.K, equations.F, equations.E))
     own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}
     while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
@@ -87,7 +83,7 @@ def _rounded(A: np.ndarray, usual: float = 0) -> Matrix:
         return [[*row] for row in A.tolist()]
     sizes = abs(A)
     near = np.minimum(sizes.max(axis=1)[:, None], sizes.max(axis=0)[None, :])
-    least = np.maximum(ROUNDING * near, LEAST * max(usual, sizes.max()))
+    least = np.maximum(SOLVED * near, ROUNDING * max(usual, sizes.max()))
     return [[*row] for row in np.where(sizes > least, A, 0.0).tolist()]
 
 
@@ -109,7 +105,7 @@ def _can_be_of_second_order(field: Field, equations: LinearEquations) -> bool:
     if len(equations.coordinates) != n:
         return False
     E = np.array([[field.size(x) for x in row] for row in equations.E])
-    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=REGULAR) == n))
+    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=RANK) == n))
 
 
 def is_second_order(equations: LinearEquations) -> bool:
@@ -161,7 +157,7 @@ def restricted(
     o = [j for j in range(len(names)) if j not in c]
     if not o:
         return _taken(equations, c)
-    M, C, K = (without_noise(floats(x), NOTHING) for x in (decided.M, decided.C, decided.K))
+    M, C, K = (without_noise(floats(x), COMPUTED) for x in (decided.M, decided.C, decided.K))
     if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
         return _taken(equations, c)
     if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):

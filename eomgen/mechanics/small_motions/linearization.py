@@ -20,7 +20,7 @@ from eomgen.mechanics.small_motions.forms import (
     restricted,
     without_rounding,
 )
-from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
+from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import (
     START,
     STEADY,
@@ -39,8 +39,8 @@ from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR
 
-REGULAR = 1e-12  # of the scaled mass matrix, below which it is singular
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
 MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
@@ -253,5 +253,5 @@ def _other_rest(system: System, guess: Mapping[str, float] | None, why: EomgenEr
 def _accelerated(first: FirstOrder, reference: Reference) -> str:
     """The speed that does not stay as it is; "" where all do."""
     reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
-    wrong = unsettled(reducing, REST)
+    wrong = unsettled(reducing, COMPUTED)
     return first.system.symbols.u[reducing.choice.u[wrong[0]]].name if wrong else ""

@@ -25,12 +25,12 @@ from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
 LONGEST = 6_000  # characters of a polynomial whose roots are written
 MOST_STATES = 8  # of transfer functions in floats
-SAME = 1e-9  # of an exact frequency against the number
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
 
 
@@ -155,7 +155,7 @@ class Modes:
         assert mode.frequency is not None
         if mode.frequency == 0:
             return 0
-        near = [w for value, w in candidates if abs(value - mode.frequency) <= SAME * mode.frequency]
+        near = [w for value, w in candidates if abs(value - mode.frequency) <= COMPUTED * mode.frequency]
         return near[0] if near else None
 
     # -- by name -----------------------------------------------------------------------------------------------

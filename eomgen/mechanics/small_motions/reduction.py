@@ -37,9 +37,7 @@ from eomgen.mechanics.small_motions.field import (
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node
-
-REST = 1e-9  # of a force that nothing balances, against the largest
-NEAR = 1e-12  # displacement, speed or change of it in 1 s whose forces count as none, against what is there or 1
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 
 @dataclass(frozen=True)
@@ -223,7 +221,7 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     e = reducing.equations()
     places, speeds = ([max(1.0, abs(x)) for x in reducing.field.of(part)] for part in (e.coordinates, e.speeds))
     rows = [_size(K, places) + _size(C, speeds) + _size(M, speeds) for K, C, M in zip(e.K, e.C, e.M, strict=True)]
-    return [i for i in left if abs(found[i]) > NEAR * rows[i]]
+    return [i for i in left if abs(found[i]) > SOLVED * rows[i]]
 
 
 def _size(row: list[Entry], unit: list[float]) -> float:

@@ -26,8 +26,8 @@ from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
-STILL = 1e-12  # of a rate, below which a coordinate stands still
 EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
 
 
@@ -66,7 +66,7 @@ class Reference:
     def moving(self) -> dict[Node, Any]:
         """The coordinates that move in the reference, and their rates."""
         rates = evaluate(self.system.scope.rates, self.numbers, fifty_digits())
-        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > STILL}
+        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > SOLVED}
 
     @property
     def trial(self) -> dict[Node, Any]:

@@ -19,11 +19,7 @@ from eomgen.mechanics.small_motions.linearization import SmallMotions, state_mat
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.symbolic.expression.graph import Node
-
-STILL = 1e-9  # of a real part against the eigenvalue, below which a motion neither grows nor fades
-NOISE = 1e-12  # the same against the largest eigenvalue
-SYMMETRIC = 1e-10  # of A - A^T against the largest entries of the two rows
-ROUNDING = 1e-14  # of an entry against the largest
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED, ROUNDING, SHARE, SOLVED, SUMMED
 
 
 @dataclass(frozen=True)
@@ -117,13 +113,13 @@ def _is_undamped(small: SmallMotions) -> bool:
         return False
     M, C, K = (floats(x) for x in (e.M, e.C, e.K))
     size = abs(M).max() * np.sqrt(abs(K).max() / abs(M).max())
-    return bool(abs(C).max() <= 1e-13 * size) and _is_symmetric(K, 1)
+    return bool(abs(C).max() <= SUMMED * size) and _is_symmetric(K, 1)
 
 
 def _is_symmetric(A: np.ndarray, sign: int) -> bool:
     """Whether A = sign A^T: entries of slow motions count, whatever stiff ones stand beside them."""
     rows = np.maximum(abs(A).max(axis=1), abs(A).max(axis=0))
-    limit = SYMMETRIC * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
+    limit = ITERATED * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
     return bool(np.all(abs(A - sign * A.T) <= limit))
 
 
@@ -165,11 +161,11 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
     e = small.numbers
     gyroscopic = small.is_second_order and _is_symmetric(floats(e.C), -1) and _is_symmetric(floats(e.K), 1)
     largest = abs(values).max(initial=0)
-    real = np.full(len(values), STILL * largest) if gyroscopic else STILL * abs(values) + NOISE * largest
-    both = zip(values, real, strict=True)
+    turning = COMPUTED * abs(values) + SOLVED * largest
+    real = np.full(len(values), COMPUTED * largest) if gyroscopic else turning
     return [
-        complex(0 if abs(x.real) <= least else x.real, 0 if abs(x.imag) <= STILL * abs(x) + NOISE * largest else x.imag)
-        for x, least in both
+        complex(0 if abs(x.real) <= fades else x.real, 0 if abs(x.imag) <= turns else x.imag)
+        for x, fades, turns in zip(values, real, turning, strict=True)
     ]
 
 
@@ -183,11 +179,11 @@ def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -
 def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node, complex]:
     """The coordinates of the whole model, the largest 1; noise taken out."""
     whole = floats(small.whole.P) @ _with_others(small, v, eigenvalue)
-    largest = whole[np.argmax(abs(whole) * (1 - 1e-9 * np.arange(len(whole))))] if len(whole) else 0
+    largest = whole[np.argmax(abs(whole) * (1 - COMPUTED * np.arange(len(whole))))] if len(whole) else 0
     whole = whole / largest if largest else whole
 
     def clean(x: complex) -> complex:
-        return complex(0 if abs(x.real) < 1e-10 else x.real, 0 if abs(x.imag) < 1e-10 else x.imag)
+        return complex(0 if abs(x.real) < ITERATED else x.real, 0 if abs(x.imag) < ITERATED else x.imag)
 
     return {q: clean(x) for q, x in zip(small.whole.all, whole, strict=True)}
 
@@ -238,7 +234,7 @@ def _drifting(modes: Sequence[Mode]) -> str:
     moving = [
         q.name
         for q in (modes[0].shape if modes else ())
-        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > 1e-6 for mode in modes)
+        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > SHARE for mode in modes)
     ]
     names = ", ".join(moving) or "some speeds"
     others = "; all other motions oscillate or fade" if any(mode.eigenvalue for mode in modes) else ""

@@ -11,8 +11,8 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Field, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
-from eomgen.mechanics.small_motions.forms import NOTHING, carrying, floats, seen_beside_own
-from eomgen.mechanics.small_motions.reduction import REST, LinearEquations, Reducing, unsettled
+from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_own
+from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
 from eomgen.symbolic.expression.derivative import depends_on
@@ -20,14 +20,12 @@ from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR, SQUARED_SINE
 
 TIMES = (0.3717281828, 1.1931415926)  # later states of a steady motion, at which it must look the same [of one unit]
 CORNERS = frozenset(("abs", "sign", "min", "max", "select"))
-ASIDE = 1e-24  # how far from the reference forces must be the same
 SIDES = 4  # directions that are tried, with their opposites
 PRIME = "'"
-REGULAR = 1e-12  # of the mass that ties leave a speed, against what there would be without them; of the scaled matrix
-POLE = 1e-24  # of a mass against the largest: the square of what rounding leaves of a sine that is 0
 LATER = (13.4142135623, 1717.7724538509)  # the same, where t itself stands in the equations
 
 
@@ -50,7 +48,7 @@ def refuse_corners(
     symbols, rng = first.system.symbols, Random(7)
     changes = _changed(first, choice, reference, raw, kept)
     for _ in range(SIDES):
-        aside = {x: fifty_digits().number(1) * ASIDE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
+        aside = {x: fifty_digits().number(1) * SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
             raise DerivationError(
                 "the forces have a corner or a jump at the place of reference",
@@ -112,7 +110,7 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
         DerivationError: the speed that moves nothing is named, where it is one.
     """
     M, Z = floats(equations.M), abs(floats(reducing.Z))
-    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.M)) @ Z), POLE * abs(M).max())
+    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.M)) @ Z), SQUARED_SINE * abs(M).max())
     idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
     if idle or dense.scaled_condition(M) > 1 / REGULAR:
         moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
@@ -134,11 +132,11 @@ def _changed(
         reducing = Reducing(first, choice, Numbers(shifted))
         try:
             there = list(_compared(reduced(first, choice, reference, reducing.field), kept))
-            pushed = unsettled(reducing, REST)
+            pushed = unsettled(reducing, COMPUTED)
         except (NoValue, ZeroDivisionError):
             return True
         pairs = zip(here, there, strict=True)
-        return bool(pushed) or any(np.any(abs(A - B) > NOTHING * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
+        return bool(pushed) or any(np.any(abs(A - B) > COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
 
     return changes
 

@@ -26,14 +26,11 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, 
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, ITERATED, RANK, SUMMED
 
 STEPS = 40
 LONGEST = 0.3  # of one step, against what has moved or 1
-REACHED = 1e-13  # of a step, against what has moved or 1
 DOUBLE = 0.02  # of a step, to within which the next is half of it: so Newton's method goes to a double root
-NOTHING = 1e-18  # of a coordinate or speed, after a last step of Newton's method
-BALANCED = 1e-10  # of a force that is left, against the largest
-UNSEEN = 1e-9  # of a coefficient, against the largest that the speeds make
 STATED, GUESSED, OPEN = 0, 1, 2  # by the model: held, marked by `near`, not said
 
 State = Mapping[Node, Any]
@@ -81,7 +78,7 @@ def _steady(first: FirstOrder, choice: Choice, state: State, changed: np.ndarray
     values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
     independent = (*(symbols.q[k] for k in choice.q), *(symbols.u[k] for k in choice.u))
     return Steady(
-        {name: 0.0 if abs(x) < NOTHING else x for name, x in values.items()},
+        {name: 0.0 if abs(x) < COORDINATE_AT_50 else x for name, x in values.items()},
         tuple(x for x, one in zip(independent, changed, strict=True) if one),
     )
 
@@ -120,7 +117,7 @@ def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -
             step = np.zeros(len(mask))
             step[mask] = here.step(mask)
             size = float(np.max(abs(step) / here.sizes))
-            if size <= REACHED:
+            if size <= SUMMED:
                 return (here.moved(step) or state) if here.is_balanced else None
             halved = bool(np.any(step)) and np.linalg.norm(2 * step - before) <= DOUBLE * np.linalg.norm(before)
             before = step
@@ -173,7 +170,7 @@ class Here:
         w = max(abs(float(self.state[u])) for u in e.speeds)
         M, C, K, F, E = (abs(floats(x)) for x in (e.M, e.C, e.K, e.F, e.E))
         sizes = (max(K.max(), C.max() * w, M.max() * w * w), max(F.max(), E.max() * w))
-        return K > UNSEEN * sizes[0], F > UNSEEN * sizes[1]
+        return K > COMPUTED * sizes[0], F > COMPUTED * sizes[1]
 
     @cached_property
     def rates(self) -> np.ndarray:
@@ -196,7 +193,7 @@ class Here:
         """The least change of what the mask frees that takes the residuals away; rows and columns free of units."""
         sizes, rows = self.sizes[mask], self.row_sizes
         scaled = self.slopes[:, mask] * sizes / rows[:, None]
-        return sizes * np.linalg.lstsq(scaled, -self.residuals / rows, rcond=1e-10)[0]
+        return sizes * np.linalg.lstsq(scaled, -self.residuals / rows, rcond=RANK)[0]
 
     @property
     def row_sizes(self) -> np.ndarray:
@@ -204,7 +201,7 @@ class Here:
         w = self.sizes[-1]
         inertia = np.append(abs(floats(self.equations.M)).max(axis=1) * w * w, np.ones(len(self.still)))
         largest = (abs(self.slopes) * self.sizes).max(axis=1)
-        return np.maximum(largest, UNSEEN * inertia)
+        return np.maximum(largest, COMPUTED * inertia)
 
     @property
     def sizes(self) -> np.ndarray:
@@ -217,7 +214,7 @@ class Here:
     @property
     def is_balanced(self) -> bool:
         moving = abs(self.rates[self.still])
-        return not unsettled(self.reducing, BALANCED) and bool(np.all(moving <= BALANCED * max(1.0, *abs(self.rates))))
+        return not unsettled(self.reducing, ITERATED) and bool(np.all(moving <= ITERATED * max(1.0, *abs(self.rates))))
 
     def moved(self, step: np.ndarray) -> State | None:
         """The state after a step of the independent ones, the others following; None where the ties do not close."""

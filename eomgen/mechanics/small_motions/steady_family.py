@@ -31,6 +31,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import BEST
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import vanishes
 
@@ -39,7 +40,6 @@ MOST_OPERATIONS = 600  # of the equations of motion that are written as conditio
 MOST_OF_TIES = 250  # of the rows by which speeds are taken out
 MOST_FOLLOWING = 4  # dependent coordinates and speeds
 LONGEST = 1_200  # characters of conditions that are solved
-NOTHING = 1e-15  # of a coordinate or speed: 0
 MOST_SOUGHT = 2  # unknowns of which all values are sought
 
 
@@ -206,7 +206,7 @@ class _Writing:
         at = np.array([float(numbers[x]) for x in unknowns])
         places = places_of_rest(sought, {x: v for x, v in numbers.items() if x not in unknowns}, at)
         others = tuple(
-            {x: float(v) if abs(v) > NOTHING else 0.0 for x, v in zip(unknowns, z, strict=True)} for z in places.found
+            {x: float(v) if abs(v) > BEST else 0.0 for x, v in zip(unknowns, z, strict=True)} for z in places.found
         )
         closed = tuple(self._solved(conditions, self._beside(at)) for at in others)
         return replace(family, others=others, closed=closed, complete=places.complete, where=places.where)

@@ -22,9 +22,8 @@ from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ITERATED
 from eomgen.symbolic.solve import cramer
-
-ROUNDING = 1e-10  # of a coefficient in floats
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ def transfers_in_numbers(e: LinearEquations, A: np.ndarray, B: np.ndarray) -> tu
             coupled = A.copy()
             coupled[:, j] -= B[:, k]
             closed = np.poly(coupled)
-            above = np.where(abs(closed - below) > ROUNDING * (abs(closed) + abs(below)), closed - below, 0.0)
+            above = np.where(abs(closed - below) > ITERATED * (abs(closed) + abs(below)), closed - below, 0.0)
             found.append(TransferFunction(q, w, *map(_of_floats, (np.trim_zeros(above, "f"), below))))
     return tuple(found)
 

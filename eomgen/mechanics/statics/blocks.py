@@ -14,7 +14,7 @@ from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,10 @@ from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
 from eomgen.symbolic.solve.solving import vanishes
 
 WORK = 20_000  # products of terms for one length
-NEGLIGIBLE = 1e-30  # of a number of 50 digits
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Sizes:
             mend = "give them values, or call them positive where that decides it"
             raise DerivationError(f"what comes first along the line depends on {', '.join(names)}", "parameters", mend)
         value = evaluate((x,), self.values, fifty_digits())[0]
-        return 0 if abs(value) < NEGLIGIBLE else 1 if value > 0 else -1
+        return 0 if abs(value) < CERTAIN_AT_50 else 1 if value > 0 else -1
 
 
 def sizes_of(motion: Motion, at: Mapping[Node, Scalar] | None = None) -> Sizes:

@@ -15,9 +15,8 @@ from eomgen.mechanics.ties import holds_identically
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50
 from eomgen.symbolic.solve.linear import Solution
-
-CLOSED = 1e-20  # of what is left of the balance where the ties hold to 1e-28
 
 
 def with_unknowns(balance: Balance) -> tuple[list[dict[int, Scalar]], list[Scalar]]:
@@ -78,7 +77,7 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
         sizes = [abs(x) for x in evaluate(left, state, fifty_digits())]
     except NoValue:
         return False
-    return max(sizes) < CLOSED
+    return max(sizes) < ELIMINATED_AT_50
 
 
 def unbalanced(balance: Balance, solution: Solution) -> DerivationError:

@@ -23,7 +23,8 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, vector_of
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 WORK = 20_000  # products of terms for one velocity
 SIXTH = Fraction(1, 6)

@@ -6,11 +6,12 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import Number, number_of
 from eomgen.model.catalog import Catalog
-from eomgen.model.checks.triangle import ROUNDING, possible
+from eomgen.model.checks.triangle import possible
 from eomgen.model.composite import Composite, about, composite_of
 from eomgen.model.findings import Finding, Path
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 
 def made(catalog: Catalog, values: Mapping[str, Number]) -> Iterator[Finding]:
@@ -71,7 +72,7 @@ def _whole(path: Path, name: str, body: Any, values: Mapping[str, Number]) -> It
     try:
         measures = [_signed(piece, value) for piece in body.parts if piece.shape.mass is None]
         cut = body.mass is not None and any(measure > 0 for measure in measures)
-        if cut and sum(measures) <= ROUNDING * max(map(abs, measures)):
+        if cut and sum(measures) <= SOLVED * max(map(abs, measures)):
             yield Finding(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
             return
         composite = composite_of(body.parts, body.mass, value)
@@ -93,11 +94,11 @@ def _masses(path: Path, name: str, body: Any, composite: Composite) -> Iterator[
         what = f"the parts of body '{name}' with a mass of their own weigh {float(given):g} kg, its 'mass' is "
         what += f"{float(composite.whole.m):g} kg: that leaves no mass for the others"
         yield Finding(path, what, "'mass' is that of the net whole", key=True)
-    elif abs(total - composite.whole.m) > ROUNDING * (largest or 1):
+    elif abs(total - composite.whole.m) > SOLVED * (largest or 1):
         what = f"the parts of body '{name}' weigh {float(total):g} kg, its 'mass' is {float(composite.whole.m):g} kg"
         yield Finding(path, what, "leave out 'mass', or the mass of a part", key=True)
-    elif total < -ROUNDING * largest or (abs(total) <= ROUNDING * largest and largest > 0):
-        weight = "negative" if total < -ROUNDING * largest else "zero"
+    elif total < -SOLVED * largest or (abs(total) <= SOLVED * largest and largest > 0):
+        weight = "negative" if total < -SOLVED * largest else "zero"
         what = f"the mass of body '{name}' is {weight}: its holes take away {_of_holes(composite):g} kg"
         yield Finding(path, what, "a hole cannot weigh more than what it is cut out of", key=True)
     else:

@@ -1,6 +1,6 @@
 """Whether a body can have an inertia: the triangle inequality, in any axes."""
 
-ROUNDING = 1e-12  # of the largest moment: the triangle inequality holds to rounding
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 
 def possible(moments: list[float], size: float = 0.0) -> bool:
@@ -16,6 +16,4 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
     size = max(size, *(abs(x) for x in (xx, yy, zz, xy, yz, zx))) or 1.0
     determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
     second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
-    return (
-        min(a, b, c) >= -ROUNDING * size and min(second) >= -ROUNDING * size**2 and determinant >= -ROUNDING * size**3
-    )
+    return min(a, b, c) >= -SOLVED * size and min(second) >= -SOLVED * size**2 and determinant >= -SOLVED * size**3

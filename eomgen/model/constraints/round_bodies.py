@@ -22,9 +22,9 @@ from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.numeric.tolerances import DEGENERATE
 from eomgen.symbolic.print.text import text_size
 
-FLAT = 1e-6  # rho of a wheel that lies flat
 LONGEST, WORK = 400, 500  # characters and products of terms of a cosine that is multiplied out
 
 
@@ -68,7 +68,7 @@ class Wheel:
             ModelError: the wheel lies flat at the start, where the whole rim touches.
         """
         a, rho = self._axle(scene), self.tilt(scene, n)
-        if abs(_worth(scene, rho)) < FLAT:
+        if abs(_worth(scene, rho)) < DEGENERATE:
             raise ModelError(
                 f"'{self.body}' lies flat at the start: its whole rim touches",
                 scene.where,
@@ -86,7 +86,7 @@ class Wheel:
             ModelError: its axis points to the ball's centre at the start, where the whole rim touches.
         """
         h, size = self._across(scene, out), self.distance(scene, out)
-        if abs(_worth(scene, size)) < FLAT * abs(_worth(scene, self.R)):
+        if abs(_worth(scene, size)) < DEGENERATE * abs(_worth(scene, self.R)):
             raise ModelError(
                 f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
                 scene.where,

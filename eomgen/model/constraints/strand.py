@@ -13,9 +13,9 @@ from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, V
 from eomgen.model.joints.base import Z
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.spatial import cross, dot, minus, plus, times
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
-BACKWARDS = -1e-9  # a strand that is shorter runs against its direction [m]
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def strand_along(scene: Scene, first: Stop, second: Stop, d: Vector) -> Strand:
     _refuse_out_of_plane(scene, first, second, d)
     length = dot(d, minus(second.center, first.center))
     run = scene.worth(length)
-    if run is not None and run < BACKWARDS:
+    if run is not None and run < -COMPUTED:
         raise _against(scene, first, second)
     return Strand(first, second, d, length)
 

@@ -10,6 +10,7 @@ from eomgen.model.kinds import Mass
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.expressions import Expression, parse
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 Line = tuple[tuple[float, float], ...]
 Value = Callable[[Expression], Any]
@@ -91,7 +92,7 @@ def not_inside(inner: Any, outer: Any) -> str:
 
 def more_than_a_turn(opening: float) -> str:
     """What is wrong with the angle of a sector or an arc."""
-    return "" if opening <= 2 * math.pi * (1 + 1e-12) else "'opening' is more than a whole turn"
+    return "" if opening <= 2 * math.pi * (1 + SOLVED) else "'opening' is more than a whole turn"
 
 
 def circle(radius: float, begin: float = 0.0, end: float = 2 * math.pi) -> Line:

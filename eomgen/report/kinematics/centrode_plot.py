@@ -17,10 +17,10 @@ from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 STEPS = 240  # to each side
 FAR = 8.0  # sizes of the mechanism beyond which a centre is not drawn
-SLOW = 1e-9  # rad/s: a spin by which no turn is waited for
 FIXED, MOVING = "#2f5d8a", "#b03a2e"
 
 Numbers = Mapping[Node, float]
@@ -81,7 +81,7 @@ def _configurations(system: System, body: str, values: Numbers) -> list[Numbers]
         rates, length = (0, *(row[0] for row in scope.N)), _reach(system, values)
     else:
         spin = abs(float(evaluate((field_of(system.motion, body).w[2],), values, FLOAT)[0]))
-        rates, length = (1, *scope.rates), math.pi / spin if spin > SLOW else 1.0
+        rates, length = (1, *scope.rates), math.pi / spin if spin > COMPUTED else 1.0
     slope = _slope(system, rates, values)
     before, after = (_followed(system, slope, values, sign * length / STEPS) for sign in (-1, 1))
     return [*reversed(before), values, *after]

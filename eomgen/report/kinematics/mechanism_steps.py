@@ -9,14 +9,13 @@ from fractions import Fraction
 from eomgen.mechanics.instant.construction import POINT, Found, LineOf, Pair
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Center, Mechanism
-from eomgen.mechanics.worth import ROUNDED
 from eomgen.report.latex_names import lettered
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 from eomgen.symbolic.print.text import text_size, to_text
 
 LONGEST = 60  # characters of a value in a table
@@ -124,7 +123,7 @@ def cell(state: KinematicState, x: Scalar) -> Cell:
     number = state.number(x)
     if number is None:
         return x if text_size(x) <= 2 * LONGEST else Omitted(operations((x,)).total)
-    return f"{0.0 if abs(number) < (ZERO_AT_50 if state.exact else ROUNDED) else number:.{DIGITS}g}"
+    return f"{0.0 if abs(number) < (ZERO_AT_50 if state.exact else COMPUTED) else number:.{DIGITS}g}"
 
 
 def in_numbers(state: KinematicState, step: Step) -> Step:

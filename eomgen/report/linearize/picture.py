@@ -13,11 +13,11 @@ from eomgen.mechanics.system import System
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture, mathtext
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.tolerances import WIDE_STEP
 
 MOST = 9  # modes that are drawn
 SIDE = 3.4  # of one panel [inches]
 PART = 0.12  # of the drawing's extent, by which the point that moves most is swung out
-SMALL = 1e-4  # of the shape, by which it is seen how far points move
 AT_REST, BAR = "#c4c4c4", "#336699"
 
 
@@ -63,7 +63,7 @@ def _swung(panel: Any, modes: Modes, mode: Mode) -> None:
 
 def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch) -> float:
     """How far it is swung out: so that no point of the drawing moves by more than a part of the drawing."""
-    aside = {**values, **{q: values[q] + SMALL * x.real for q, x in mode.shape.items()}}
+    aside = {**values, **{q: values[q] + WIDE_STEP * x.real for q, x in mode.shape.items()}}
     there = Sketch(system, aside)
     moved = [
         abs(b - a).max()
@@ -71,7 +71,7 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
         for a, b in zip(here.lines(link), there.lines(link), strict=True)
     ]
     largest = max(moved, default=0.0)
-    return PART * here.extent * SMALL / largest if largest > 0 else 0.0
+    return PART * here.extent * WIDE_STEP / largest if largest > 0 else 0.0
 
 
 def _bars(panel: Any, modes: Modes, mode: Mode) -> None:

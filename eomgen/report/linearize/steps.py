@@ -21,6 +21,7 @@ from eomgen.report.statements import Entry as Place
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 from eomgen.symbolic.print.text import text_size
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
@@ -137,7 +138,7 @@ def _symmetric(modes: Modes, A: Matrix) -> bool:
     if modes.small.exact is None:
         n = range(len(A))
         largest = max((abs(x) for row in A for x in row), default=0)
-        return all(abs(A[i][j] - A[j][i]) <= 1e-9 * largest for i in n for j in n)
+        return all(abs(A[i][j] - A[j][i]) <= COMPUTED * largest for i in n for j in n)
     return all(is_zero(modes.tidy(A[i][j] - A[j][i])) for i in range(len(A)) for j in range(i))
 
 
@@ -203,7 +204,7 @@ def _in_numbers(coefficients: np.ndarray) -> Law:
     terms = [
         (f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k)
         for k, x in enumerate(coefficients)
-        if abs(x) > 1e-12 * largest
+        if abs(x) > SOLVED * largest
     ]
     plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
     latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]

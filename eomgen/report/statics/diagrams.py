@@ -13,13 +13,13 @@ from eomgen.report.figures import halo
 from eomgen.report.quantities import Scale, figures
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE
 
 COLORS = {"axial_force": "#2457a6", "shear_force": "#2e7d4f", "bending_moment": "#b03a2e"}
 UNITS = {"axial_force": "N", "shear_force": "N", "bending_moment": "N m"}
 NAMES = {"axial_force": "N", "shear_force": "V", "bending_moment": "M"}
 FINE = 40  # points of a curve within one piece
 SI = Scale()
-SAME = 1e-9  # of the largest value, below which a value is another one's twin, or 0
 
 
 def diagram_panels(
@@ -63,7 +63,7 @@ def influence_panel(panel: Any, line: InfluenceLine, values: Mapping[Node, float
 def _is_level(line: InfluenceLine, values: Mapping[Node, float]) -> bool:
     heights = [_numbers((span.start[1], span.end[1]), values) for span in line.spans]
     starts = [_numbers((span.start[0], span.end[0]), values) for span in line.spans]
-    return bool(np.ptp(heights) < SAME * max(1.0, np.abs(heights).max())) and all(b >= a for a, b in starts)
+    return bool(np.ptp(heights) < COMPUTED * max(1.0, np.abs(heights).max())) and all(b >= a for a, b in starts)
 
 
 def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tuple[float, float]:
@@ -93,8 +93,8 @@ def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
     width = max((abs(x) for x, _ in points), default=1.0) or 1.0
     shown: list[tuple[float, ...]] = []
     for x, y in points:
-        twin = any(abs(x - a) < 1e-6 * width and abs(y - b) <= SAME * largest for a, b in shown)
-        if abs(y) > SAME * largest and not twin:
+        twin = any(abs(x - a) < SAME_PLACE * width and abs(y - b) <= COMPUTED * largest for a, b in shown)
+        if abs(y) > COMPUTED * largest and not twin:
             shown.append((x, y))
             up = (y > 0) != panel.yaxis_inverted()
             panel.annotate(

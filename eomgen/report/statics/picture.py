@@ -29,10 +29,10 @@ from eomgen.report.statics.section_steps import Sections
 from eomgen.report.support_symbols import Place
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import to_text
 
 TENSION, COMPRESSION = "#2457a6", "#b03a2e"
-NOTHING = 1e-9  # of the largest force, below which none is drawn
 SHORTEST = 0.45  # of the longest arrow
 WIDTH = 9.0  # of the picture [inches]
 COLUMN, DIAGRAM = 3.4, 1.5  # width and height of a diagram [inches]
@@ -246,7 +246,7 @@ def draw_structure(panel: Any, scene: Scene) -> None:
     for load, name in scene.spreads():
         _spread(panel, scene, load, name)
     for tip, force, color, label in scene.forces:
-        if math.hypot(*force) > NOTHING * scene.largest:
+        if math.hypot(*force) > COMPUTED * scene.largest:
             vector = scene.length(force)
             arrow(panel, tip, vector, color=color, label=label, outward=is_freer_outward(scene.lines, tip, vector))
     for at, sense, color, label in scene.couples():
@@ -277,7 +277,7 @@ def _members(panel: Any, scene: Scene) -> None:
         a, b = (np.array(scene.sketch.position((node, ZERO))) for node in (first, second))
         turn = math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
         turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
-        small = abs(value) < NOTHING * scene.largest
+        small = abs(value) < COMPUTED * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
         panel.annotate(
             "0" if small else scene.label(reaction.value),

@@ -35,9 +35,8 @@ from eomgen.report.statics.section_steps import (
 )
 from eomgen.report.statics.steps import contacts_step, statics_derivation
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import to_text
-
-ROUNDING = 1e-9  # of a force that is 0 but for rounding
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ class Statics(Shown):
     def broken(self) -> tuple[str, ...]:
         """Of these what does not hold, in words: then it is not at rest like this."""
         margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
-        return tuple(words for words, margin in margins.items() if margin < -ROUNDING)
+        return tuple(words for words, margin in margins.items() if margin < -COMPUTED)
 
     @cached_property
     def sections(self) -> Sections:

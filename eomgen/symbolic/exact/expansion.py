@@ -35,8 +35,8 @@ from eomgen.symbolic.exact.terms import (
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
 
-CERTAIN = 1e-30  # of a constant, above which its sign is known at 50 digits
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one
 _TURNS = {  # cos(turn * pi) = coefficient * sqrt(root)
@@ -182,7 +182,7 @@ class Expansion:
             (value,) = evaluate((x,), {}, fifty_digits())
         except NoValue:
             return None
-        return (1 if value > 0 else -1) if abs(value) > CERTAIN else None
+        return (1 if value > 0 else -1) if abs(value) > CERTAIN_AT_50 else None
 
     def _odd(self, atom: int, e: int) -> int:
         """What of x^e has a sign: 0 where x has none, or e is even; else 1 or -1."""

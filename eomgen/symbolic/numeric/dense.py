@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.numeric.evaluation import ZERO_AT_50, NoValue
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import ROUNDING, ZERO_AT_50
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
-NOTHING = 1e-14  # of the longest row: so short is rounding
 
 
 def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
@@ -49,7 +49,7 @@ def of_one_length(A: np.ndarray) -> np.ndarray:
 
 def divisor(lengths: np.ndarray) -> np.ndarray:
     """The lengths of rows, to divide these by; infinite of rows that are rounding."""
-    return np.where(lengths > NOTHING * np.max(lengths, initial=0.0), lengths, np.inf)
+    return np.where(lengths > ROUNDING * np.max(lengths, initial=0.0), lengths, np.inf)
 
 
 def without_noise(A: np.ndarray, share: float, axis: int | None = None) -> np.ndarray:

@@ -246,9 +246,6 @@ PRIME_FIELD = Arithmetic(
 )
 
 
-ZERO_AT_50 = 1e-25  # below which a number of 50 digits that would be of the order of 1 is 0
-
-
 @cache
 def fifty_digits(partial: bool = False) -> Arithmetic:
     """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue.

@@ -15,17 +15,16 @@ import numpy as np
 
 from eomgen.symbolic.expression.graph import Node, Number
 from eomgen.symbolic.numeric.evaluation import Arithmetic, NoMeaning, NoValue
+from eomgen.symbolic.numeric.tolerances import OUTWARDS
 
 Interval = tuple[Any, Any]
-
-ROUNDING = 5e-16  # of an end, by which it is moved outwards
 
 
 def interval(low: Any, high: Any) -> Interval:
     """(low, high) with its ends moved outwards; where an end is no number, anything."""
     bad = np.isnan(low) | np.isnan(high)
     low, high = np.where(bad, -np.inf, low), np.where(bad, np.inf, high)
-    return low - ROUNDING * np.abs(low), high + ROUNDING * np.abs(high)
+    return low - OUTWARDS * np.abs(low), high + OUTWARDS * np.abs(high)
 
 
 def _number(c: Number) -> Interval:

@@ -22,8 +22,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.intervals import INTERVALS, interval
+from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
 
-SMALLEST = 1e-7  # size of a box against the whole, below which it is not halved
 MOST_BOXES = 60_000  # examined in all
 WORK = 30_000_000  # operations in all, of long equations
 TOGETHER = 4096  # boxes of one evaluation
@@ -81,7 +81,7 @@ class _Boxes:
             a, b, alone, empty = self._krawczyk(slopes, a, b)
             roots.append((a[alone] + b[alone]) / 2)
             a, b = _kept(~alone & ~empty, a, b)
-            small = np.all(b - a <= SMALLEST * self.size, axis=1)
+            small = np.all(b - a <= NEAR_ROOT * self.size, axis=1)
             undecided.append((a[small] + b[small]) / 2)
             a, b = self._halved(*_kept(~small, a, b))
             lows, highs = np.concatenate([a, rest_a]), np.concatenate([b, rest_b])

@@ -18,17 +18,21 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import (
+    BEST,
+    CERTAIN_AT_50,
+    DIFFERENCE_AT_50,
+    LEAST_CHANGE,
+    MET_AT_50,
+    NEAR_ROOT,
+    SAME_PLACE,
+)
 
 STEPS = 80
 UNDAMPED = 8
 POLISHINGS = 200  # at a multiple root the error shrinks by a factor only
-CLOSE = 1e-7  # of the scaled equations, at which a root is near
-ROOT = 1e-30  # of a step, against the size of the unknown and 1
-NOTHING = 1e-40  # of the scaled equations: what is left is rounding of 50 digits
-TOGETHER = 1e-6  # distance of two results of floats that become one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
 FALLS = 1e-3  # by which what is left falls in a step with the slopes of an earlier place, or they are taken anew
-RANK = 1e-12  # of the largest singular value
 
 
 @dataclass(frozen=True)
@@ -76,14 +80,14 @@ class Descent:
             for _ in range(POLISHINGS):
                 f = evaluate(self.equations, state, fifty_digits())
                 size = max(abs(y) for y in f)
-                if max(abs(y) * r for y, r in zip(f, self._rows, strict=True)) < NOTHING:
+                if max(abs(y) * r for y, r in zip(f, self._rows, strict=True)) < MET_AT_50:
                     break
                 if inverse is None or size > FALLS * before:
                     inverse = self._inverse(self._at_digits(state))
                 step = self._columns * (inverse @ (-self._rows * np.array([float(y / size) for y in f])))
                 before, moved = size, [size * float(d) for d in step]
                 state |= {node: state[node] + d for node, d in zip(self.unknowns, moved, strict=True)}
-                if max(abs(d) / (1 + abs(state[n])) for n, d in zip(self.unknowns, moved, strict=True)) < ROOT:
+                if max(abs(d) / (1 + abs(state[n])) for n, d in zip(self.unknowns, moved, strict=True)) < CERTAIN_AT_50:
                     break
         except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
             return None
@@ -93,7 +97,7 @@ class Descent:
     def _inverse(self, A: np.ndarray) -> np.ndarray | None:
         """The pseudo-inverse of df/dx, scaled; None where it has none."""
         A = self._rows[:, None] * A * self._columns
-        return np.linalg.pinv(A, rcond=RANK) if np.all(np.isfinite(A)) else None
+        return np.linalg.pinv(A, rcond=LEAST_CHANGE) if np.all(np.isfinite(A)) else None
 
     def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
         """df/dx with 50 digits, rounded."""
@@ -105,7 +109,7 @@ class Descent:
 
     def _holds(self, state: Mapping[Node, Any]) -> bool:
         f = np.array([float(y) for y in evaluate(self.equations, state, fifty_digits())])
-        return bool(np.all(abs(self._rows * f) < 1e-18))
+        return bool(np.all(abs(self._rows * f) < DIFFERENCE_AT_50))
 
     def _pairs(self, x: np.ndarray) -> zip[tuple[Node, float]]:
         return zip(self.unknowns, x, strict=True)
@@ -151,7 +155,7 @@ class Descent:
             f, A = self._scaled(x[None, :])
             if not np.all(np.isfinite(f)):
                 break
-            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=RANK)[0]
+            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=LEAST_CHANGE)[0]
         return x
 
     def _arrived(self, x: np.ndarray) -> np.ndarray:
@@ -160,7 +164,7 @@ class Descent:
         f, A = self._scaled(x)
         mu, size = np.full(len(x), 1e-3), _size(f)
         for _ in range(STEPS):
-            left = np.flatnonzero(np.isfinite(size) & (size > 1e-15))
+            left = np.flatnonzero(np.isfinite(size) & (size > BEST))
             if not len(left):
                 break
             At = A[left].transpose(0, 2, 1)
@@ -172,8 +176,8 @@ class Descent:
             done = left[better]
             x[done], f[done], A[done] = trial[better], new_f[better], new_A[better]
             size[done] = _size(f[done])
-            mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), 1e-18, 1e12)
-        return np.isfinite(size) & (size < CLOSE)
+            mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
+        return np.isfinite(size) & (size < NEAR_ROOT)
 
     def _scaled(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         f, A = self._at(x)
@@ -194,7 +198,7 @@ def _apart(x: np.ndarray, telling: int | None) -> list[np.ndarray]:
     """Of the rows that are as good as equal in the entries that tell, one."""
     found: list[np.ndarray] = []
     for row in x:
-        if not any(np.all((abs(row - other) <= TOGETHER * (1 + abs(row)))[:telling]) for other in found):
+        if not any(np.all((abs(row - other) <= SAME_PLACE * (1 + abs(row)))[:telling]) for other in found):
             found.append(row)
     return found
 

@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
 from eomgen.symbolic.solve import cramer
 
 TOGETHER = 4  # unknowns of one set of normal equations
-RANK = 1e-9  # of a column's distance from those before it, against its length
 
 Row = dict[int, Scalar]
 Values = Callable[[Sequence[Scalar]], list[Any]]
@@ -65,7 +65,7 @@ def solved(
     values: Values,
     *,
     simple: Callable[[Scalar], int] | None = None,
-    tolerance: float = 1e-20,
+    tolerance: float = ELIMINATED_AT_50,
     last: Sequence[int] = (),
     sure: int | None = None,
     tests: Sequence[Mapping[int, Scalar]] = (),

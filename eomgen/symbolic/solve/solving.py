@@ -26,12 +26,12 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
 from eomgen.symbolic.solve.circular_equations import vanishing_angles, wave_free
 
 LIMIT = 50_000  # products of terms
 MOST_SQUARINGS = 2  # and signs of magnitudes
 TRIES = 8  # random states at which a root is tried
-VANISHES = 1e-7  # of a residual at such a state
 INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
 
 
@@ -241,4 +241,4 @@ def _may_be_root(equation: Scalar, unknown: Node, x: Scalar) -> bool:
     symbols = symbols_of((residual,))
     states = ({symbol: rng.uniform(0.5, 2.0) for symbol in symbols} for _ in range(TRIES))
     values = [value for state in states if math.isfinite(value := evaluate((residual,), state, FLOAT)[0])]
-    return min(map(abs, values)) < VANISHES if values else bool(symbols)
+    return min(map(abs, values)) < NEAR_ROOT if values else bool(symbols)

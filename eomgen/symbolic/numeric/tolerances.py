@@ -1,0 +1,69 @@
+"""Every tolerance of the package: its value, what it is a share of, and why it is that large.
+
+A number without a unit is a share of what it is compared with (the largest entry of a row, the size of the terms
+of a sum, 1 + |value| for a value); a unit stands in brackets. No module holds a tolerance of its own: one that means
+the same has the same name here, and one that means something else has its own reason.
+"""
+
+# What is left of 0 in doubles (16 digits), by how the number was made; each step of the ladder loses a digit or two.
+ROUNDING = 1e-14  # one evaluation: an entry against the largest of its matrix or row, or against its terms
+SUMMED = 1e-13  # a sum or product of many such entries; a smallest singular value; a step of an iteration
+SOLVED = 1e-12  # the solution of linear equations, or a place found by Newton's method
+ITERATED = 1e-10  # an eigenvalue problem, differences of near numbers, an extremum
+COMPUTED = 1e-9  # several solutions one after another: forces from accelerations from coordinates
+CARRIED = 1e-8  # what a run in time carried along, or what was searched twice
+BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubles do
+ROOT = 8.9e-16  # the same relative to the root: four units in the last place, the least that brentq takes
+OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
+ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
+TINIEST = 1e-300  # instead of 0 in a divisor
+
+# What is left of 0 in numbers of 50 digits.
+ZERO_AT_50 = 1e-25  # [1] of what would be of the order of 1: half of the digits are left for what cancels
+CERTAIN_AT_50 = 1e-30  # [1] above it the sign of a constant is known; a step of Newton's method that ends it
+CLOSED_AT_50 = 1e-28  # [m or rad] a gap that Newton's method has closed
+ELIMINATED_AT_50 = 1e-20  # of an entry against the largest of its row, after an elimination
+DIFFERENCE_AT_50 = 1e-18  # of a central difference with a step of 1e-15; scaled equations at a root
+COEFFICIENT_AT_50 = 1e-36  # of a coefficient of a polynomial, made free of units
+MET_AT_50 = 1e-40  # of scaled equations: what is left is the rounding of their evaluation
+SQUARED_AT_50 = 1e-60  # of an entry of the diagonal of M: a sum of squares that cancel
+SQUARED_SINE = 1e-24  # of a mass: the square of a sine that is 0 but for rounding; a shift that changes nothing else
+
+# Ranks: singular values of rows brought to length 1 (or balanced), below which a row follows from the others.
+RANK = 1e-9  # at a place that is known as well as doubles allow
+RANK_NEARBY = 1e-7  # at a place that was found in doubles, or is met on the way: its own error makes rows differ
+LEAST_CHANGE = 1e-11  # of the least change that closes gaps: near a singular place it must still be made
+REGULAR = 1e-12  # of a scaled mass matrix, 1 / condition number, below which it is singular
+PIVOT = 1e-11  # of a row's pivot in emitted code: the squared sine of its angle to the rows before it
+NEARLY_SINGULAR = 1e-5  # at a place that is known to half of the digits only, or where ties resist too little
+BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that neither is told from the other
+WIDE_SPECTRUM = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
+DEGENERATE = 1e-6  # of a determinant, length or diagonal entry that a description divides by
+
+# Places, instants and shapes.
+SAME_PLACE = 1e-6  # of coordinates against their size and 1: so near, two places are one (a double root is so wide)
+SAME_EIGENVALUE = 1e-7  # of two eigenvalues: a double one comes out as two, the root of rounding apart
+NEAR_ROOT = 1e-7  # of scaled equations: so near, Newton's method has a root; a box that is not halved again
+SHARE = 1e-6  # of a row, multiplier or coordinate in a combination: what has a smaller part is not named
+OPEN_GAP = 1e-6  # of a gap or its rate against its terms: more is not the rounding of what a user typed
+UNBALANCED = 1e-6  # of the forces: what least squares leave, above which ties do not carry them
+AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
+GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
+COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50 digits: it is 0
+
+# Accuracy that is asked of a run in time: rtol and atol of a step.
+RUN = 1e-9  # of the user's runs, where nothing else is asked
+FAIR_RUN = 1e-10  # of a run to one instant, where a finer one does not come across
+FINE_RUN = 1e-12  # of a run whose end is printed as a number
+FINEST_RUN = 1e-13  # of a run that is continued across a singular place; the least that is worth asking
+LEAST_RTOL = 2.3e-14  # below which rounding is larger: 100 units in the last place
+RUNS_AGREE = 1e-7  # of the motion's size: two runs across a singular place differ by less
+ROUGH_RUN = 1e-5  # of a function along a run, which only has to be seen to change its sign
+
+# Steps of differences [of the coordinate's size and 1].
+DIFFERENCE_STEP = 1e-5  # of a first derivative in doubles, near the cube root of rounding
+ASIDE_STEP = 1e-6  # [rad] beside a place where a description is locked
+WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of what is drawn
+
+# Of what is printed.
+SMALLEST_PLAIN = 1e-6  # numbers below it are printed with a power of ten

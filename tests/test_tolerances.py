@@ -1,0 +1,55 @@
+"""A tolerance stands in one place, with its reason."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parent.parent / "eomgen"
+HOME = PACKAGE / "symbolic" / "numeric" / "tolerances.py"
+LARGEST = 1e-4  # smaller numbers are tolerances; larger ones are quantities that a text may state
+DECIMAL = re.compile(r"\S.*\b\d+e-0*(?:[4-9]|[1-9]\d)", re.S)  # in a text, not a text that is a unit's factor
+
+
+def small_numbers(source: str) -> list[int]:
+    """Lines with a float literal of at most 1e-4, in code or in a text that becomes code; docstrings are prose."""
+    tree = ast.parse(source)
+    prose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    found = []
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Constant) or id(node) in prose:
+            continue
+        is_small = isinstance(node.value, float) and 0 < abs(node.value) <= LARGEST
+        if is_small or (isinstance(node.value, str) and DECIMAL.search(node.value)):
+            found.append(node.lineno)
+    return found
+
+
+@pytest.mark.parametrize("path", sorted(set(PACKAGE.rglob("*.py")) - {HOME}), ids=lambda p: p.stem)
+def test_no_module_holds_a_tolerance_of_its_own(path):
+    """1e-n with n of 4 and more stands in eomgen/symbolic/numeric/tolerances.py only."""
+    assert small_numbers(path.read_text()) == []
+
+
+def test_every_tolerance_has_its_reason():
+    """A comment says what it is a share of and why it is that large; no two names stand for one value unsaid."""
+    lines = HOME.read_text().splitlines()
+    for node in ast.parse(HOME.read_text()).body[2:]:
+        assert isinstance(node, ast.Assign), "only tolerances stand here"
+        reason = lines[node.lineno - 1].partition("#")[2].strip()
+        assert len(reason.split()) >= 4, f"line {node.lineno} has no reason"
+
+
+def test_every_tolerance_is_used():
+    """What nobody asks for is not kept."""
+    text = "\n".join(path.read_text() for path in PACKAGE.rglob("*.py") if path != HOME)
+    names = {node.targets[0].id for node in ast.parse(HOME.read_text()).body if isinstance(node, ast.Assign)}
+    assert {name for name in names if not re.search(rf"\b{name}\b", text)} == set()
+
+
+@pytest.mark.parametrize("planted", ["x = 1e-9", "def f(tol=5e-16): pass", "g(rcond=0.0001)", "c = 'if (x < 1e-12)'"])
+def test_a_planted_tolerance_is_seen(planted):
+    assert small_numbers(planted) == [1]
