@@ -310,10 +310,13 @@ def simulate(
 
 
 @main.command()
-@MODEL
+@click.argument("model", required=False, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 @JSON
-@click.option("--target", type=click.Choice(["numpy", "c"]), default="c", show_default=True, help="Language.")
-@click.option("-o", "--output", required=True, metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
+@click.option(
+    "--target", "targets", multiple=True, default=("c",), show_default=True, help="Language; several: each in DIR/NAME."
+)
+@click.option("--list", "wants_list", is_flag=True, help="The languages that there are, and no code.")
+@click.option("-o", "--output", metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
 @FOLLOW
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
@@ -325,10 +328,11 @@ def simulate(
     help="Closing rows that pull back what has opened, with these rates [1/s].",
 )
 def codegen(
-    model: str,
+    model: str | None,
     wants_json: bool,
-    target: str,
-    output: str,
+    targets: tuple[str, ...],
+    wants_list: bool,
+    output: str | None,
     inverse: bool,
     actuated: str | None,
     follow: tuple[str, ...],
@@ -336,7 +340,12 @@ def codegen(
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
+    from eomgen.verbs.codegen import languages
 
+    if wants_list:
+        return deliver(languages(), wants_json)
+    if model is None or output is None:
+        raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")
     stem = "model" if model == "-" else Path(model).stem
     names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
     with reading(model) as declared:
@@ -344,7 +353,7 @@ def codegen(
             _followed(declared, follow),
             stem=stem,
             origin=Path(model).name,
-            target=target,
+            targets=tuple(dict.fromkeys(targets)),
             directory=output,
             inverse=inverse,
             actuated=names,

@@ -17,6 +17,7 @@ import eomgen
 from eomgen import equations, pipeline
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
+from eomgen.codegen.targets import ALL
 from eomgen.proof.check import Certificate, Check
 from eomgen.shell import LATER
 from eomgen.version import __version__
@@ -462,6 +463,19 @@ def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
     for source in (names[0], names[2]):
         subprocess.run([*command, source, "-lm"], cwd=tmp_path, check=True)
         subprocess.run(["./t"], cwd=tmp_path, check=True)
+
+
+def test_the_languages_are_those_of_the_seam(tmp_path):
+    """codegen --list names ALL; an unknown one is exit 2 and names them too; several write into DIR/NAME."""
+    names = [target.name for target in ALL]
+    assert [line.split()[0] for line in run("codegen", "--list").stdout.splitlines()] == names
+    assert [row["name"] for row in json.loads(run("codegen", "--list", "--json").stdout)["targets"]] == names
+    wrong = run("codegen", PENDULUM, "--target", "fortran", "-o", str(tmp_path))
+    assert wrong.exit_code == 2 and ", ".join(names) in wrong.stderr and not list(tmp_path.iterdir())
+    assert run("codegen", "-o", str(tmp_path)).exit_code == run("codegen", PENDULUM).exit_code == 2
+    both = [word for name in names for word in ("--target", name)]
+    payload = json.loads(run("codegen", PENDULUM, *both, "-o", str(tmp_path), "--json").stdout)
+    assert payload["targets"] == names and {Path(file).parent.name for file in payload["files"]} == set(names)
 
 
 def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):

@@ -203,7 +203,7 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
     assert 1 <= len(partial) < len(found) and all(v.result[1] == pytest.approx(v.x[0] + v.x[1]) for v in partial)
     for v in found:
         assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
-    paths = write_files("roots", program, Description("Roots", "", {}, found), target=target, directory=tmp_path)
+    paths = write_files("roots", program, Description("Roots", "", {}, found), targets=[target], directory=tmp_path)
     assert sum(row["dx"][0] is None for row in json.loads(paths[-1].read_text())["vectors"]) == len(partial)
     if target == "c":
         assert self_test(paths[0]).returncode == 0
@@ -292,7 +292,9 @@ def described(program) -> Description:
 
 def written(tmp_path, target, assembly=None, inputs=None):
     program = right_hand_side(assembly or cart_pole(), {"F": 0} if inputs is None else inputs)
-    return write_files("cart-pole", program, described(program), target=target, directory=tmp_path / "new" / "folder")
+    return write_files(
+        "cart-pole", program, described(program), targets=[target], directory=tmp_path / "new" / "folder"
+    )
 
 
 @pytest.mark.parametrize("target", TARGETS)
@@ -316,7 +318,7 @@ def reactions_written(tmp_path, target):
         "double_pendulum",
         equations.program,
         description,
-        target=target,
+        targets=[target],
         directory=tmp_path,
         reactions=(reactions, told),
     )
@@ -429,8 +431,23 @@ def test_nothing_half_written_is_left(tmp_path, monkeypatch):
     program = right_hand_side(pendulum())
     monkeypatch.setattr(Path, "write_text", full)
     with pytest.raises(RunFailed, match="No space left"):
-        write_files("a", program, described(program), target="c", directory=tmp_path / "out")
+        write_files("a", program, described(program), targets=["c"], directory=tmp_path / "out")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_files_of_several_targets_lie_each_in_a_folder_of_its_own(tmp_path):
+    """One target writes into DIR, several into DIR/X/, each with the same test vectors."""
+    program = right_hand_side(pendulum())
+    one, several = (
+        write_files("p", program, described(program), targets=names, directory=tmp_path / str(len(names)))
+        for names in (TARGETS[:1], TARGETS)
+    )
+    assert {path.parent for path in one} == {tmp_path / "1"}
+    assert {path.parent.name for path in several} == set(TARGETS)
+    texts = {path.read_text() for path in (*one, *several) if path.suffix == ".json"}
+    assert len(texts) == 1
+    for path in one:
+        assert path.read_text() == (tmp_path / str(len(TARGETS)) / TARGETS[0] / path.name).read_text()
 
 
 def test_an_unknown_target_is_refused_with_those_that_there_are():

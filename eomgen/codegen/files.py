@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eomgen.codegen.names import identifier
@@ -25,7 +25,7 @@ def write_files(
     program: Program,
     description: Description,
     *,
-    target: str,
+    targets: Sequence[str],
     directory: Path,
     reactions: Emitted | None = None,
     inverse: Emitted | None = None,
@@ -36,7 +36,7 @@ def write_files(
         name: of the functions: the model file's stem; what is no identifier is made one.
         program: the right-hand side.
         description: title, origin, remarks and test vectors.
-        target: "c" or "numpy".
+        targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
         directory: where to; made if it is not there.
         reactions: their program and its description, or None where there are none.
         inverse: the same of inverse dynamics, where they are asked for.
@@ -45,11 +45,15 @@ def write_files(
     Raises:
         RunFailed: the folder cannot be written; nothing is then left behind.
     """
-    texts = target_named(target).files(program, identifier(name), description)
-    for emitted in (reactions, inverse):
-        if emitted is not None:
-            texts |= target_named(target).files(emitted[0], identifier(name), emitted[1])
-    texts["test_vectors.json"] = vectors_text(program, description, reactions, inverse)
+    answers = vectors_text(program, description, reactions, inverse)
+    texts: dict[str, str] = {}
+    for target in map(target_named, dict.fromkeys(targets)):
+        folder = "" if len(set(targets)) == 1 else f"{target.name}/"
+        for emitted in ((program, description), reactions, inverse):
+            if emitted is not None:
+                files = target.files(emitted[0], identifier(name), emitted[1])
+                texts |= {f"{folder}{file}": text for file, text in files.items()}
+        texts[f"{folder}test_vectors.json"] = answers
     try:
         return _written(texts, directory)
     except OSError as error:
@@ -113,7 +117,9 @@ def _written(texts: Mapping[str, str], directory: Path) -> list[Path]:
     directory.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=directory, prefix=".eomgen-") as aside:
         for name, text in texts.items():
+            (Path(aside) / name).parent.mkdir(exist_ok=True)
             (Path(aside) / name).write_text(text, encoding="utf-8")
         for name in texts:
+            (directory / name).parent.mkdir(exist_ok=True)
             os.replace(Path(aside) / name, directory / name)
     return [directory / name for name in texts]

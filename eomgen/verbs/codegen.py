@@ -7,7 +7,8 @@ from pathlib import Path
 
 from eomgen import pipeline
 from eomgen.codegen.files import Emitted, write_files
-from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.rhs import RightHandSide, target_named
+from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import INVERSE, REACTIONS, Description
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
@@ -23,7 +24,7 @@ def codegen(
     *,
     stem: str,
     origin: str,
-    target: str,
+    targets: tuple[str, ...],
     directory: str,
     inverse: bool = False,
     actuated: tuple[str, ...] = (),
@@ -32,9 +33,12 @@ def codegen(
     """The right-hand side and the reactions as files that compile as they are, with test vectors.
 
     Args:
+        targets: the languages; the files of one lie in the directory, of several each in a folder of its name.
         inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
     """
+    for name in targets:
+        target_named(name)  # refuses what is none before anything is derived
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
     program, rhs = equations.program, equations.rhs("numpy")
@@ -50,12 +54,13 @@ def codegen(
     paths = [
         str(path)
         for path in write_files(
-            stem, program, description, target=target, directory=Path(directory), reactions=reactions, inverse=moved
+            stem, program, description, targets=targets, directory=Path(directory), reactions=reactions, inverse=moved
         )
     ]
     payload = {
         "name": model.name,
-        "target": target,
+        "target": targets[0],
+        "targets": list(targets),
         "files": paths,
         "operations": program.count.total,
         "hoisted_operations": program.count.hoisted,
@@ -69,6 +74,12 @@ def codegen(
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
     return Outcome("".join(f"{path}\n" for path in paths), payload, notes=(note,) if note else ())
+
+
+def languages() -> Outcome:
+    """The targets that there are, a line each."""
+    found = [{"name": target.name, "about": target.about} for target in ALL]
+    return Outcome("".join(f"{target.name:10} {target.about}\n" for target in ALL), {"targets": found})
 
 
 def _reactions(

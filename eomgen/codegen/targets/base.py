@@ -103,12 +103,14 @@ class Target:
 
     Args:
         name: as the user says it.
+        about: the language, and what its files need.
         text: (program, stem, role) -> its functions in the language.
         files: (program, stem, description) -> {file name: text}, ready to be used by others.
         load: the program, callable.
     """
 
     name: str
+    about: str
     text: Callable[[Program, str, Role], str]
     files: Callable[[Program, str, Description], dict[str, str]]
     load: Callable[[Program], Functions]

@@ -294,4 +294,4 @@ def files(program: Program, stem: str, description: Description) -> dict[str, st
     return {f"{name}.c": f"{defined}\n{test}", f"{name}.h": declared}
 
 
-TARGET = Target("c", c_text, files, load)
+TARGET = Target("c", "C99, no dependencies", c_text, files, load)

@@ -251,4 +251,4 @@ def _solving_text(solve: Solve) -> str:
     return "\n".join([*limits, "", text[text.index("\ndef ") :], "", sizes, zeros, _SOLVED])
 
 
-TARGET = Target("numpy", python_text, files, load)
+TARGET = Target("numpy", "Python with numpy", python_text, files, load)
