@@ -20,12 +20,12 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.journey import Journey
-from eomgen.mechanics.constants.constants_of_motion import stays
-from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
-from eomgen.mechanics.loops.start import start_state
-from eomgen.mechanics.outputs import LINEARIZED, asks_motion
-from eomgen.mechanics.speeds import rates_of
-from eomgen.mechanics.worth import known_parameters
+from eomgen.mechanics.first_integrals.constants_of_motion import stays
+from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.initial_state.numeric_value import known_parameters
+from eomgen.mechanics.instant.outputs import LINEARIZED, asks_motion
+from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters

@@ -9,9 +9,9 @@ every body and of the whole, the emitted code.
 from __future__ import annotations
 
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.friction import rubs
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.friction import rubs
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.proof import identities, trials
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.numeric.gc_pause import growing

@@ -15,14 +15,14 @@ from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, MissingValues
-from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.friction import with_rest
-from eomgen.mechanics.inverse import inverse_of
-from eomgen.mechanics.loops.start import start_state
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.system import System
-from eomgen.mechanics.wellposed import refuse_massless
+from eomgen.mechanics.balance.friction import with_rest
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.wellposed import refuse_massless
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.reactions.inverse import inverse_of
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.normal_form import readable_all

@@ -11,11 +11,11 @@ from random import Random
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import EomgenError, RunFailed
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loops.closed_instant import ClosedInstant
-from eomgen.mechanics.places import Located
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.places import Located
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.closed_instant import ClosedInstant
 from eomgen.model.values import exact_parameters
 from eomgen.simulation.locating import Locating, Numbers, State, values_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted

@@ -16,11 +16,11 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, MissingValues, RunFailed
 from eomgen.instants import Instant, reached
-from eomgen.mechanics.loops.start import Start, start_of_motion
-from eomgen.mechanics.places import Located
+from eomgen.mechanics.bodies.places import Located
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.mechanics.system import system_of
-from eomgen.mechanics.ties import holds_identically
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters

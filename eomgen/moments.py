@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equilibria.holding import holding_of
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equilibria.loads_at_rest import holding_of
 from eomgen.mechanics.equilibria.search import all_equilibria
 from eomgen.mechanics.equilibria.static_equations import static_equations
-from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.situation import Situation
 from eomgen.symbolic.expression.derivative import depends_on, substituted

@@ -9,10 +9,10 @@ from typing import Any
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion

@@ -12,14 +12,14 @@ from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.bodies.gimbal import locks_of
+from eomgen.mechanics.constraints.edges import edges_of, left_of, stopped_at
+from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.equations.stabilization import stabilized
+from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.gimbal import locks_of
-from eomgen.mechanics.loops.edges import edges_of, left_of, stopped_at
-from eomgen.mechanics.loops.elimination import singular_blocks
-from eomgen.mechanics.loops.stabilization import stabilized
-from eomgen.mechanics.loops.start import Start, start_of_motion
-from eomgen.mechanics.wellposed import is_conservative
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition, condition_of
 from eomgen.simulation.contacts import has_phases

@@ -15,24 +15,24 @@ from functools import cached_property
 
 from eomgen.codegen.solved_equations import accelerations_and_multipliers
 from eomgen.errors import MissingValues
-from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.explicit import bordered_rows, regular_rows
+from eomgen.mechanics.balance.balance_solution import values_at_a_state
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.balance.unknown_loads import still
+from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.closure import number as precise
+from eomgen.mechanics.constraints.freedom import freedoms
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.loads import start_value, with_unit_quaternions
-from eomgen.mechanics.loops.closure import number as precise
-from eomgen.mechanics.loops.freedom import freedoms
-from eomgen.mechanics.loops.start import fixed_by_position, start_speeds
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
+from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
-from eomgen.mechanics.outputs import Quantities
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reacting.balance_solution import values_at_a_state
-from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.statics.unknown_loads import still
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.ties import holds_identically
-from eomgen.mechanics.wellposed import refuse_massless
+from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
 from eomgen.symbolic.exact.normal_form import legible, readable_all

@@ -14,10 +14,10 @@ from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.journey import Journey
+from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.kinematic_state import KinematicState, State
-from eomgen.mechanics.instant.snapshot import Snapshot, snapshot_of
-from eomgen.mechanics.loops.freedom import counted, freedoms
+from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
 from eomgen.model.parts import Given, Model

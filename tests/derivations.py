@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import DerivationError, NotYet
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unknowns import in_loads

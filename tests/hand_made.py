@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, Scalar
 from eomgen.symbolic.expression.symbols import Symbols

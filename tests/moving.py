@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import eomgen
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.system import System, system_of
 from eomgen.proof.trials import real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -225,7 +225,7 @@ def test_a_missing_package_is_exit_code_4(monkeypatch):
     monkeypatch.setitem(sys.modules, "numpy", None)
     with monkeypatch.context() as patch:
         patch.delitem(sys.modules, "eomgen.verbs.check")
-        patch.delitem(sys.modules, "eomgen.mechanics.loops.freedom", raising=False)
+        patch.delitem(sys.modules, "eomgen.mechanics.constraints.freedom", raising=False)
         result = run("check", PENDULUM)
     assert result.exit_code == 4
     assert "the package 'numpy' is not installed" in result.stderr

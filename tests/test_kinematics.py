@@ -9,10 +9,10 @@ from moving import at, equal, rate, state_of, written
 
 import eomgen
 from eomgen.errors import DerivationError, ModelError
+from eomgen.mechanics.bodies.kinematics import slide_of, velocity_of
+from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.kinematics import slide_of, velocity_of
-from eomgen.mechanics.loads import SystemScene
-from eomgen.mechanics.system import System
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, apply

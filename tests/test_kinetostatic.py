@@ -12,9 +12,9 @@ from derivations import by_every_method, equations, model_called, read_back
 
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.explicit import short_accelerations
-from eomgen.mechanics.reacting.named_reactions import named_reactions
-from eomgen.mechanics.reacting.reactions import reactions_of
+from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
 from eomgen.report import rendered

@@ -9,11 +9,11 @@ import pytest
 
 import eomgen
 from eomgen.codegen.solved_equations import accelerations_and_multipliers
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.instant.outputs import COMPONENTS, LINEARIZED, MAGNITUDES, OF_MOTION, TURNING, Quantities
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
-from eomgen.mechanics.outputs import COMPONENTS, LINEARIZED, MAGNITUDES, OF_MOTION, TURNING, Quantities
-from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.symbolic.expression.derivative import derivative
 from eomgen.symbolic.expression.expressions import parse

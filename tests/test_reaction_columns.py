@@ -17,10 +17,10 @@ from moving import at
 import eomgen
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.loops.closure import generic_state
-from eomgen.mechanics.outputs import Quantities
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import named_reactions
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.trials import accelerations_at

@@ -6,9 +6,9 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reacting.release import released, stays_straight
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.ties import rows_of
+from eomgen.mechanics.balance.release import released, stays_straight
+from eomgen.mechanics.constraints.ties import rows_of
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """

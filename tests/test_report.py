@@ -23,9 +23,9 @@ from derivations import (
 
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.inertia import kinetic_energy
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import generalized_forces, per_speed
+from eomgen.mechanics.bodies.inertia import kinetic_energy
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.report import ALL, rendered
 from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import symbols_in

@@ -15,8 +15,8 @@ import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import RunFailed, UsageError
+from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.loops.stabilization import stabilized
 from eomgen.report.figures import mathtext
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.integrate import METHODS, drift_of, integrate

@@ -15,7 +15,7 @@ from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import layout
 from eomgen.codegen.targets.parts import LONG, parts_of
 from eomgen.codegen.vectors import vectors
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import is_zero
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loops.freedom import rank_of_ties
-from eomgen.mechanics.system import System
+from eomgen.mechanics.constraints.freedom import rank_of_ties
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE
 

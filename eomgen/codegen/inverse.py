@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.codegen.program import Program, Solve, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.mechanics.inverse import Inverse
+from eomgen.mechanics.reactions.inverse import Inverse
 
 
 @dataclass(frozen=True)

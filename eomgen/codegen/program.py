@@ -13,7 +13,7 @@ from typing import Literal
 from eomgen.codegen import factorization
 from eomgen.codegen.sparsity import Places, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.symbols import Symbols

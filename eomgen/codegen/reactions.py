@@ -10,10 +10,10 @@ import numpy as np
 
 from eomgen.codegen.program import Program, program_in_motion
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import named_reactions
-from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.symbolic.expression.graph import Scalar
 
 

@@ -10,11 +10,11 @@ from contextlib import suppress
 
 from eomgen.codegen.factorization import solved
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.explicit import by_determinants, regular_rows
-from eomgen.mechanics.reacting.balance_solution import values_at_a_state
-from eomgen.mechanics.reacting.reduced import FEW, by_independent
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.balance_solution import values_at_a_state
+from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.explicit_accelerations import by_determinants, regular_rows
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.accelerations_at_start import FEW, by_independent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.solve import cramer, linear

@@ -9,14 +9,14 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.bodies.inertia import kinetic_energy
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import powered_forces, total
 from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.inertia import kinetic_energy
-from eomgen.mechanics.inverse import residual
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import powered_forces, total
+from eomgen.mechanics.reactions.inverse import residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent

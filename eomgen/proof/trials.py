@@ -11,15 +11,15 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.friction import frictions, rubbing_contacts, sizes_of
-from eomgen.mechanics.kinematics import spin_between
-from eomgen.mechanics.loops.closure import generic_state, on_spheres
-from eomgen.mechanics.maximal import free_body_accelerations
-from eomgen.mechanics.reacting.equilibrium import imbalance
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.friction import frictions, rubbing_contacts, sizes_of
+from eomgen.mechanics.bodies.contact_modes import CLOSED
+from eomgen.mechanics.bodies.kinematics import spin_between
+from eomgen.mechanics.constraints.closure import generic_state, on_spheres
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.formulations.free_bodies import free_body_accelerations
+from eomgen.mechanics.reactions.equilibrium import imbalance
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of

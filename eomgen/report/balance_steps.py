@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.reacting.balance import BodyEquation
+from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.model.trusses import called
 from eomgen.report.bounded import FULL
 from eomgen.report.motion_steps import Pair

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.formulations import lagrange, projection
-from eomgen.mechanics.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import generalized_forces
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import reactions_table_step
 from eomgen.report.energy_steps import Momenta

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.kinematics import GROUND, Link
-from eomgen.mechanics.loads import SystemScene
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.kinematics import GROUND, Link
+from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.equations.system import System
 from eomgen.model.composite import pose_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.forces.load import Couple, PointForce

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.mechanics.inertia import BodyEnergy, armature_energy
-from eomgen.mechanics.loads import Applied, JointEffort
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import effort_row, force_row, per_speed
+from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy
+from eomgen.mechanics.bodies.loads import Applied, JointEffort
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import effort_row, force_row, per_speed
 from eomgen.model.forces.load import Couple, Load, PointForce
 from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, axes, components

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.report.bounded import elsewhere
 from eomgen.report.friction_steps import friction_of
 from eomgen.report.reading import (

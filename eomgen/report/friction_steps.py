@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from eomgen.mechanics.assembly import Assembly, Row
-from eomgen.mechanics.friction import Rub
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.friction import Rub
+from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, decided, length_in_print, readable_value

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.constants.constants_of_motion import Constant, momenta_of_the_whole
-from eomgen.mechanics.constants.integrals import Integral, energy_integral, momentum_integrals
-from eomgen.mechanics.constants.laws import laws_of_motion
-from eomgen.mechanics.explicit import short_accelerations
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
+from eomgen.mechanics.first_integrals.integrals import Integral, energy_integral, momentum_integrals
+from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import listed

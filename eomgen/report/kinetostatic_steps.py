@@ -6,9 +6,9 @@ equations of motion: there the reactions do no work and drop out. The rest of th
 
 from __future__ import annotations
 
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import projection
-from eomgen.mechanics.system import System
 from eomgen.report import motion_steps, projection_steps
 from eomgen.report.balance_steps import body_steps, reactions_table_step
 from eomgen.report.equation_steps import Result, equations_of, sides_of

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.system import System
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import Result, Sides, closing, multiplier_forces, printed, readable_equations
 from eomgen.report.reading import Reader

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from eomgen.mechanics.inertia import BodyEnergy, mass_properties
-from eomgen.mechanics.kinematics import Link
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row
+from eomgen.mechanics.bodies.inertia import BodyEnergy, mass_properties
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import PointForce
 from eomgen.model.quaternions import quaternions_of
 from eomgen.report.bounded import page

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.equation_steps import multiplier_forces
 from eomgen.report.json_form import VERSION, steps

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.kinematics import velocity_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import velocity_of
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, at_rest, components, spins
 from eomgen.report.reading import Reader

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import LONGEST, Reader, length_in_print, without_cases
 from eomgen.symbolic.expression.derivative import depends_on

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Container
 from dataclasses import dataclass
 
-from eomgen.mechanics.friction import Rub, rubbing_contacts
-from eomgen.mechanics.reacting.balance import Balance
-from eomgen.mechanics.reacting.components import EACH_AXIS, Component
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, unit_of
-from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.mechanics.ties import Row
+from eomgen.mechanics.balance.balance import Balance
+from eomgen.mechanics.balance.components import EACH_AXIS, Component
+from eomgen.mechanics.balance.friction import Rub, rubbing_contacts
+from eomgen.mechanics.balance.named_reactions import NamedReaction, unit_of
+from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
 from eomgen.report.statements import Meaning, Table

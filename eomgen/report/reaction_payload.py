@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import Reader, readable_value, without_cases
 from eomgen.symbolic.expression.graph import Scalar, is_zero

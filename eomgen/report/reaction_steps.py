@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.speeds import rates_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of, shown_system
 from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.explicit import short_accelerations
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reacting.balance_solution import Combination
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.balance_solution import Combination
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, length_in_print, readable_value
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted

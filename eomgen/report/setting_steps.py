@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.loops.elimination import dependent_coordinates
-from eomgen.mechanics.loops.integrability import integrability_of
-from eomgen.mechanics.scope import Scope
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.constraints.integrability import integrability_of
+from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
 from eomgen.symbolic.expression.graph import Node, Scalar

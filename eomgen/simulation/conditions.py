@@ -6,8 +6,8 @@ import dataclasses
 from collections.abc import Callable
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
-from eomgen.mechanics.outputs import Quantities
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from eomgen.mechanics.contacts import Mode
+from eomgen.mechanics.bodies.contact_modes import Mode
 from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.part import altered
 from eomgen.model.parts import Model

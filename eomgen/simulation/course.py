@@ -13,9 +13,9 @@ import numpy as np
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
-from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.loops.stabilization import Rates
-from eomgen.mechanics.loops.start import start_state
+from eomgen.mechanics.bodies.contact_modes import Mode
+from eomgen.mechanics.equations.stabilization import Rates
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eomgen.mechanics.ties import STILL
+from eomgen.mechanics.constraints.ties import STILL
 
 SLIDES = 1e2 * float(STILL)  # |v|, at which friction is all but along it [m/s]
 BRIEF = 1e-2  # of the phase, the longest time that is waited for it

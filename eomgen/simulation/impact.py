@@ -18,9 +18,9 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.ties import Row, rows_of
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row, rows_of
 from eomgen.simulation.stage import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Scalar

@@ -18,13 +18,13 @@ import numpy as np
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, RunFailed
-from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.constants.relations import Relations, relations_of
-from eomgen.mechanics.loops.closed_instant import position_equations
-from eomgen.mechanics.loops.elimination import singular_blocks
-from eomgen.mechanics.speeds import rates_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.closed_instant import position_equations
+from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
 from eomgen.simulation.arrival import Arrival, first_arrival
 from eomgen.simulation.configurations import Configurations
 from eomgen.simulation.measures import nearness_of

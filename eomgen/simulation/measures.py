@@ -8,10 +8,10 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loops.elimination import singular_blocks
-from eomgen.mechanics.loops.freedom import rank_of_ties
-from eomgen.mechanics.system import System
+from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.constraints.freedom import rank_of_ties
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.simulation.independence import Independence
 from eomgen.simulation.nearness import Measure, Nearness
 from eomgen.symbolic.expression.graph import Scalar

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eomgen.mechanics.loops.edges import left_of, stopped_at
+from eomgen.mechanics.constraints.edges import left_of, stopped_at
 from eomgen.model.parts import Model
 from eomgen.simulation.conditions import Condition as Ending
 from eomgen.simulation.contacts import Configuration

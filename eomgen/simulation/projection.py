@@ -22,10 +22,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.spheres import Places, on_spheres, spheres_of
+from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.closure import gaps_of
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.loops.closure import gaps_of
-from eomgen.mechanics.system import System
-from eomgen.mechanics.tree import branches_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import weighted, without_rounding
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR

@@ -18,9 +18,9 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.reactions import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reacting.balance import BodyEquation
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.mechanics.balance.balance import BodyEquation
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.simulation.first_slide import begun
 from eomgen.simulation.peeling import Step, solved, steps_of
 from eomgen.simulation.trajectory import Trajectory

@@ -14,8 +14,8 @@ from itertools import islice, product
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.bodies.contact_modes import Mode
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
 from eomgen.simulation.contacts import Configuration, on_pieces

@@ -12,8 +12,8 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, kinematics, program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.simulation.solvers import Slope
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Scalar

@@ -10,12 +10,12 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.loops.edges import edges_of
-from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.mechanics.system import System
-from eomgen.mechanics.wellposed import is_conservative, refuse_massless
+from eomgen.mechanics.constraints.edges import edges_of
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.wellposed import is_conservative, refuse_massless
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration

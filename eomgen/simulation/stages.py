@@ -11,13 +11,13 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.contacts import Mode, Modes
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.balance.release import released, stays_straight
+from eomgen.mechanics.bodies.contact_modes import Mode, Modes
+from eomgen.mechanics.constraints.freedom import freedoms, redundant_rows
+from eomgen.mechanics.equations.stabilization import Rates, stabilized
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.loops.freedom import freedoms, redundant_rows
-from eomgen.mechanics.loops.stabilization import Rates, stabilized
-from eomgen.mechanics.reacting.release import released, stays_straight
-from eomgen.mechanics.system import System, system_of
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
 from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces

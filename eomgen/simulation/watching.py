@@ -16,12 +16,12 @@ from functools import cached_property
 from typing import Any, Literal
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.contacts import Mode
-from eomgen.mechanics.loops.freedom import redundant_rows
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row, rows_of
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.bodies.contact_modes import Mode
+from eomgen.mechanics.constraints.freedom import redundant_rows
+from eomgen.mechanics.constraints.ties import Row, rows_of
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.contacts import Contact
 from eomgen.simulation.contacts import Configuration
 from eomgen.symbolic.expression.functions import function, sqrt

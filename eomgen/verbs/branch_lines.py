@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.loops.branches import Branch, Branches
+from eomgen.mechanics.initial_state.assembly_modes import Branch, Branches
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.verbs.outcome import listed

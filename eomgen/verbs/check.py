@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from eomgen.mechanics.loops.freedom import Freedom
-from eomgen.mechanics.statics.structure import Structure
+from eomgen.mechanics.constraints.freedom import Freedom
+from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.parts import Model, Truss
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.branch_lines import branch_lines

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import EomgenError, MissingValues, ModelError
-from eomgen.mechanics.contacts import Modes
-from eomgen.mechanics.instant.snapshot import mobility_of
-from eomgen.mechanics.loops.branches import Branches, branches_of_loops
-from eomgen.mechanics.loops.freedom import Freedom, freedom_of
-from eomgen.mechanics.loops.start import Start, start_of_motion
+from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.constraints.freedom import Freedom, freedom_of
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.assembly_modes import Branches, branches_of_loops
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
+from eomgen.mechanics.instant.velocity_analysis import mobility_of
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.mechanics.statics.structure import Structure, structure_of
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters

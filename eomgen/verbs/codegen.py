@@ -12,7 +12,7 @@ from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import INVERSE, REACTIONS, Description
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reacting.named_reactions import named_reactions
+from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
 from eomgen.running import pulling
 from eomgen.verbs.outcome import Outcome, listed

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.loops.freedom import Freedom, RowName
-from eomgen.mechanics.loops.integrability import VelocityRow
+from eomgen.mechanics.constraints.freedom import Freedom, RowName
+from eomgen.mechanics.constraints.integrability import VelocityRow
 from eomgen.model.parts import Model
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.outcome import listed

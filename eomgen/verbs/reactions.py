@@ -14,9 +14,9 @@ from eomgen import answers, pipeline
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.reacting.balance import balance_of
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.balance.balance import balance_of
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.fields import AtRest, Equation
 from eomgen.model.part import altered

@@ -7,9 +7,9 @@ import pytest
 from moving import State, at, equal, solved, state_of, written
 
 import eomgen
-from eomgen.mechanics.loads import body_wrench
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row
+from eomgen.mechanics.bodies.loads import body_wrench
+from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.equations.system import System
 from eomgen.model.constraints import ALL
 from eomgen.symbolic.expression.derivative import gradient, tangent
 from eomgen.symbolic.expression.graph import Scalar

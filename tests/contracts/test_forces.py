@@ -10,10 +10,10 @@ from moving import at, equal, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
+from eomgen.mechanics.bodies.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
 from eomgen.mechanics.formulations import projection
-from eomgen.mechanics.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
 from eomgen.symbolic.expression.derivative import gradient

@@ -11,13 +11,13 @@ from moving import at, equal, state_of, written
 from random_systems import random_model
 
 import eomgen
-from eomgen.mechanics import articulated
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.bodies.inertia import armature_energy
+from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.equations import articulated
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
-from eomgen.mechanics.inertia import armature_energy
-from eomgen.mechanics.maximal import free_body_accelerations
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.tree import branches_of
+from eomgen.mechanics.formulations.free_bodies import free_body_accelerations
 from eomgen.model.unbuilt import unbuilt
 from eomgen.proof.trials import accelerations_at
 from eomgen.symbolic.numeric.evaluation import NoValue

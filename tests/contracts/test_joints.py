@@ -8,8 +8,8 @@ from moving import at, equal, rate, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
-from eomgen.mechanics.kinematics import Link, spin_between
-from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.bodies.kinematics import Link, spin_between
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.model.joints import ALL
 from eomgen.model.joints.orientation import SEQUENCES
 from eomgen.symbolic.expression.functions import cos, sin

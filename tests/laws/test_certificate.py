@@ -12,11 +12,15 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics import contacts, friction, inertia, kinematics, recursion, ties, tree
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.reacting import balance, components, effects, reactions
-from eomgen.mechanics.reacting.balance import Balance, BodyEquation
-from eomgen.mechanics.reacting.equilibrium import imbalance
+from eomgen.mechanics.balance import balance, components, friction
+from eomgen.mechanics.balance import unit_wrenches as effects
+from eomgen.mechanics.balance.balance import Balance, BodyEquation
+from eomgen.mechanics.bodies import contact_modes as contacts
+from eomgen.mechanics.bodies import inertia, kinematics, recursion, tree
+from eomgen.mechanics.constraints import ties
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.reactions import reactions
+from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
 from eomgen.model.unknowns import in_loads

@@ -15,8 +15,8 @@ from moving import equal
 import eomgen
 from eomgen import certificate
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.loops import elimination
-from eomgen.mechanics.system import free_system_of, system_of
+from eomgen.mechanics.constraints import elimination
+from eomgen.mechanics.equations.system import free_system_of, system_of
 from eomgen.proof import identities
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.solve import cramer

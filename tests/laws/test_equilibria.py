@@ -9,9 +9,9 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.equilibria.holding import holding_of
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.equilibria.loads_at_rest import holding_of
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
-from eomgen.mechanics.system import system_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions

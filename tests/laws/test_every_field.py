@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import eomgen
-from eomgen.mechanics.friction import rubs
+from eomgen.mechanics.balance.friction import rubs
 from eomgen.model import constraints, forces, joints
 from eomgen.model.part import Part, slots_of
 from eomgen.proof import identities, trials

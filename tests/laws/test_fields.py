@@ -16,6 +16,7 @@ import eomgen
 from eomgen import answers
 from eomgen.errors import DerivationError
 from eomgen.journey import Journey
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.field import (
     Field,
@@ -29,7 +30,6 @@ from eomgen.mechanics.fields.field import (
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.instant.body_motion import body_motions
-from eomgen.mechanics.system import system_of
 from eomgen.situation import Situation, situation_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.expressions import parse

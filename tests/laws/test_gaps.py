@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.loops.branches import branches_of_loops
-from eomgen.mechanics.loops.start import start_of_motion
+from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.model.parts import Model
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.projection import projection_of

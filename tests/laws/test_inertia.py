@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import dblquad
 
 import eomgen
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
 from eomgen.mechanics.masses.principal import principal_of, values_of
-from eomgen.mechanics.system import System, system_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 

@@ -8,9 +8,9 @@ from random import Random
 import pytest
 
 import eomgen
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
-from eomgen.mechanics.statics.structure import structure_of
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 

@@ -14,11 +14,11 @@ from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
 from eomgen.instants import Instant, reached
-from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.constants.integrals import energy_integral
-from eomgen.mechanics.loops.closed_instant import position_equations
-from eomgen.mechanics.loops.start import start_state
-from eomgen.mechanics.places import Located, places_of
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.first_integrals.closed_instant import position_equations
+from eomgen.mechanics.first_integrals.integrals import energy_integral
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.arrival import NeverReached, first_arrival
 from eomgen.situation import Situation, situation_of, start_of

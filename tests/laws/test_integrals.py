@@ -9,10 +9,10 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.articulated import with_accelerations
-from eomgen.mechanics.constants.integrals import first_integrals
-from eomgen.mechanics.constants.laws import laws_of_motion
-from eomgen.mechanics.speeds import rates_of
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.first_integrals.integrals import first_integrals
+from eomgen.mechanics.first_integrals.laws import laws_of_motion
+from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.situation import Situation, situation_of
 from eomgen.symbolic.exact.equality import equal_at_random_states

@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import eomgen
-from eomgen.mechanics.loops.branches import branches_of_loops
-from eomgen.mechanics.loops.start import start_of_motion
+from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from tests.float_loops import Chain, Closing, Link, bricard
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")

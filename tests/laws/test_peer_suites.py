@@ -10,8 +10,8 @@ from mpmath import mp
 from scipy.integrate import solve_ivp
 
 import eomgen
-from eomgen.mechanics.loops.branches import branches_of_loops
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
 
 SPACE = 'eomgen = 1\nname = "peer"\nspace = "space"\n'
 PLANE = 'eomgen = 1\nname = "peer"\nspace = "plane"\n'

@@ -12,10 +12,10 @@ from free_bodies import Tree, read
 from random_systems import Writer
 
 import eomgen
-from eomgen.mechanics.drive import drive
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import System, system_of
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.reactions.drive import drive
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 

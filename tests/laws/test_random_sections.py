@@ -9,11 +9,11 @@ import pytest
 from random_frames import stiff_frame
 
 import eomgen
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.statics.influence import influence_line
 from eomgen.mechanics.statics.section_forces import KINDS, section_forces
-from eomgen.mechanics.statics.structure import structure_of
 from eomgen.mechanics.statics.two_ways import static_reactions_of
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 FRAMES = [(1, 1), (2, 1), (3, 2), (4, 2), (5, 3), (6, 3), (7, 4), (8, 4)]

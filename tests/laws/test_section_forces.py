@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.reacting.reactions import reactions_of
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
-from eomgen.mechanics.system import system_of
 from eomgen.symbolic.expression.derivative import derivative, symbols_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text

@@ -11,11 +11,11 @@ from random_structures import RandomStructure, determinate
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.statics.blocks import blocks_of
-from eomgen.mechanics.statics.structure import structure_of
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.statics.two_ways import StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work, loads_at_rest
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.structures.blocks import blocks_of
+from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 
@@ -146,7 +146,7 @@ def test_virtual_work_does_not_use_the_solution_of_the_balance(monkeypatch):
     def refused(*_, **__):
         raise AssertionError("the balance was solved")
 
-    monkeypatch.setattr("eomgen.mechanics.reacting.reactions.solution_of_balance", refused)
+    monkeypatch.setattr("eomgen.mechanics.reactions.reactions.solution_of_balance", refused)
     named = asked_reactions(structure)["reaction_couple(E)"]
     assert to_text(by_virtual_work(structure, named).value) == "-20*p*a^2"
 

@@ -11,7 +11,7 @@ from moving import at, moved, state_of
 from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_velocity, g, m, particle, system_with, tie
 
 import eomgen
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 

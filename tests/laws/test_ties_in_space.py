@@ -15,7 +15,7 @@ from moving import solved, written
 
 import eomgen
 from eomgen.errors import EomgenError, ModelError
-from eomgen.mechanics.loops.freedom import freedom_of
+from eomgen.mechanics.constraints.freedom import freedom_of
 
 G = 9.81
 

@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import eomgen
-from eomgen.mechanics.constants.constants_of_motion import momenta_of_the_whole, stays
-from eomgen.mechanics.constants.integrals import energy_integral
+from eomgen.mechanics.first_integrals.constants_of_motion import momenta_of_the_whole, stays
+from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.small_motions.linearization import small_motions_of
 from eomgen.report import rendered
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.reactions.reactions import reactions_of
 
 LEVER = """
 eomgen = 1

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.static_equations import Row, StaticEquations
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.positive import positive_parameters
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import UsageError
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.system import System
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.equations.system import System
 from eomgen.model.values import first_guesses, start_values
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

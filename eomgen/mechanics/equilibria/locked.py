@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.mechanics.bodies.gimbal import Lock, locks_of
+from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.gimbal import Lock, locks_of
-from eomgen.mechanics.kinematics import Motion
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

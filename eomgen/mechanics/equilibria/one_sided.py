@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.contacts import CLOSED
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.reactions import reactions_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.bodies.contact_modes import CLOSED
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.contacts import contacts_of
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.system import System
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.symbolic.exact.normal_form import LIMIT, simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -17,8 +17,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equilibria.chosen import Chosen, chosen, holds_velocities, unheld
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.places import Located
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
+from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen, holds_velocities, unheld
 from eomgen.mechanics.equilibria.families import each_once, nearest_first
 from eomgen.mechanics.equilibria.guesses import Guess
 from eomgen.mechanics.equilibria.locked import is_balanced
@@ -26,11 +30,7 @@ from eomgen.mechanics.equilibria.one_sided import pulling
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, static_equations
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.places import Located
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import values_of_parameters
-from eomgen.mechanics.system import System
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

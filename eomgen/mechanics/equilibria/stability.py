@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equilibria.chosen import Chosen
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.freedom import rank_of_ties
+from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
-from eomgen.mechanics.loops.freedom import rank_of_ties
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import jacobian, substituted

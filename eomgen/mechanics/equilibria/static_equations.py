@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.loops.closed_instant import position_equations
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.work import generalized_forces, powered_forces
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equations.work import generalized_forces, powered_forces
+from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar

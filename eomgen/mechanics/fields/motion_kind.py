@@ -14,11 +14,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Constants, Curve, curve_of
 from eomgen.mechanics.fields.field import Field, axis_point, field_of
 from eomgen.mechanics.fields.possible import Possible
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.system import System
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, apply, cross, dot, minus, plus, times, transposed

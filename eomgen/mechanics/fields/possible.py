@@ -16,8 +16,8 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.loops.closure import State, generic_state, number
-from eomgen.mechanics.system import System
+from eomgen.mechanics.constraints.closure import State, generic_state, number
+from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, vector_of

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.fields.field import Field, field_of
-from eomgen.mechanics.kinematics import Motion
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     Matrix,

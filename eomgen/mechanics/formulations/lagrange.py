@@ -9,11 +9,11 @@ Where coordinates were eliminated, u_free = N u + nu, the equations of the free 
 
 from __future__ import annotations
 
-from eomgen.mechanics.assembly import Assembly, Row, assembled
-from eomgen.mechanics.inertia import kinetic_energy
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import generalized_forces, per_speed
+from eomgen.mechanics.bodies.inertia import kinetic_energy
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.symbolic.expression.derivative import gradient, jacobian, pullback, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar

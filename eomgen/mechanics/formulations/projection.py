@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.mechanics.armature import armature_bias, armature_mass
-from eomgen.mechanics.assembly import Assembly, Row, assembled
-from eomgen.mechanics.inertia import kinetic_energy, mass_properties
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.loads import Loads, body_wrench, joint_wrenches, weights
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import placeless_forces
+from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
+from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.loads import Loads, body_wrench, joint_wrenches, weights
+from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import placeless_forces
 from eomgen.symbolic.expression.derivative import pullback, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Inertia, Twist, Wrench, cross, plus

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.armature import armature_bias, armature_mass
-from eomgen.mechanics.assembly import Assembly, Row, assembled
-from eomgen.mechanics.inertia import kinetic_energy
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.loads import Loads
-from eomgen.mechanics.recursion import applied_wrenches, bias_forces, mass_matrix
-from eomgen.mechanics.system import System
-from eomgen.mechanics.tree import Branch, branches_of
-from eomgen.mechanics.work import generalized_forces, joint_forces, placeless_forces
+from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
+from eomgen.mechanics.bodies.inertia import kinetic_energy
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.loads import Loads
+from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces, mass_matrix
+from eomgen.mechanics.bodies.tree import Branch, branches_of
+from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces, joint_forces, placeless_forces
 from eomgen.symbolic.expression.spatial import ZERO, times
 
 name = "recursive"

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import (
     Field,
     acceleration_pole,
@@ -16,8 +18,6 @@ from eomgen.mechanics.fields.field import (
     rotation_center,
 )
 from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.system import System
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted

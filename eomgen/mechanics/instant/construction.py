@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
+from eomgen.mechanics.balance.components import Component, components_of
+from eomgen.mechanics.balance.unit_wrenches import Axes
+from eomgen.mechanics.constraints.freedom import is_particle
+from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.instant.mechanism import Mechanism
-from eomgen.mechanics.loops.freedom import is_particle
-from eomgen.mechanics.reacting.components import Component, components_of
-from eomgen.mechanics.reacting.effects import Axes
-from eomgen.mechanics.ties import holds_identically
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import is_zero

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.outputs import Quantities
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import values_for, values_of_parameters
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import holds_identically
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.values_at_rest import values_for, values_of_parameters
+from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.fields import Equation
 from eomgen.symbolic.exact.normal_form import collected_in, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted

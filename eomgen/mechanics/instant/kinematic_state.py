@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.freedom import is_particle
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import Field, field_of
+from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.mechanics.instant.construction import Found, Pair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
-from eomgen.mechanics.kinematics import Link
-from eomgen.mechanics.loops.freedom import is_particle
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.system import System
-from eomgen.mechanics.worth import Worth
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted

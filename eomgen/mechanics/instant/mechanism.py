@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.fields.centers import Homogeneous, homogeneous_center
 from eomgen.mechanics.fields.field import field_of
-from eomgen.mechanics.instant.centers import Homogeneous, homogeneous_center
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.system import System
-from eomgen.mechanics.worth import Worth
+from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.functions import over

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.kinematics import Motion, velocity_of
-from eomgen.mechanics.masses.made_of import made_of
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Motion, velocity_of
 from eomgen.mechanics.masses.principal import principal_moments
 from eomgen.model.composite import about
 from eomgen.model.shapes import MassProperties

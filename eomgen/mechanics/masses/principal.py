@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, cmp_to_key
 
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.scope import Scope
-from eomgen.mechanics.worth import known_parameters
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.initial_state.numeric_value import known_parameters
 from eomgen.symbolic.exact.normal_form import common_factor, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of

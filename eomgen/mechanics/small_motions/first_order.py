@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.wellposed import refuse_massless
+from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.friction import with_friction
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.loops.closed_instant import position_equations
 from eomgen.mechanics.small_motions.field import Matrix, Numbers, at
 from eomgen.mechanics.small_motions.reference import Reference
-from eomgen.mechanics.system import System
-from eomgen.mechanics.wellposed import refuse_massless
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar

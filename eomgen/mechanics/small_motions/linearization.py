@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, NotYet
-from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.small_motions.dependent_values import with_followers
 from eomgen.mechanics.small_motions.field import Exact, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
-from eomgen.mechanics.small_motions.followers import with_followers
 from eomgen.mechanics.small_motions.forms import (
     floats,
     is_second_order,
@@ -33,7 +34,6 @@ from eomgen.mechanics.small_motions.reference import (
 from eomgen.mechanics.small_motions.steadiness import reduced, refuse_corners, refuse_singular, steady_coordinates
 from eomgen.mechanics.small_motions.steady import steady_start
 from eomgen.mechanics.small_motions.steady_family import family_of
-from eomgen.mechanics.system import System
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.graph import Node

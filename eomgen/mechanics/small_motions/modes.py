@@ -9,7 +9,8 @@ from itertools import pairwise
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
 from eomgen.mechanics.small_motions.field import WORK, Entry
 from eomgen.mechanics.small_motions.linearization import SmallMotions, motions_beside
@@ -21,7 +22,6 @@ from eomgen.mechanics.small_motions.polynomial import (
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
-from eomgen.mechanics.statics.rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

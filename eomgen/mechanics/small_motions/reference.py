@@ -9,18 +9,18 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.assembly import Assembly
+from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
-from eomgen.mechanics.loads import start_value
-from eomgen.mechanics.loops.closed_instant import position_equations
-from eomgen.mechanics.loops.start import fixed_by_position, start_state
-from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.positive import positive_parameters
+from eomgen.mechanics.first_integrals.closed_instant import position_equations
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.family import Family
-from eomgen.mechanics.statics.rest import values_of_parameters
-from eomgen.mechanics.system import System
-from eomgen.mechanics.ties import Row
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on, substituted

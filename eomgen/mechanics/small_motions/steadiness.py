@@ -14,7 +14,7 @@ from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_own
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
-from eomgen.mechanics.small_motions.turns import over_turns, spinning, turned_on
+from eomgen.mechanics.small_motions.spin_axes import over_turns, spinning, turned_on
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import order

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.loops.closure import closed
+from eomgen.mechanics.constraints.closure import closed
 from eomgen.mechanics.small_motions.field import Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, determined
 from eomgen.mechanics.small_motions.forms import floats

@@ -16,10 +16,10 @@ from functools import cached_property
 import numpy as np
 
 from eomgen.errors import EomgenError
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.rest_places import places_of_rest
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.places import Located, places_of
-from eomgen.mechanics.positive import positive_parameters
 from eomgen.mechanics.small_motions.family import Family, State
 from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of

@@ -16,12 +16,12 @@ from itertools import pairwise
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
-from eomgen.mechanics.reacting.named_reactions import name_of, named_reactions
+from eomgen.mechanics.balance.named_reactions import name_of, named_reactions
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, sizes_of
 from eomgen.mechanics.statics.section_forces import KINDS
 from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis
-from eomgen.mechanics.statics.structure import Structure
-from eomgen.mechanics.statics.velocity_plan import Plan
+from eomgen.mechanics.structures.structure import Structure
+from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.derivative import substituted

@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.positive import positive_parameters
-from eomgen.mechanics.statics.rest import values_of_parameters
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of

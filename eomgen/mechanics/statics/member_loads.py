@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.components import Component
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import field_of
-from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.reacting.components import Component
-from eomgen.mechanics.reacting.effects import Axes, Effect, effects_of_load, joint_effects
-from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Sizes
-from eomgen.mechanics.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar, is_zero

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.contacts import Mode, Modes
+from eomgen.mechanics.bodies.contact_modes import Mode, Modes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model

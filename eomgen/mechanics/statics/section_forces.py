@@ -18,7 +18,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.member_loads import Line, MemberLoads
 from eomgen.symbolic.expression.functions import over, sqrt

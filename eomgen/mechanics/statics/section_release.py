@@ -14,11 +14,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.reacting.effects import Effect
-from eomgen.mechanics.reacting.named_reactions import named
+from eomgen.mechanics.balance.named_reactions import named
+from eomgen.mechanics.balance.unit_wrenches import Effect
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of
 from eomgen.mechanics.statics.member_loads import place_of
-from eomgen.mechanics.statics.structure import Structure
+from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.derivative import substituted

@@ -12,19 +12,19 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.mechanics.loops.freedom import counted
-from eomgen.mechanics.reacting.balance_solution import Indeterminate
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, name_of
-from eomgen.mechanics.reacting.reactions import Reactions, reactions_of
-from eomgen.mechanics.statics.loose_motion import refuse_loose
-from eomgen.mechanics.statics.structure import Structure, structure_of
+from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.named_reactions import NamedReaction, name_of
+from eomgen.mechanics.constraints.freedom import counted
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.virtual_work import (
     WorkEquation,
     asked_reactions,
     by_virtual_work,
     unknown_by_virtual_work,
 )
-from eomgen.mechanics.system import System
+from eomgen.mechanics.structures.loose_motion import refuse_loose
+from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.findings import nearest
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import simplest

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from eomgen.mechanics.loads import SystemScene
-from eomgen.mechanics.reacting.effects import Effect, efforts_of
-from eomgen.mechanics.reacting.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reacting.reaction_outputs import ASKING_REACTIONS
-from eomgen.mechanics.statics.blocks import turning_by_one
-from eomgen.mechanics.statics.structure import Structure
-from eomgen.mechanics.statics.velocity_plan import Plan
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.structures.blocks import turning_by_one
+from eomgen.mechanics.structures.structure import Structure
+from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over

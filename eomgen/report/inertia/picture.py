@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import RunFailed
-from eomgen.mechanics.loops.start import start_state
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.masses.inertia_about import in_ground
-from eomgen.mechanics.system import System
 from eomgen.model.values import numeric_parameters
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture

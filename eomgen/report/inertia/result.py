@@ -9,9 +9,9 @@ from itertools import chain
 from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import values_of
-from eomgen.mechanics.system import System, system_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture

@@ -6,11 +6,11 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.masses.made_of import made_of
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.masses.principal import short_form, values_of
-from eomgen.mechanics.positive import positive_parameters
 from eomgen.model.composite import about, scaled
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.functions import over

@@ -10,9 +10,9 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.centrodes import Centrodes
 from eomgen.mechanics.fields.field import field_of
-from eomgen.mechanics.system import System
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order

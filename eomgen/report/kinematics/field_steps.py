@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.centrodes import Centrodes, all_centrodes
 from eomgen.mechanics.fields.curves import Curve
 from eomgen.mechanics.fields.motion_kind import HELICAL, Kind, Kinds
 from eomgen.mechanics.instant.body_motion import BodyMotion, body_motions
-from eomgen.mechanics.system import System
 from eomgen.report.bounded import tabled
 from eomgen.report.statements import Cell, Formula, Law, Name, Piece, Prose, Statement, Step
 from eomgen.symbolic.exact.normal_form import simplest

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.loads import body_wrench, joint_wrenches, weights
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.relative_motion import composition_of
-from eomgen.mechanics.inertia import mass_properties
 from eomgen.mechanics.instant.body_motion import Readable, readable_at
-from eomgen.mechanics.loads import body_wrench, joint_wrenches, weights
-from eomgen.mechanics.system import System
 from eomgen.report.bounded import tabled
 from eomgen.report.motion_steps import axes
 from eomgen.report.statements import Grid, Law, Prose, Statement, Step

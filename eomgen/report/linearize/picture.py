@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from eomgen.errors import RunFailed
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.spectrum import Mode
-from eomgen.mechanics.system import System
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture, mathtext
 from eomgen.symbolic.expression.graph import Node

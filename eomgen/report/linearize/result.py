@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.reacting.reaction_outputs import name_of
+from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Matrix
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
@@ -19,7 +19,7 @@ from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
-from eomgen.mechanics.system import system_of
+from eomgen.mechanics.statics.reaction_outputs import name_of
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts

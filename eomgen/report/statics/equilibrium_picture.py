@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equilibria.search import Equilibrium
-from eomgen.mechanics.worth import known_parameters
+from eomgen.mechanics.initial_state.numeric_value import known_parameters
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
 

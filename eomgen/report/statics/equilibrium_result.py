@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from eomgen.mechanics.constraints.freedom import freedoms
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
-from eomgen.mechanics.loops.freedom import freedoms
-from eomgen.mechanics.system import System
-from eomgen.mechanics.work import generalized_forces
-from eomgen.mechanics.worth import known_parameters, numbers_of
+from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts

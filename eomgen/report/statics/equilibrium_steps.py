@@ -6,8 +6,8 @@ from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, Restin
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.mechanics.worth import known_parameters, numbers_of
+from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.report.bounded import page
 from eomgen.report.naming import Written, with_roots_named
 from eomgen.report.reaction_names import said

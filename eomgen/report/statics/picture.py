@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import RunFailed
-from eomgen.mechanics.reacting.components import Component
-from eomgen.mechanics.reacting.effects import Axes, Effect
-from eomgen.mechanics.statics.blocks import members_of
+from eomgen.mechanics.balance.components import Component
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.two_ways import StaticReactions
 from eomgen.mechanics.statics.virtual_work import loads_at_rest
+from eomgen.mechanics.structures.blocks import members_of
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters

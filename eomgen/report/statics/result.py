@@ -8,15 +8,15 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import UsageError
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.static_equations import with_drives_held
-from eomgen.mechanics.statics.blocks import Block, blocks_of
+from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
-from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.statics.virtual_work import WorkEquation
-from eomgen.mechanics.system import System, system_of
-from eomgen.mechanics.worth import known_parameters, numbers_of
+from eomgen.mechanics.structures.blocks import Block, blocks_of
+from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.reacting.reactions import Reactions
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, Piece, SectionForces, section_forces
 from eomgen.model.trusses import is_node

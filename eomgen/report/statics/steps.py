@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eomgen.mechanics.reacting.reactions import Reactions
-from eomgen.mechanics.statics.loose_motion import motion_in_words
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.rest_contacts import Condition
-from eomgen.mechanics.statics.structure import Structure
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
+from eomgen.mechanics.structures.loose_motion import motion_in_words
+from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.trusses import is_node
 from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step

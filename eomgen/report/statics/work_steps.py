@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 
-from eomgen.mechanics.inertia import mass_properties
-from eomgen.mechanics.statics.blocks import Block, blocks_of, members_of, resting
+from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.statics.two_ways import StaticReaction
-from eomgen.mechanics.statics.velocity_plan import Plan
 from eomgen.mechanics.statics.virtual_work import Acting, Term, WorkEquation
+from eomgen.mechanics.structures.blocks import Block, blocks_of, members_of, resting
+from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
 from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid

@@ -1,0 +1,218 @@
+"""System -> Balance: every body's own equations, its reactions and its inertia force and couple included.
+
+    sum of reactions + sum of applied forces = inertia:   f = m a_C,   n = d/dt (I w) about the mass centre
+
+In the plane two forces and one moment a body, in ground axes; in space three and three, in the body's axes. The
+unknowns are the components of all reactions, of joints and of ties; what drives a given motion is one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.components import Component, components_of
+from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, joint_effects, turned
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.loads import weights
+from eomgen.mechanics.constraints.ties import holds_identically, slide_power
+from eomgen.mechanics.equations.system import System
+from eomgen.model.driven import driven_coordinates, driving_ties
+from eomgen.model.forces.load import PointForce
+from eomgen.model.unknowns import in_loads
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector, apply, cross, plus, times, vector_of
+
+DIRECTIONS = ("x", "y", "z", "moment x", "moment y", "moment z")
+
+
+@dataclass(frozen=True)
+class BodyEquation:
+    """One scalar equation of one body: sum of coefficients * reactions + applied = inertia.
+
+    Args:
+        body: its name.
+        direction: index in DIRECTIONS.
+        coefficients: {index of the component: coefficient}.
+        applied: of everything given, weight included.
+        inertia: m a, or the rate of the angular momentum about the mass centre.
+    """
+
+    body: str
+    direction: int
+    coefficients: dict[int, Scalar]
+    applied: Scalar
+    inertia: Scalar
+
+    @property
+    def needed(self) -> Scalar:
+        """What the reactions have to make up."""
+        return self.inertia - self.applied
+
+
+@dataclass(frozen=True)
+class Balance:
+    """All equations of all bodies.
+
+    Args:
+        sizes: |N| of the contacts that hold on all sides and rub, by their names.
+    """
+
+    system: System
+    components: tuple[Component, ...]
+    equations: tuple[BodyEquation, ...]
+    sizes: Mapping[str, Scalar] = field(default_factory=dict)
+
+    @cached_property
+    def given(self) -> dict[int, Scalar]:
+        """The components that do not follow from the equations: friction by |N| = sqrt(N_1^2 + N_2^2)."""
+        return {j: c.rubs * self.sizes[c.owner] for j, c in enumerate(self.components) if c.rubs is not None}
+
+    @cached_property
+    def unknowns(self) -> tuple[Node, ...]:
+        """The unknowns that stand in the loads: the bodies at rest determine them together with the reactions."""
+        symbols = self.system.symbols.unknowns
+        return tuple(symbols[name] for name in in_loads(self.system.scope.model))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all that the equations are solved for: reaction_x(B), then the unknowns."""
+        return (*(c.name for c in self.components), *(unknown.name for unknown in self.unknowns))
+
+
+def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Balance:
+    """The equations of every body; those that say 0 = 0 are left out.
+
+    Args:
+        sizes: |N| of the contacts that hold on all sides and rub.
+    Raises:
+        DerivationError: a force, an energy or a tie that acts at no place, named.
+    """
+    refuse_placeless(system)
+    axes = Axes(system.motion)
+    components = components_of(system, axes)
+    inertia, applied = _inertia(axes), _applied(system, axes)
+    equations = []
+    for i, link in enumerate(system.motion.links):
+        for d in axes.rows:
+            row = {j: value for j, c in enumerate(components) if not is_zero(value := _coefficient(c, i, d))}
+            if row or not (is_zero(applied[i][d]) and is_zero(inertia[i][d])):
+                equations.append(BodyEquation(link.name, d, row, applied[i][d], inertia[i][d]))
+    return Balance(system, components, tuple(equations), sizes or {})
+
+
+def refuse_placeless(system: System) -> None:
+    """Refuse what acts at no place, or on a point that a coordinate moves in its body: some balance would lack it.
+
+    Raises:
+        DerivationError: it is named.
+    """
+    _refuse_placeless_forces(system)
+    _refuse_placeless_ties(system)
+    for link in system.motion.links:
+        if _seat_moves_others(system, link):
+            raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
+
+
+def _refuse_placeless_forces(system: System) -> None:
+    for force in system.loads.applied:
+        if force.placeless or any(not hasattr(load, "place") and hasattr(load, "coordinate") for load in force.loads):
+            what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
+            raise DerivationError(what, f"forces.{force.name}", "give it as forces and couples on bodies")
+        pushes = [load for load in force.loads if isinstance(load, PointForce)]
+        if any(_pushes_along(system, slide_power(system.motion, push)) for push in pushes):
+            raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
+
+
+def _refuse_placeless_ties(system: System) -> None:
+    drives = {tie for ties in driving_ties(system.scope.model).values() for tie in ties}  # whose place is a joint
+    for row in (row for row in system.ties.rows if row.tie not in drives):
+        points = (push for push in row.pushes if isinstance(push, PointForce))
+        slide = sum((slide_power(system.motion, push) for push in points), start=0)
+        own = 0 if is_zero(row.direct) else row.direct - slide  # a row of material points sees no slide
+        if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
+            raise DerivationError(
+                f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
+                f"constraints.{row.tie}",
+                "give it as a tie between bodies",
+            )
+        if row.pushes and _pushes_along(system, row.direct):
+            raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
+
+
+def _pushes_along(system: System, power: Scalar) -> bool:
+    """Whether a force does work on a coordinate by the slide of its point alone."""
+    return any(not holds_identically(x) for x in gradient(power, system.symbols.u))
+
+
+def _seat_moves_others(system: System, link: Link) -> bool:
+    """Whether a free coordinate moves the seat of a joint and something else: what joins the two acts at no place."""
+    given = driven_coordinates(system.scope.model)
+    free = [q for q in system.symbols.q if q.name not in given]
+    seat = (*link.before.p, *link.point)
+    for q in free:
+        if any(depends_on(x, (q,)) for x in seat):
+            others = [x for other in system.motion.links for x in other.s]
+            others += [x for other in system.motion.links if other is not link for x in (*other.before.p, *other.point)]
+            if any(depends_on(x, (q,)) for x in others):
+                return True
+    return False
+
+
+def _moved_inside(what: str, where: str) -> DerivationError:
+    return DerivationError(
+        f"{what} acts on a point that a coordinate moves in its body, and no body moves it there",
+        where,
+        "make the point one of a body of its own",
+    )
+
+
+def _coefficient(component: Component, link: int, direction: int) -> Scalar:
+    """Of the component, its friction included, in one equation of one body."""
+    effects = (*component.effects, *component.rubbing)
+    return sum((effect.six[direction] for effect in effects if effect.link == link), start=0)
+
+
+# -- inertia and what is applied -------------------------------------------------------------------
+
+
+def _inertia(axes: Axes) -> list[tuple[Scalar, ...]]:
+    """(m a_C, d/dt (I w)) of every body, accelerations included."""
+    accelerations = _center_accelerations(axes)
+    scope = axes.motion.scope
+    spins = scope.with_accelerations(tuple(x for link in axes.motion.links for x in link.twist.w))
+    rows: list[tuple[Scalar, ...]] = []
+    for i, (link, mass) in enumerate(zip(axes.motion.links, axes.masses, strict=True)):
+        wd, w = vector_of(spins[3 * i : 3 * i + 3]), link.twist.w
+        n = plus(apply(mass.I, wd), cross(w, apply(mass.I, w)))
+        rows.append((*times(mass.m, accelerations[i]), *turned(axes.of_body(link), n)))
+    return rows
+
+
+def _center_accelerations(axes: Axes) -> list[Vector]:
+    """Of every mass centre: in the plane from its place, in space from the body's twist."""
+    links, scope = axes.motion.links, axes.motion.scope
+    if axes.plane:
+        places = tuple(x for link, m in zip(links, axes.masses, strict=True) for x in link.pose.point(m.com))
+        found = scope.with_accelerations(scope.time_derivative(places))
+        return [vector_of(found[3 * i : 3 * i + 3]) for i in range(len(links))]
+    velocities = [plus(link.twist.v, cross(link.twist.w, m.com)) for link, m in zip(links, axes.masses, strict=True)]
+    moved = [scope.time_derivative(m.com) for m in axes.masses]
+    velocities = [plus(v, vector_of(d)) for v, d in zip(velocities, moved, strict=True)]
+    rates = scope.with_accelerations(tuple(x for v in velocities for x in v))
+    return [
+        plus(vector_of(rates[3 * i : 3 * i + 3]), cross(link.twist.w, v))
+        for i, (link, v) in enumerate(zip(links, velocities, strict=True))
+    ]
+
+
+def _applied(system: System, axes: Axes) -> list[tuple[Scalar, ...]]:
+    """(force, moment about the mass centre) of everything given, on every body."""
+    totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
+    effects = [e for load in (*system.loads.placed, *weights(system.loads)) for e in effects_of_load(axes, load)]
+    for effect in (*effects, *joint_effects(system)):
+        totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
+    return totals

@@ -1,0 +1,153 @@
+"""Balance -> Solution: the equations of the bodies, solved for the reactions and for unknowns of the loads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import Balance, BodyEquation
+from eomgen.mechanics.balance.ground_balance import along_ground
+from eomgen.mechanics.balance.unknown_loads import with_unknowns
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.freedom import rank_of_ties
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.system import System
+from eomgen.symbolic.exact.normal_form import LIMIT, readable_all
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.solve.scaling import solved
+
+TRIES = 20
+Combination = dict[int, Scalar]
+
+
+class Indeterminate(DerivationError):
+    """A reaction that the equations of the rigid bodies do not determine."""
+
+
+def solution_of_balance(
+    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1, work: int = LIMIT
+) -> Solution:
+    """The reactions, and unknowns of the loads, that balance all bodies.
+
+    Args:
+        at: what stands in place of coordinates, speeds, accelerations and t; {}: as functions of them.
+        sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.solved`).
+        work: products of terms by which an entry is made readable.
+    """
+    coefficients, needed = with_unknowns(balance)
+    if not at:
+        coefficients, needed = along_ground(balance, coefficients, needed)
+    coefficients += [{j: 1} for j in balance.given]
+    needed += balance.given.values()
+    entries = [x for row in coefficients for x in row.values()]
+    pushes = [*(_pushes(balance, e) for e in balance.equations), *({} for _ in balance.given)]
+    if at:
+        entries = list(readable_all(substituted(tuple(entries), at), work))
+        needed = list(readable_all(substituted(tuple(needed), at), work))
+        pushes = [
+            dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True)) for row in pushes
+        ]
+    flat = iter(entries)
+    rows = [{j: next(flat) for j in row} for row in coefficients]
+    parameters = frozenset(balance.system.symbols.parameters.values())
+
+    def simple(a: Scalar) -> int:
+        """Numbers, products of parameters, and what may vanish at some state or for some angle."""
+        return 0 if type(a) is not Node else 1 if _is_product(a, parameters) else 2
+
+    last = [j for j, c in enumerate(balance.components) if c.rubbing]
+    values = values_at_a_state(balance.system, entries)
+    return solved(
+        rows,
+        needed,
+        len(balance.names),
+        values,
+        simple=simple,
+        last=last,
+        sure=sure,
+        tests=pushes,
+        sure_symbols=parameters,
+    )
+
+
+def combined(balance: Balance, solution: Solution, combination: Combination, name: str) -> Scalar:
+    """sum of k_j x_j.
+
+    Raises:
+        Indeterminate: it has no single value; `name` says what it is.
+    """
+    constants, shares = solution.constants, solution.shares
+    total: Scalar = 0
+    open_: dict[int, Scalar] = {}
+    for j, k in combination.items():
+        if j not in constants:
+            open_[j] = open_.get(j, 0) + k
+            continue
+        total = total + k * constants[j]
+        for f, share in shares[j].items():
+            open_[f] = open_.get(f, 0) - k * share
+    left = {f for f, k in open_.items() if not is_zero(k) and not holds_identically(k)}
+    if left:
+        partners = [
+            other
+            for j, other in enumerate(balance.names)
+            if other != name and (j in left or left & shares.get(j, {}).keys())
+        ]
+        raise Indeterminate(
+            f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
+            + (", together with " + ", ".join(partners) if partners else ""),
+            mend="take a redundant tie away, or let something give",
+        )
+    return total
+
+
+def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
+    """The coefficients of the components that rub as they would be without friction."""
+    link = balance.system.motion.index[equation.body]
+    rubbing = [j for j in equation.coefficients if balance.components[j].rubbing]
+    return {
+        j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
+        for j in rubbing
+    }
+
+
+def _is_product(a: Node, parameters: frozenset[Node]) -> bool:
+    left: list[Scalar] = [a]
+    while left:
+        x = left.pop()
+        if type(x) is not Node or x in parameters:
+            continue
+        if x.op not in ("mul", "div", "neg"):
+            return False
+        left += x.args
+    return True
+
+
+def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
+    """Values at the first generic state at which all entries have one."""
+    for seed in range(1, TRIES):
+        state = _generic_state(system, seed)
+        try:
+            evaluate(entries, state, fifty_digits())
+        except NoValue:
+            continue
+        return lambda scalars, state=state: evaluate(scalars, state, fifty_digits())
+    raise DerivationError(f"no state with values for the reactions was found in {TRIES} tries")
+
+
+def _generic_state(system: System, seed: int) -> dict[Node, Any]:
+    """A state off any special position, parameters off any special value unless the ties are redundant for these alone.
+
+    Two cranks are a parallelogram only where they have one length: then the values are the model's.
+    """
+    own = generic_state(system.ties, Random(seed))
+    try:
+        shaken = generic_state(system.ties, Random(seed), shaken=True)
+        return shaken if rank_of_ties(system.ties, shaken) == rank_of_ties(system.ties, own) else own
+    except (DerivationError, NoValue):
+        return own

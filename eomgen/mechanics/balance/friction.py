@@ -1,0 +1,255 @@
+"""System, Assembly -> Assembly with friction: the contacts' own reactions solved together with the accelerations.
+
+    M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
+
+N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies,
+N_r = n_r + m_r a. A contact that holds on all sides of a line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations
+are not linear (see `round_contacts`). What comes out is friction as a generalized force of q, u and t.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import Balance, balance_of
+from eomgen.mechanics.balance.balance_solution import combined, solution_of_balance, values_at_a_state
+from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, rubbing_of
+from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.formulations import recursive
+from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.solve import cramer, linear
+from eomgen.symbolic.solve.linear import Solution
+
+
+@dataclass(frozen=True)
+class Rub:
+    """One rubbing contact.
+
+    Args:
+        name: the tie, or the body on a path.
+        component: index of its normal reaction among the components of the reactions; of a contact that holds on all
+            sides that of its friction.
+        along: generalized force for a unit of friction, dv/du.
+        factor: the friction along the contact's tangent for a unit of N, or of |N|, for instance -mu sign(v).
+        normals: of a contact that holds on all sides the indices of its normal reactions.
+    """
+
+    name: str
+    component: int
+    along: Row
+    factor: Scalar
+    normals: tuple[int, ...] = ()
+
+    @property
+    def force(self) -> Row:
+        """Generalized force for a unit of N, or of |N|."""
+        return tuple(self.factor * d for d in self.along)
+
+
+def with_friction(system: System, assembly: Assembly) -> Assembly:
+    """The equations of motion, friction in Q and forcing, and the accelerations explicit; the same where nothing rubs.
+
+    Raises:
+        DerivationError: the normal reaction of a contact that rubs is indeterminate.
+    """
+    if not rubs(system):
+        return assembly
+    rubbing = _Rubbing(system, assembly)
+    a, forces = rubbing.accelerations, rubbing.normals
+    friction = tuple(
+        sum((rub.force[k] * N for rub, N in zip(rubbing.found, forces, strict=True)), start=0)
+        for k in range(len(assembly.M))
+    )
+    return replace(
+        assembly,
+        Q=tuple(x + f for x, f in zip(assembly.Q, friction, strict=True)),
+        forcing=tuple(x + f for x, f in zip(assembly.forcing, friction, strict=True)),
+        friction=friction,
+        accelerations=a,
+    )
+
+
+def sizes_of(system: System) -> dict[str, Scalar]:
+    """|N| of every contact that rubs and holds on all sides, as a function of q, u and t; {} where there is none.
+
+    Raises:
+        DerivationError: as `with_friction`.
+    """
+    if not round_symbols(system):
+        return {}
+    rubbing = _Rubbing(system, recursive.assemble(system))
+    pairs = zip(rubbing.found, rubbing.normals, strict=True)
+    return {rub.name: N for rub, N in pairs if rub.normals}
+
+
+def with_rest(system: System, scalars: Sequence[Scalar]) -> Row:
+    """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line."""
+    rows = [row for row in system.ties.rows if row.shares and row.friction is not None]
+    speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
+    return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
+
+
+def rubs(system: System) -> bool:
+    """Whether anything rubs."""
+    return bool(frictions(system))
+
+
+def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
+    """(contact, what a unit of N rubs with, the sliding velocity) of everything that rubs."""
+    found = [(row.tie, row.friction, row.sliding) for row in system.ties.rows]
+    for link in system.motion.links:
+        found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
+    return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
+
+
+def rubbing_contacts(system: System, components: Sequence[Component]) -> list[Rub]:
+    """Every contact that rubs, in the order of the components."""
+    u = system.symbols.u
+    found = []
+    for j, component in enumerate(components):
+        if not component.rubbing and component.rubs is None:
+            continue
+        factor, sliding = rubbing_of(system, component)
+        normals = () if component.rubs is None else normals_of_round(components, component)
+        found.append(Rub(component.owner, j, gradient(sliding, u), factor, normals))
+    return found
+
+
+def round_symbols(system: System) -> dict[str, Node]:
+    """A symbol for |N| of every contact that rubs and holds on all sides, by its name."""
+    on_lines = [row.tie for row in system.ties.rows if row.round and row.friction is not None]
+    if system.scope.model.space == "space":
+        on_lines += [link.name for link in system.motion.links if joint_friction(system, link) is not None]
+    return {name: system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
+
+
+@dataclass(frozen=True)
+class _Rubbing:
+    """The equations of motion with friction; first with |N| of what holds on all sides left open."""
+
+    system: System
+    assembly: Assembly
+
+    @property
+    def accelerations(self) -> Row:
+        """a as a function of q, u and t."""
+        return substituted(self._values[: len(self.assembly.M)], self._sizes)
+
+    @property
+    def normals(self) -> Row:
+        """N of every rub, or |N|."""
+        single = iter(substituted(self._values[len(self._values) - len(self._single) :], self._sizes))
+        return tuple(self._sizes[self._symbols[rub.name]] if rub.normals else next(single) for rub in self.found)
+
+    @cached_property
+    def found(self) -> list[Rub]:
+        return rubbing_contacts(self.system, self._balance.components)
+
+    @property
+    def _single(self) -> list[Rub]:
+        return [rub for rub in self.found if not rub.normals]
+
+    @cached_property
+    def _symbols(self) -> dict[str, Node]:
+        return round_symbols(self.system)
+
+    @cached_property
+    def _balance(self) -> Balance:
+        return balance_of(self.system, self._symbols)
+
+    @cached_property
+    def _solution(self) -> Solution:
+        return solution_of_balance(self._balance, {})
+
+    @cached_property
+    def _sizes(self) -> dict[Node, Scalar]:
+        """|N| of what holds on all sides, by its symbol."""
+        known = dict(zip(self.system.symbols.a, self._values, strict=False))
+        pairs = {
+            self._symbols[rub.name]: tuple(self._component(rub.name, j, known) for j in rub.normals)
+            for rub in self.found
+            if rub.normals
+        }
+        entries = [N for pair in pairs.values() for N in pair]
+        values = values_at_a_state(self.system, substituted(entries, dict.fromkeys(pairs, 0)))
+        return sizes(pairs, values)
+
+    def _component(self, name: str, j: int, known: dict[Node, Scalar]) -> Scalar:
+        """A normal reaction, linear in |N| of all."""
+        m = _multiplier(self.system, self._balance.components[j], name, self._kept)
+        if m is not None:
+            return self._values[len(self.assembly.M) + m]
+        return substituted((self._by_balance(j),), known)[0]
+
+    @cached_property
+    def _kept(self) -> list[int]:
+        return regular_rows(self.system)
+
+    @cached_property
+    def _values(self) -> Row:
+        """a, lam of the rows that do not follow from others, N of every rub that has one.
+
+        Raises:
+            DerivationError: the normal reaction of a contact is indeterminate.
+        """
+        rows, right = bordered_rows(self.assembly, self._kept)
+        n, first = len(self.assembly.M), len(right)
+        for rub in self.found:
+            if rub.normals:
+                size = self._symbols[rub.name]
+                right[:n] = [b + force * size for b, force in zip(right[:n], rub.force, strict=True)]
+        for k, rub in enumerate(self._single):
+            multiplier = _multiplier(self.system, self._balance.components[rub.component], rub.name, self._kept)
+            normal = first + k if multiplier is None else n + multiplier
+            for row, force in zip(rows[:n], rub.force, strict=True):
+                row[normal] = row.get(normal, 0) - force
+            same: tuple[dict[int, Scalar], Scalar] = ({normal: -1}, 0)
+            known, value = self._linear(rub.component) if multiplier is None else same
+            rows.append({first + k: 1} | known)
+            right.append(value)
+        return tuple(_solved(self.system, rows, right))
+
+    def _by_balance(self, j: int) -> Scalar:
+        """Component j, linear in the accelerations."""
+        return combined(self._balance, self._solution, {j: 1}, self._balance.components[j].name)
+
+    def _linear(self, j: int) -> tuple[dict[int, Scalar], Scalar]:
+        """(-m, n) of N = n + m a: the coefficients of the accelerations in N - m a = n, and its right side."""
+        a, value = self.system.symbols.a, self._by_balance(j)
+        slopes = gradient(value, a)
+        return {j: -slope for j, slope in enumerate(slopes)}, substituted((value,), dict.fromkeys(a, 0))[0]
+
+
+def _multiplier(system: System, component: Component, name: str, kept: Sequence[int]) -> int | None:
+    """Which of the kept rows has the normal reaction for its multiplier; None where it follows from the balance.
+
+    Raises:
+        DerivationError: its row follows from others, so that it is indeterminate.
+    """
+    closing, label = system.ties.closing, (component.owner, component.number)
+    rows = [i for i, row in enumerate(closing) if component.kind == "tie" and (row.tie, row.number) == label]
+    if not rows:
+        return None
+    if rows[0] not in kept:
+        raise DerivationError(f"the normal reaction of '{name}', which rubs, is indeterminate")
+    return kept.index(rows[0])
+
+
+def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) -> list[Scalar]:
+    """The unknowns: by determinants where they are few, else by elimination."""
+    if len(right) <= cramer.LARGEST_BLOCK:
+        return [x for (x,) in cramer.solved(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
+    entries = [x for row in rows for x in row.values()]
+    solution = linear.solved(rows, right, len(right), values_at_a_state(system, entries))
+    if solution.free:
+        raise DerivationError("the equations with friction have no single solution")
+    return [solution.constants[i] for i in range(len(right))]

@@ -1,0 +1,143 @@
+"""Reactions -> what an output asks of them by name, every one: reaction_x(B), reaction_n(wall), tension(rope, 2).
+
+In the plane these are the components themselves; in space, and at hinges of several bodies, sums of them in the
+ground's axes. Beside each contact that rubs stands its friction along the contact's tangent, reaction_t(wall), on a
+surface along both tangents.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterable, Sequence
+from dataclasses import dataclass
+
+from eomgen.mechanics.balance.balance import Balance
+from eomgen.mechanics.balance.components import Component
+from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.model.constraints.members import ends_asked
+from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, plus
+
+FORCE, COUPLE = "N", "N*m"
+OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too
+
+Part = Callable[[Effect], Vector]
+
+
+@dataclass(frozen=True)
+class NamedReaction:
+    """sum of combination * components + given.
+
+    Args:
+        name: as an output asks for it.
+        owner: the tie, or the body whose joint it is.
+        unit: FORCE or COUPLE.
+        combination: {index of the component: factor}.
+        given: what drive, spring, damper and rotor of the joint do.
+    """
+
+    name: str
+    owner: str
+    unit: str
+    combination: dict[int, Scalar]
+    given: Scalar = 0
+
+
+def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
+    """Every reaction by its name, in the order of the components."""
+    owners = dict.fromkeys(c.owner for c in balance.components)
+    return tuple(named for owner in owners for named in _of_owner(balance, owner))
+
+
+def name_of(call: Call, names: Container[str]) -> str:
+    """The name in a table by which it is asked for: the ends of a member in either order."""
+    ends = ends_asked(call) if call.name == "tension" and call.args else None
+    either = () if ends is None else (ends, ends[::-1])
+    written = (f"tension({named(call.args[0])}, {a}-{b})" for a, b in either)
+    return next((name for name in written if name in names), str(call))
+
+
+def named(argument: Reference | Expression) -> str:
+    """An argument of a call as it was written."""
+    return argument.name if isinstance(argument, Reference) else argument.text
+
+
+def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
+    mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
+    ties = [(j, c) for j, c in mine if c.kind != "drive"]
+    plane = balance.system.scope.model.space == "plane"
+    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y", "wrench"))]
+    if len(apart) < len(ties):
+        along = (0, 1) if plane else (0, 1, 2)
+        for side in dict.fromkeys(("", *(c.side for _, c in ties))):
+            yield from _vector(balance, owner, side, "", FORCE, along)
+        if not plane and any(_has_couple(c) for _, c in ties):
+            yield from _vector(balance, owner, "", "couple_", COUPLE, along)
+    for j, c in apart:
+        yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
+        for rubs in c.friction:
+            yield NamedReaction(f"reaction_{rubs.label}({owner})", owner, FORCE, {j: rubs.factor})
+    for j, c in mine:
+        if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
+            yield NamedReaction(c.name, owner, unit_of(c), drives)
+
+
+def _vector(
+    balance: Balance, owner: str, side: str, prefix: str, unit: str, along: Sequence[int]
+) -> Iterable[NamedReaction]:
+    """Force or couple on the first-named body, or on `side`, in the ground's axes."""
+    motion = balance.system.motion
+    part: Part = (lambda e: e.couple) if unit == COUPLE else (lambda e: e.force)
+    mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
+    on = motion.index[side] if side else next(c for _, c in mine if c.kind != "drive").effects[0].link
+    units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.rubbing))) for j, c in mine}
+    efforts = efforts_of(balance.system, owner) if owner in motion.index else []
+    given = _turned(balance, on, _sum(part, on, efforts))
+    place = f"{owner}.{side}" if side else owner
+    for k in along:
+        combination = {j: vector[k] for j, vector in units.items() if not is_zero(vector[k])}
+        yield NamedReaction(f"reaction_{prefix}{'xyz'[k]}({place})", owner, unit, combination, given[k])
+
+
+def _sum(part: Part, on: int, effects: Sequence[Effect]) -> Vector:
+    total = ZERO
+    for effect in effects:
+        if effect.link == on:
+            total = plus(total, part(effect))
+    return total
+
+
+def _turned(balance: Balance, on: int, vector: Vector) -> Vector:
+    """From the axes of the body's equations to the ground's."""
+    plane = balance.system.scope.model.space == "plane"
+    return vector if plane else apply(balance.system.motion.links[on].pose.R, vector)
+
+
+def _has_couple(component: Component) -> bool:
+    return any(not is_zero(x) for effect in component.effects for x in effect.couple)
+
+
+def unit_of(component: Component) -> str:
+    """FORCE, or COUPLE of what is no force on any body."""
+    forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
+    return FORCE if forces else COUPLE
+
+
+def _name(balance: Balance, component: Component) -> str:
+    """A strand has the number that the string gives it; several may have one tension, the first gives the name."""
+    if component.label != "tension" or component.side:
+        return component.name
+    numbers = balance.system.scope.model.constraints[component.owner].strand_rows() or (1,)
+    strand = numbers.index(component.number) + 1
+    return f"tension({component.owner})" if strand == 1 else f"tension({component.owner}, {strand})"
+
+
+def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]:
+    """What drives a coordinate: of every joint that follows it D_k ds_k/dq, s_k the joint's variable."""
+    if not component.side:
+        return {j: 1}
+    motion = balance.system.motion
+    (q,) = (x for x in motion.scope.symbols.q if x.name == component.side)
+    mine = [(i, c) for i, c in enumerate(balance.components) if c.kind == "drive" and c.side == q.name]
+    return {i: derivative(motion.link(c.owner).s[c.number - 1], q) for i, c in mine}

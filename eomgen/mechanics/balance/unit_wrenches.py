@@ -1,0 +1,166 @@
+"""Motion -> Effects: what forces, couples, joints and ties do to each body, in the axes of its equations.
+
+The axes are the ground's in the plane, the body's own in space.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion
+from eomgen.mechanics.bodies.loads import JointEffort, in_ground_axes
+from eomgen.mechanics.equations.system import System
+from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.shapes import MassProperties
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    times,
+    transposed,
+)
+
+PLANE_ROWS, SPACE_ROWS = (0, 1, 5), (0, 1, 2, 3, 4, 5)  # of (force, moment) about the mass centre
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a unit of a reaction does to one body: force and couple at a place, in the axes of the body's equations.
+
+    Args:
+        link: index of the body.
+        force, couple: on it.
+        arm: from its mass centre to the place [m].
+        place: the same place in body axes [m]; None of a couple that acts on the body as a whole.
+    """
+
+    link: int
+    force: Vector
+    couple: Vector
+    arm: Vector
+    place: Vector | None = None
+
+    @cached_property
+    def six(self) -> tuple[Scalar, ...]:
+        """Force, and moment about the mass centre."""
+        return (*self.force, *plus(self.couple, cross(self.arm, self.force)))
+
+    def times(self, k: Scalar) -> Effect:
+        """k units of it."""
+        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place)
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The axes of each body's equations: the ground's in the plane, the body's own in space."""
+
+    motion: Motion
+
+    @property
+    def plane(self) -> bool:
+        return self.motion.scope.model.space == "plane"
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        return PLANE_ROWS if self.plane else SPACE_ROWS
+
+    def of_body(self, link: Link) -> Matrix:
+        """From body axes to those of the equations."""
+        return link.pose.R if self.plane else IDENTITY
+
+    def of_ground(self, link: Link, vector: Vector) -> Vector:
+        """A vector of ground axes."""
+        return vector if self.plane else apply(transposed(link.pose.R), vector)
+
+    @cached_property
+    def masses(self) -> tuple[MassProperties, ...]:
+        return tuple(mass_properties(self.motion.scope, link.name) for link in self.motion.links)
+
+    def arm(self, i: int, place: Vector) -> Vector:
+        """From the mass centre to a place given in body axes."""
+        link = self.motion.links[i]
+        return turned(self.of_body(link), minus(place, self.masses[i].com))
+
+
+def turned(R: Matrix, a: Vector) -> Vector:
+    return a if R is IDENTITY else apply(R, a)
+
+
+def effects_at_joint(axes: Axes, link: Link, force: Vector, couple: Vector) -> list[Effect]:
+    """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
+    i = axes.motion.index[link.name]
+    R = axes.of_body(link)
+    effects = [Effect(i, turned(R, force), turned(R, couple), axes.arm(i, link.point), link.point)]
+    if link.parent != GROUND:
+        to_parent = R if axes.plane else link.local.R
+        f, n = times(-1, turned(to_parent, force)), times(-1, turned(to_parent, couple))
+        effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
+    return effects
+
+
+def joint_effects(system: System) -> list[Effect]:
+    """What drives, springs, dampers and rotors of all joints do, on both bodies of each."""
+    return [effect for link in system.motion.links for effect in efforts_of(system, link.name)]
+
+
+def efforts_of(system: System, body: str) -> list[Effect]:
+    """What drive, spring, damper and rotor of a body's joint do, on the body first; a tie has none."""
+    if body not in system.motion.index:
+        return []
+    axes = Axes(system.motion)
+    effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
+    link = axes.motion.link(body)
+    for k, armature in _armatures(axes.motion, link):
+        rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
+        effects += effects_at_joint(axes, link, *scaled(axes, body, k, -armature * rate))
+    return effects
+
+
+def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:
+    link = axes.motion.link(effort.body)
+    return effects_at_joint(axes, link, *scaled(axes, effort.body, effort.variable, effort.effort))
+
+
+def _armatures(motion: Motion, link: Link) -> list[tuple[int, Scalar]]:
+    efforts = () if link.joint is None else link.joint.efforts()
+    return [(k, motion.scope.value(e.armature)) for k, e in enumerate(efforts) if e is not None and e.armature]
+
+
+def scaled(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
+    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes."""
+    w, v = axes.motion.link(body).S[variable]
+    if not all(is_zero(x) for x in w):
+        return ZERO, times(_over_square(magnitude, w), w)
+    return times(_over_square(magnitude, v), v), ZERO
+
+
+def _over_square(magnitude: Scalar, n: Vector) -> Scalar:
+    square = dot(n, n)
+    return magnitude if type(square) is int and square == 1 else magnitude / square
+
+
+def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]:
+    """A load on its body; none on the ground."""
+    body = load.body if isinstance(load, Couple) else load.place[0]
+    if body is None:
+        return ()
+    i = axes.motion.index[body]
+    link = axes.motion.links[i]
+    given = load.couple if isinstance(load, Couple) else load.force
+    vector = (
+        given
+        if load.axes == body and not axes.plane
+        else axes.of_ground(link, in_ground_axes(axes.motion, given, load.axes))
+    )
+    if isinstance(load, Couple):
+        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1]),)
+    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1]),)

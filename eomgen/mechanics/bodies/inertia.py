@@ -1,0 +1,134 @@
+"""Scope -> mass properties and energies of motion.
+
+The kinetic energy here is built on derivatives of the poses, not on the twists of the recursion:
+v_C = d/dt p_C and w~ = R^T R'. So what Lagrange's method derives shares no velocity with what the
+recursive forms derive, and their agreement proves something.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.errors import ModelError
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.kinematics import Link, Motion, spin_between
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.model.shapes import MassProperties
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
+
+HALF = Fraction(1, 2)
+
+
+def mass_properties(scope: Scope, body: str) -> MassProperties:
+    """Mass properties of one body; a body without mass has zeros.
+
+    Raises:
+        ModelError: a body that can turn has a mass and no inertia.
+    """
+    part = scope.model.bodies[body]
+    if part.parts is not None:
+        return made_of(scope, body).whole
+    if part.shape is not None:
+        return part.shape.mass_properties(scope.value)
+    m = scope.value(part.mass)
+    return MassProperties(m, scope.vector(part.center), _inertia(scope, body, part.inertia))
+
+
+def _inertia(scope: Scope, body: str, inertia: tuple | None) -> Matrix:
+    if inertia is None:
+        return (ZERO, ZERO, ZERO)
+    values = [scope.value(e) for e in inertia]
+    if len(values) == 1:
+        return (ZERO, ZERO, (0, 0, values[0]))
+    if len(values) not in (3, 6):
+        raise ModelError(f"the inertia of body '{body}' has {len(values)} values", f"bodies.{body}.inertia")
+    xx, yy, zz, xy, yz, xz = (*values, 0, 0, 0)[:6] if len(values) == 3 else values
+    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
+@dataclass(frozen=True)
+class BodyEnergy:
+    """The parts of one body's kinetic energy.
+
+    Args:
+        body: its name.
+        velocity: of its mass centre, ground axes, 3 [m/s].
+        spin: angular velocity, body axes, 3 [rad/s].
+        translation: m v.v / 2 [J].
+        rotation: w.I w / 2 [J].
+    """
+
+    body: str
+    velocity: Vector
+    spin: Vector
+    translation: Scalar
+    rotation: Scalar
+
+
+def body_energies(motion: Motion) -> tuple[BodyEnergy, ...]:
+    """Kinetic energy of every body, T = m v.v / 2 + w.I w / 2, from derivatives of its pose.
+
+    All poses are differentiated in one sweep, so that a chain costs no more than its length. Where speeds are not
+    rates the twists give the energy, in the body's axes: the system over the rates holds that of the poses.
+    """
+    masses = [mass_properties(motion.scope, link.name) for link in motion.links]
+    if any(u.name in motion.scope.model.speeds for u in motion.scope.symbols.u):
+        return tuple(_by_twist(link, mass) for link, mass in zip(motion.links, masses, strict=True))
+    centers = [link.pose.point(mass.com) for link, mass in zip(motion.links, masses, strict=True)]
+    turning = [_orientation(link) for link in motion.links]
+    places = tuple(x for pair in zip(centers, turning, strict=True) for part in pair for x in part)
+    rates = iter(motion.scope.time_derivative(places))
+    energies = []
+    for link, mass, orientation in zip(motion.links, masses, turning, strict=True):
+        velocity = (next(rates), next(rates), next(rates))
+        spin = _spin(link, [next(rates) for _ in orientation])
+        translation = HALF * mass.m * dot(velocity, velocity)
+        rotation = HALF * dot(spin, apply(mass.I, spin))
+        energies.append(BodyEnergy(link.name, velocity, spin, translation, rotation))
+    return tuple(energies)
+
+
+def _by_twist(link: Link, mass: MassProperties) -> BodyEnergy:
+    """The same from the twist: v_C = v + w x c in body axes."""
+    w = link.twist.w
+    v = link.twist.at(mass.com).v
+    translation = HALF * mass.m * dot(v, v)
+    return BodyEnergy(link.name, apply(link.pose.R, v), w, translation, HALF * dot(w, apply(mass.I, w)))
+
+
+def _orientation(link: Link) -> tuple[Scalar, ...]:
+    """What tells how a body stands: its angle in the plane, its rotation matrix in space."""
+    return (link.angle,) if link.angle is not None else tuple(x for row in link.pose.R for x in row)
+
+
+def _spin(link: Link, rates: list[Scalar]) -> Vector:
+    """Angular velocity in body axes from the rates of the orientation [rad/s]."""
+    if link.angle is not None:
+        return (0, 0, rates[0])
+    return spin_between(link.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
+
+
+def spin_of(motion: Motion, link: Link) -> Vector:
+    """Angular velocity of one body in body axes, from the derivative of its pose [rad/s]."""
+    return _spin(link, list(motion.scope.time_derivative(_orientation(link))))
+
+
+def armature_energy(motion: Motion, link: Link) -> Scalar:
+    """Energy of rotors behind gears: armature * s'^2 / 2 [J]."""
+    if link.joint is None:
+        return 0
+    total: Scalar = 0
+    for effort, rate in zip(link.joint.efforts(), link.s_rate, strict=False):
+        if effort is not None and effort.armature is not None:
+            total = total + HALF * motion.scope.value(effort.armature) * rate * rate
+    return total
+
+
+def kinetic_energy(motion: Motion) -> Scalar:
+    """T of the whole system [J]."""
+    total: Scalar = 0
+    for link, energy in zip(motion.links, body_energies(motion), strict=True):
+        total = total + energy.translation + energy.rotation + armature_energy(motion, link)
+    return total

@@ -1,0 +1,285 @@
+"""Scope -> Motion: where every body is and how it moves, over the scalars of the graph.
+
+Bodies hang in a tree. The joint of body i gives its variables s(q, t), the pose X(s) of the child's
+joint frame and the subspace S, so that the twist of the child at its own origin, in its own axes, is
+
+    xi_i = Ad(parent -> i) xi_parent + S s',      s' = D u + d.
+
+Two descriptions of velocity are kept apart on purpose: the twists of this recursion, and the time
+derivatives of the poses. The certificate compares them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.simplify import shorter
+from eomgen.model.joints.base import Z, oriented
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
+from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.graph import Scalar, collected
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Matrix,
+    Pose,
+    Twist,
+    Vector,
+    apply,
+    cross,
+    minus,
+    plus,
+    product,
+    rotation,
+    times,
+    transposed,
+    vector_of,
+)
+
+GROUND = -1
+
+
+@dataclass(frozen=True)
+class Link:
+    """One body in the tree.
+
+    Args:
+        name: the body's name.
+        parent: index of the parent link, GROUND for the ground.
+        joint: the model's joint (None: the ground's frame).
+        before: where the joint sits in the parent's frame (`at`, `turned`).
+        point: where the joint sits in this body, body axes, 3 [m].
+        s, s_rate: the joint's variables and s' = D u + d; of a quaternion the angular velocity in place of its rates.
+        relative: the joint's pose at s.
+        S: columns of the subspace, each (w, v), at the joint point, child's axes.
+        pose: of the body's frame in the ground.
+        angle: against the ground's axes (plane only) [rad].
+        twist: at the body's origin, body axes.
+    """
+
+    name: str
+    parent: int
+    joint: Any
+    before: Pose
+    point: Vector
+    s: tuple[Scalar, ...]
+    s_rate: tuple[Scalar, ...]
+    relative: Pose
+    S: tuple[tuple[Vector, Vector], ...]
+    pose: Pose
+    angle: Scalar | None
+    twist: Twist
+
+    @property
+    def local(self) -> Pose:
+        """Where the joint leaves the child's axes and the joint point, in the parent."""
+        return self.before.then(self.relative)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses and twists of all bodies, parents before children."""
+
+    scope: Scope
+    links: tuple[Link, ...]
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """The place of each body in `links`."""
+        return {link.name: i for i, link in enumerate(self.links)}
+
+    def link(self, body: str) -> Link:
+        return self.links[self.index[body]]
+
+    @cached_property
+    def points(self) -> dict[str, dict[str, Vector]]:
+        """Points of each body, body axes [m]."""
+        return {link.name: body_points(self.scope, link.name) for link in self.links}
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        """Whether any of the scalars depends on coordinates or time."""
+        moving = {*self.scope.symbols.q, self.scope.symbols.t}
+        return any(symbol in moving for symbol in symbols_of(scalars))
+
+    def place(self, point: str) -> tuple[str | None, Vector]:
+        """(body, position in its axes) of a named point; (None, position) for a point of the ground."""
+        body, name = self.scope.model.resolve_point(point)
+        if body is None:
+            return None, self.scope.vector(self.scope.model.points[name])
+        return body, self.points[body][name]
+
+    def position(self, place: tuple[str | None, Vector]) -> Vector:
+        """The place seen from the ground, 3 [m]."""
+        body, r = place
+        return r if body is None else self.link(body).pose.point(r)
+
+    @cached_property
+    def B(self) -> tuple[tuple[tuple[Scalar, ...], ...], ...]:
+        """Of each body the 6 rows of xi = B u + beta (angular first, body origin, body axes)."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rows = jacobian(tuple(twists), self.scope.symbols.u)
+        return tuple(tuple(rows[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+    @cached_property
+    def alpha(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Of each body the 6 entries of xi' = B a + alpha."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rates = self.scope.time_derivative(tuple(twists))
+        return tuple(tuple(rates[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+
+def motion_of(scope: Scope) -> Motion:
+    """Poses and twists of every body of the model.
+
+    Raises:
+        DerivationError: a joint whose place depends on an input.
+        NotYet: a joint kind that this version does not derive.
+    """
+    links: list[Link] = []
+    index: dict[str, int] = {}
+    for name in parents_first(scope.model):
+        link = _link(scope, name, links, index)
+        index[name] = len(links)
+        links.append(link)
+    return Motion(scope, tuple(links))
+
+
+def parents_first(model: Any) -> list[str]:
+    """The bodies, every one after the one it hangs on, else in the model's order."""
+    done: dict[str, None] = {}
+    waiting = list(model.bodies)
+    while waiting:
+        ready = [name for name in waiting if parent_of(model, name) in (None, *done)]
+        if not ready:
+            raise DerivationError(f"bodies hang on one another in a ring: {', '.join(waiting)}")
+        for name in ready:
+            done[name] = None
+        waiting = [name for name in waiting if name not in done]
+    return list(done)
+
+
+def parent_of(model: Any, body: str) -> str | None:
+    """The body on which this one hangs (None: the ground)."""
+    joint = model.bodies[body].joint
+    return None if joint is None else joint.parent
+
+
+def body_points(scope: Scope, body: str) -> dict[str, Vector]:
+    """Points of one body: its own, its shape's, `origin`, and `center` where it has mass; body axes [m]."""
+    part = scope.model.bodies[body]
+    points: dict[str, Vector] = {"origin": ZERO}
+    if part.parts is not None:
+        points["center"] = made_of(scope, body).whole.com
+    elif part.center is not None or part.mass is not None:
+        points["center"] = scope.vector(part.center)
+    if part.shape is not None:
+        points |= part.shape.points(scope.value)
+    points |= {name: scope.vector(place) for name, place in part.points.items()}
+    return points
+
+
+def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> Link:
+    joint = scope.model.bodies[name].joint
+    if joint is not None and not joint.works_in(scope.model.space):
+        raise NotYet(f"the joint '{joint.kind}' is not derived yet", f"bodies.{name}.joint")
+    plane = scope.model.space == "plane"
+    if joint is None:
+        return Link(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
+    parent_name = parent_of(scope.model, name)
+    parent = GROUND if parent_name is None else index[parent_name]
+    above = None if parent == GROUND else links[parent]
+    before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
+    point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
+    s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
+    s_rate = (*scope.time_derivative(s[: -4 if joint.spins else None]), *(scope.names[w] for w in joint.spins))
+    relative = joint.pose(s, scope.value)
+    S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
+    local = before.then(relative)
+    angle = None
+    if plane:
+        turned = _turned_angle(scope, joint) + joint.turn(s, scope.value)
+        angle = collected((above.angle if above else 0) + turned)
+    pose = _pose(above, local, angle, point)
+    twist = _twist(scope, above, before, local, s_rate, S, point)
+    return Link(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+
+
+def _pose(above: Link | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
+    """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
+    joint = (above.pose if above else Pose()).then(local)
+    R = joint.R if angle is None else rotation(Z, cos(angle), sin(angle))
+    return Pose(R, minus(joint.p, apply(R, point)))
+
+
+def _twist(
+    scope: Scope,
+    above: Link | None,
+    before: Pose,
+    local: Pose,
+    s_rate: tuple[Scalar, ...],
+    S: tuple[tuple[Vector, Vector], ...],
+    point: Vector,
+) -> Twist:
+    """Twist of the child at its origin, child's axes; a seat that moves by itself adds its rate."""
+    R_CP = transposed(local.R)
+    carried = (above.twist if above else Twist()).at(local.p)
+    seat_rate = scope.rate_of(before.p)
+    at_joint = Twist(apply(R_CP, carried.w), apply(R_CP, plus(carried.v, seat_rate)))
+    for rate, (w, v) in zip(s_rate, S, strict=True):
+        at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
+    moved = at_joint.at(times(-1, point))
+    drift = scope.rate_of(point)  # a joint that slides along its own body
+    twist = Twist(moved.w, minus(moved.v, drift))
+    return shortened(twist) if scope.combines else twist
+
+
+def shortened(twist: Twist) -> Twist:
+    """A twist in its shorter form: declared speeds often are its components, once the rates are put in."""
+    return Twist(vector_of(map(shorter, twist.w)), vector_of(map(shorter, twist.v)))
+
+
+def _turned_angle(scope: Scope, joint: Any) -> Scalar:
+    """In the plane: the angle of the fixed rotations before the joint, all of them about z."""
+    return sum((scope.value(turn.angle) for turn in joint.turned or ()), start=0)
+
+
+def _seat(scope: Scope, joint: Any) -> Vector:
+    """Where the joint sits, parent's axes: `at`, or the parent's point named by `on`."""
+    on = joint.on
+    if on is not None and "." in on:
+        body, point = on.split(".", 1)
+        return body_points(scope, body)[point]
+    return ground_place(scope, joint.at) if joint.seated else ZERO
+
+
+def ground_place(scope: Scope, at: Any) -> Vector:
+    """A place on the ground: coordinates, or the name of a ground point [m]."""
+    return scope.vector(scope.model.points[at] if isinstance(at, str) else at)
+
+
+def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
+    """Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'."""
+    W = product(transposed(R), R_rate)
+    return (W[2][1], W[0][2], W[1][0])
+
+
+def velocity_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
+    body, r = place
+    if body is None:
+        return ZERO
+    link = motion.link(body)
+    carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
+    return plus(carried, slide_of(motion, place)) if motion.moves(r) else carried
+
+
+def slide_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
+    body, r = place
+    if body is None or not motion.moves(r):
+        return ZERO
+    return apply(motion.link(body).pose.R, motion.scope.rate_of(r))

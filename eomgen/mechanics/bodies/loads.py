@@ -1,0 +1,404 @@
+"""Motion -> Loads: every applied force, as loads at places and as potentials.
+
+One description serves both ways to the generalized forces: virtual work on positions,
+Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, ModelError, NotYet
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
+from eomgen.mechanics.bodies.scope import Scope, primitive
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
+from eomgen.model.quaternions import quaternions_of
+from eomgen.model.values import exact_parameters, no_orientation
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+
+READABLE = 2000  # products of terms for a length or a direction
+
+
+@dataclass(frozen=True)
+class Applied:
+    """One named force of the model.
+
+    Args:
+        name: its name.
+        loads: forces and couples, whether or not they have a potential.
+        potential: V [J], or None where it has none.
+        placeless: it is an energy of coordinates alone, which acts at no place.
+        spread: what is spread along lines, of which `loads` holds the resultants.
+    """
+
+    name: str
+    loads: tuple[Load, ...]
+    potential: Scalar | None
+    placeless: bool
+    spread: tuple[SpreadLoad, ...] = ()
+
+
+@dataclass(frozen=True)
+class JointEffort:
+    """A scalar force on a joint's variable: drive, spring and damper of the joint.
+
+    Args:
+        body: the child; the parent bears the opposite.
+        variable: index of the joint's variable s.
+        drive: torque or force without a potential (damping included) [N m or N].
+        potential: k (s - rest)^2 / 2 [J], or 0.
+        effort: the whole effort along s, -dV/ds included.
+    """
+
+    body: str
+    variable: int
+    drive: Scalar
+    potential: Scalar
+    effort: Scalar
+
+
+@dataclass(frozen=True)
+class Loads:
+    """All that is applied to the system."""
+
+    motion: Motion
+    applied: tuple[Applied, ...]
+    efforts: tuple[JointEffort, ...]
+
+    @cached_property
+    def potential_energy(self) -> Scalar:
+        """V, of every force that has one [J]."""
+        total: Scalar = 0
+        for force in self.applied:
+            total = total + (0 if force.potential is None else force.potential)
+        return sum((e.potential for e in self.efforts), start=total)
+
+    @property
+    def fields(self) -> Vector:
+        """The sum of the uniform acceleration fields on every mass [m/s^2]."""
+        total = ZERO
+        for load in self._all:
+            if isinstance(load, UniformField):
+                total = plus(total, load.acceleration)
+        return total
+
+    @property
+    def placed(self) -> tuple[PointForce | Couple, ...]:
+        """Forces and couples at bodies, the uniform fields left out."""
+        return tuple(load for load in self._all if isinstance(load, (PointForce, Couple)))
+
+    @property
+    def generalized(self) -> tuple[GeneralizedForce, ...]:
+        return tuple(load for load in self._all if isinstance(load, GeneralizedForce))
+
+    @property
+    def _all(self) -> tuple[Load, ...]:
+        return tuple(load for force in self.applied for load in force.loads)
+
+
+@dataclass(frozen=True)
+class SystemScene:
+    """What the force laws and the ties ask of a system in motion; `where` is the part that asks, for messages."""
+
+    motion: Motion
+    where: str = ""
+
+    def value(self, expression) -> Scalar:
+        return self.motion.scope.value(expression)
+
+    def value_at(self, expression, also: dict[str, Scalar]) -> Scalar:
+        """An expression in which further names stand for given scalars (they win over the model's)."""
+        return expression.evaluate({**self.motion.scope.names, **also})
+
+    def primitive(self, expression, name: str, at: Scalar) -> Scalar | None:
+        """The integral of an expression over one name, at a value of it.
+
+        None where it holds anything but that name and parameters, or has no closed form.
+        """
+        scope = self.motion.scope
+        if any(other != name and other not in (*scope.symbols.parameters, "pi") for other in expression.names):
+            return None
+        variable = scope.graph.symbol(f"({name})")  # no name of a model has parentheses
+        F = primitive(self.value_at(expression, {name: variable}), variable)
+        return None if F is None else substituted((F,), {variable: at})[0]
+
+    def vector(self, expressions) -> Vector:
+        return self.motion.scope.vector(expressions)
+
+    def ground_place(self, at) -> Vector:
+        return ground_place(self.motion.scope, at)
+
+    @property
+    def plane(self) -> bool:
+        return self.motion.scope.model.space == "plane"
+
+    def place(self, point: str) -> Place:
+        body, r = self.motion.place(point)
+        return (body, r)
+
+    def position(self, place: Place) -> Vector:
+        return self.motion.position(place)
+
+    def velocity(self, place: Place) -> Vector:
+        """d/dt of the position [m/s]."""
+        return self.motion.scope.rate_of(self.position(place))
+
+    def orientation(self, body: str) -> Matrix:
+        """R of the body in the ground."""
+        return self.motion.link(body).pose.R
+
+    def angle(self, body: str) -> Scalar:
+        angle = self.motion.link(body).angle
+        if angle is None:
+            raise DerivationError(
+                f"body '{body}' has no single angle in space",
+                f"bodies.{body}",
+                "put the spring or damper into the joint",
+            )
+        return angle
+
+    def angle_rate(self, body: str) -> Scalar:
+        return self.motion.scope.time_derivative((self.angle(body),))[0]
+
+    def slopes(self, law: Expression, values: Mapping[Call, Scalar | None]) -> tuple[Scalar, tuple[Scalar, ...]]:
+        """(value, derivatives by the functions of the motion in it) of a law; None: it is linear in that, taken as 0.
+
+        Raises:
+            ModelError: it is not linear there.
+        """
+        value, symbols = self._open(law, values)
+        slopes = gradient(value, tuple(symbols.values()))
+        linear = [k for k, at in enumerate(values.values()) if at is None]
+        if any(depends_on(slopes[k], [tuple(symbols.values())[j]]) for k in linear for j in linear):
+            raise ModelError(
+                f"'{law.text}' is not linear in the velocities",
+                self.where,
+                "write it as a sum of velocities, each times a function of the configuration",
+            )
+        at = {symbol: 0 if (x := values[call]) is None else x for call, symbol in symbols.items()}
+        found = substituted((value, *slopes), at)
+        return found[0], found[1:]
+
+    def held_rate(self, law: Expression, values: Mapping[Call, Scalar]) -> Scalar:
+        """d/dt of a law while the functions of the motion in it stay as they are."""
+        value, symbols = self._open(law, values)
+        rate = self.motion.scope.time_derivative((value,))
+        return substituted(rate, {symbol: values[call] for call, symbol in symbols.items()})[0]
+
+    def _open(self, law: Expression, calls: Iterable[Call]) -> tuple[Scalar, dict[Call, Node]]:
+        """A law over symbols for the functions in it."""
+        scope = self.motion.scope
+        symbols = {call: scope.graph.symbol(f"({call})") for call in calls}
+        return law.evaluate(scope.names, symbols.__getitem__), symbols
+
+    def turn_of_joint(self, body: str) -> tuple[Scalar, Vector, str | None]:
+        """(angle, unit axis in the body's axes, parent) of the joint that turns a body about one axis."""
+        link = self.motion.link(body)
+        turning = [(s, w) for s, (w, _) in zip(link.s, link.S, strict=False) if not all(map(is_zero, w))]
+        if len(turning) != 1:
+            raise DerivationError(
+                f"the joint of body '{body}' has no single angle",
+                self.where,
+                "hang it on a revolute, cylindrical or screw joint",
+            )
+        parent = None if link.parent == GROUND else self.motion.links[link.parent].name
+        return *turning[0], parent
+
+    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[Place, Scalar], ...]:
+        """(mass centre, mass) of the named bodies, or of all, that have mass."""
+        names = [link.name for link in self.motion.links] if bodies is None else bodies
+        rows = []
+        for name in names:
+            body = mass_properties(self.motion.scope, name)
+            if not is_zero(body.m):
+                rows.append(((name, body.com), body.m))
+        return tuple(rows)
+
+    def start(self, scalar: Scalar) -> Scalar:
+        """The scalar at the start values of the coordinates and t = 0."""
+        scope = self.motion.scope
+        coordinates = scope.model.coordinates.values()
+        at = {q: start_value(scope, c) for q, c in zip(scope.symbols.q, coordinates, strict=True)}
+        at = with_unit_quaternions(scope, at)
+        return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
+
+    def own_place(self, body: str, point: str | None) -> Place:
+        """A body's own point; None: its origin."""
+        return (body, self.motion.points[body][(point or "origin").rpartition(".")[2]])
+
+    def line(self, body: str) -> tuple[Place, Place]:
+        """The two points of a body's line."""
+        line = self.motion.scope.model.bodies[body].line
+        assert line is not None, "checked when the model was read"
+        return self.own_place(body, line[0]), self.own_place(body, line[1])
+
+    def radius(self, body: str) -> Scalar:
+        """Of the body's round shape [m]."""
+        shape: Any = self.motion.scope.model.bodies[body].shape
+        return self.value(shape.radius)
+
+    def shape(self, body: str) -> Any:
+        """The body's shape, as the model declares it; None where it has none."""
+        return self.motion.scope.model.bodies[body].shape
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        return self.motion.moves(scalars)
+
+    def vanishes(self, scalar: Scalar) -> bool:
+        """Whether the scalar is zero whatever the values of its symbols."""
+        return scalar == 0 if type(scalar) is not Node else equal_at_random_states([(scalar, 0)]).equal
+
+    def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """The scalars multiplied out, roots of squares of positive parameters taken."""
+        return readable_all(scalars, READABLE, positive_parameters(self.motion.scope))
+
+    def worth(self, scalar: Scalar) -> float | None:
+        """The number that the scalar is at the start with the model's values (None: some are missing)."""
+        scope = self.motion.scope
+        known = exact_parameters(scope.model)
+        values = {node: known[name] for name, node in scope.symbols.parameters.items() if name in known}
+        at_start = self.start(scalar)
+        if not set(symbols_of((at_start,))) <= values.keys():
+            return None
+        return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
+
+
+def start_value(scope, coordinate) -> Scalar:
+    """Where a coordinate starts, as an expression of the parameters."""
+    if coordinate.motion is not None:
+        return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
+    return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
+
+
+def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
+    """Start values with every quaternion over its norm.
+
+    Raises:
+        ModelError: one is 0.
+    """
+    found = dict(start)
+    for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+        if is_zero(norm):
+            raise no_orientation(part.body)
+        found |= {e: over(start[e], norm) for e in four}
+    return found
+
+
+def loads_of(motion: Motion) -> Loads:
+    """Every applied force of the model, as loads and potentials."""
+    applied = []
+    for name, force in motion.scope.model.forces.items():
+        scene = SystemScene(motion, f"forces.{name}")
+        if not force.works:
+            raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
+        loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
+        applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
+    efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
+    _refuse_accelerations(motion, applied, efforts)
+    return Loads(motion, tuple(applied), tuple(efforts))
+
+
+def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[JointEffort]) -> None:
+    accelerations = motion.scope.symbols.a
+    for force in applied:
+        parts = [x for load in force.loads for x in _scalars(load)]
+        if accelerations and any(depends_on(x, accelerations) for x in parts):
+            raise DerivationError("a force cannot depend on accelerations", f"forces.{force.name}")
+    for effort in efforts:
+        if accelerations and depends_on(effort.effort, accelerations):
+            raise DerivationError("a joint's drive cannot depend on accelerations", f"bodies.{effort.body}.joint")
+
+
+def _scalars(load: Load) -> tuple[Scalar, ...]:
+    if isinstance(load, PointForce):
+        return load.force
+    if isinstance(load, Couple):
+        return load.couple
+    return (load.value,) if isinstance(load, GeneralizedForce) else load.acceleration
+
+
+def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
+    """Drive, spring and damper of one joint: effort = drive - c s' - k (s - rest)."""
+    if link.joint is None:
+        return []
+    scope, rows = motion.scope, []
+    for k, e in enumerate(link.joint.efforts()):
+        if e is None or (e.drive is None and e.stiffness is None and e.damping is None):
+            continue
+        drive = scope.value(e.drive) - scope.value(e.damping) * link.s_rate[k]
+        if motion.moves((*link.before.p, *link.point)):
+            raise DerivationError(
+                "a joint with a drive, spring or damper sits at a place that moves in its body",
+                f"bodies.{link.name}.joint",
+                "let another joint carry the motion of the seat",
+            )
+        stretch = link.s[k] - scope.value(e.rest)
+        stiffness = scope.value(e.stiffness)
+        potential = Fraction(1, 2) * stiffness * stretch * stretch
+        rows.append(JointEffort(link.name, k, drive, potential, drive - stiffness * stretch))
+    return rows
+
+
+def joint_wrenches(motion: Motion, effort: JointEffort) -> list[tuple[str, Wrench]]:
+    """The effort of a joint as wrenches at the origins of child and parent, each in its own axes.
+
+    The wrench is dual to the joint's column: it does the work effort * s' on the relative motion.
+    """
+    link = motion.link(effort.body)
+    w, v = link.S[effort.variable]
+    square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
+    rotary = not all(is_zero(x) for x in w)
+    direction = w if rotary else v
+    magnitude = effort.effort if type(square) is int and square == 1 else effort.effort / square
+    at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
+    rows = [(link.name, at_joint.moved(link.point))]
+    if link.parent >= 0:
+        local = link.before.then(link.relative)
+        on_parent = Wrench(times(-1, at_joint.tau), times(-1, at_joint.f)).turned(local.R)
+        rows.append((motion.links[link.parent].name, on_parent.moved(local.p)))
+    return rows
+
+
+def body_wrench(motion: Motion, load: PointForce | Couple) -> tuple[str, Wrench] | None:
+    """A load as a wrench at its body's origin in body axes (None: it acts on the ground)."""
+    if isinstance(load, Couple):
+        return load.body, Wrench(in_body_axes(motion, load.body, load.couple, load.axes), ZERO)
+    body, r = load.place
+    if body is None:
+        return None
+    f = in_body_axes(motion, body, load.force, load.axes)
+    return body, Wrench(cross(r, f), f)
+
+
+def in_body_axes(motion: Motion, body: str, vector: Vector, axes: str | None) -> Vector:
+    """A vector given in the axes of the ground (None) or of a body, in the axes of `body`."""
+    if axes == body:
+        return vector
+    return apply(transposed(motion.link(body).pose.R), in_ground_axes(motion, vector, axes))
+
+
+def in_ground_axes(motion: Motion, vector: Vector, axes: str | None) -> Vector:
+    """A vector given in the axes of a body, in the ground's."""
+    return vector if axes is None else apply(motion.link(axes).pose.R, vector)
+
+
+def weights(loads: Loads) -> tuple[PointForce, ...]:
+    """The uniform fields as forces m g at the mass centres."""
+    g = loads.fields
+    if all(is_zero(x) for x in g):
+        return ()
+    return tuple(PointForce(place, times(m, g)) for place, m in SystemScene(loads.motion).masses(None))

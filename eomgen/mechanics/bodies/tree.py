@@ -1,0 +1,238 @@
+"""Motion -> Branches: the tree of bodies as the recursive methods walk it.
+
+Each branch has working axes, in which its vectors are written, and its origin at its joint point.
+In space the working axes are the body's own (then its inertia is constant); in the plane they are
+the ground's (then nothing has to be turned on the way from body to body). Inertia is held as the
+second moments of mass m, h = int r dm, J = int r r^T dm, about that origin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion, shortened
+from eomgen.symbolic.expression.derivative import symbols_of, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Twist,
+    Vector,
+    added,
+    apply,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+
+Column = tuple[Vector, Vector]
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Second moments of mass about a branch's origin: m [kg], h = int r dm [kg m], J = int r r^T dm [kg m^2].
+
+    The inertia tensor is tr(J) 1 - J; the force and moment of inertia of a body whose points
+    accelerate by acc + U r are f = m acc + U h and n = h x acc + vee(U J - J U^T).
+    """
+
+    m: Scalar
+    h: Vector
+    J: Matrix
+
+    def plus(self, other: Moments) -> Moments:
+        return Moments(self.m + other.m, plus(self.h, other.h), added(self.J, other.J))
+
+    def turned(self, R: Matrix) -> Moments:
+        """The same mass in the axes to which R leads: R h, R J R^T."""
+        return self if R is IDENTITY else Moments(self.m, apply(R, self.h), _congruence(R, self.J))
+
+    def moved(self, p: Vector) -> Moments:
+        """About the point that sees the present origin at p: h + m p, J + p h^T + h p^T + m p p^T."""
+        g = plus(self.h, times(self.m, p))  # p h^T + h p^T + m p p^T = p h^T + g p^T
+        J = matrix_of((self.J[i][j] + (p[i] * self.h[j] + g[i] * p[j]) for j in range(3)) for i in range(3))
+        return Moments(self.m, g, J)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One body as the recursions see it, in its working axes, at its origin: the joint point.
+
+    Args:
+        link: the body.
+        parent: index of the parent branch, GROUND for the ground.
+        E: from the parent's working axes to its own (the rotation of vectors).
+        p: from the parent's origin to its own, parent's working axes [m].
+        p_rate, p_bias: apparent velocity and acceleration (at a = 0) of its origin in the parent, parent's axes.
+        w, w_bias: angular velocity against the parent and its apparent rate at a = 0, own axes.
+        columns: per speed index k the column of the joint's own twist, at the origin.
+        moments: mass of the body, regrouped: what a hinge cannot tell from mass of its parent is put there.
+        axes: from body axes to working axes.
+    """
+
+    link: Link
+    parent: int
+    E: Matrix
+    p: Vector
+    p_rate: Vector
+    p_bias: Vector
+    w: Vector
+    w_bias: Vector
+    columns: dict[int, Column]
+    moments: Moments
+    axes: Matrix
+
+
+def branches_of(motion: Motion) -> tuple[Branch, ...]:
+    """The tree of bodies for the recursions, parents first."""
+    plane = motion.scope.model.space == "plane"
+    offsets = [offset_of(motion, link) for link in motion.links]
+    moments = _regrouped(motion, offsets, plane)
+    branches = []
+    for i, link in enumerate(motion.links):
+        branches.append(_branch(motion, link, offsets[i], moments[i], plane))
+    return tuple(branches)
+
+
+def origin_of(motion: Motion, link: Link) -> Vector:
+    """A branch's origin in body axes: the joint point, or the body's own origin where the joint slides along it."""
+    return ZERO if motion.moves(link.point) else link.point
+
+
+def offset_of(motion: Motion, link: Link) -> Vector:
+    """From the parent's origin to this branch's, in the parent's body axes."""
+    place = link.local.point(minus(origin_of(motion, link), link.point))
+    return place if link.parent == GROUND else minus(place, origin_of(motion, motion.links[link.parent]))
+
+
+def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane: bool) -> Branch:
+    scope = motion.scope
+    parent_axes = IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
+    axes = link.pose.R if plane else IDENTITY
+    E = IDENTITY if plane else transposed(link.local.R)
+    rate = scope.rate_of(offset)
+    bias = scope.rate_of(rate)
+    directions = [apply(axes, w) for w, _ in link.S]
+    w = w_bias = ZERO
+    s_bias = scope.time_derivative(link.s_rate)
+    for direction, (body_direction, _), s_rate, s_acc in zip(directions, link.S, link.s_rate, s_bias, strict=True):
+        w = plus(w, times(s_rate, direction))
+        turning = apply(axes, scope.rate_of(body_direction))
+        w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
+    own_rate = apply(parent_axes, rate)
+    if scope.combines:
+        w = shortened(Twist(w)).w
+        w_bias = scope.rate_of(w)
+    return Branch(
+        link,
+        link.parent,
+        E,
+        apply(parent_axes, offset),
+        own_rate,
+        apply(parent_axes, bias),
+        w,
+        w_bias,
+        _columns(motion, w, own_rate if plane else apply(E, rate)),
+        moments,
+        axes,
+    )
+
+
+def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, Column]:
+    """The branch's twist against its parent per unit of each speed on which it depends."""
+    speeds = {u: k for k, u in enumerate(motion.scope.symbols.u)}
+    columns = {}
+    for symbol in symbols_of((*w, *v)):
+        if symbol in speeds:
+            rates = tangent((*w, *v), {symbol: 1})
+            columns[speeds[symbol]] = (vector_of(rates[:3]), vector_of(rates[3:]))
+    return dict(sorted(columns.items()))
+
+
+def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Moments]:
+    """Moments of every body, those that a hinge cannot feel moved to the parent.
+
+    Mass on the line of a hinge's axis moves as if it belonged to the parent: its m, h.n and n.J n
+    are carried over (in the plane: its m), which leaves fewer terms in every branch but the first.
+    Source: Khalil & Dombre, Modeling, Identification and Control of Robots, §9.4 (base parameters).
+    """
+    moments = [_own_moments(motion, link, plane) for link in motion.links]
+    for i in reversed(range(len(moments))):
+        link = motion.links[i]
+        k = _hinge_axis(motion, link, offsets[i])
+        if k is None:
+            continue
+        m, h, J = moments[i].m, moments[i].h, moments[i].J
+        along = 2 if plane else k
+        kept_h = vector_of(0 if j == along else h[j] for j in range(3))
+        kept_J = matrix_of((0 if i_ == j_ == along else J[i_][j_] for j_ in range(3)) for i_ in range(3))
+        moments[i] = Moments(0, kept_h, kept_J)
+        if link.parent == GROUND:
+            continue
+        d = vector_of(row[k] for row in link.before.R)
+        line = Moments(m, times(h[k], d), matrix_of(times(J[k][k] * a, d) for a in d))
+        moments[link.parent] = moments[link.parent].plus(_flat(line.moved(offsets[i]), plane))
+    return [
+        Moments(b.m, apply(link.pose.R, b.h), b.J) if plane else b
+        for b, link in zip(moments, motion.links, strict=True)
+    ]
+
+
+def _own_moments(motion: Motion, link: Link, plane: bool) -> Moments:
+    body = mass_properties(motion.scope, link.name)
+    half_trace = Fraction(1, 2) * (body.I[0][0] + body.I[1][1] + body.I[2][2])
+    J = matrix_of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
+    if plane:
+        J = ((body.I[2][2], 0, 0), ZERO, ZERO)
+    com = minus(body.com, origin_of(motion, link))
+    return _flat(Moments(body.m, ZERO, J).moved(com), plane)
+
+
+def _flat(moments: Moments, plane: bool) -> Moments:
+    """In the plane only the polar moment Jxx + Jyy counts: it is kept as Jxx, which no rotation changes."""
+    if not plane:
+        return moments
+    polar = moments.J[0][0] + moments.J[1][1]
+    return Moments(moments.m, moments.h, ((polar, 0, 0), ZERO, ZERO))
+
+
+def _hinge_axis(motion: Motion, link: Link, offset: Vector) -> int | None:
+    """The coordinate axis about which a single hinge turns at a place fixed in its parent, else None."""
+    if len(link.S) != 1 or any(type(x) is not int or x != 0 for x in link.S[0][1]):
+        return None
+    w = link.S[0][0]
+    if sorted((type(x) is int, abs(x) if type(x) is int else 2) for x in w) != [(True, 0), (True, 0), (True, 1)]:
+        return None
+    if motion.moves((*offset, *link.point, *(x for row in link.before.R for x in row))):
+        return None
+    return next(k for k in range(3) if w[k] != 0)
+
+
+def _congruence(R: Matrix, J: Matrix) -> Matrix:
+    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which stays."""
+    last = max(range(3), key=lambda i: (sum(type(x) is Node for x in R[i]), i))
+    first, second = (i for i in range(3) if i != last)
+    half = {i: apply(transposed(J), R[i]) for i in (first, second)}
+    entry = {(i, j): dot(half[i], R[j]) for i, j in ((first, first), (second, second), (first, second))}
+    entry |= {(i, last): dot(half[i], R[last]) for i in (first, second)}
+    entry[last, last] = _rest_of_trace([J[i][i] for i in range(3)], [entry[first, first], entry[second, second]])
+    return matrix_of((entry.get((i, j), entry.get((j, i))) for j in range(3)) for i in range(3))
+
+
+def _rest_of_trace(terms: list[Scalar], known: list[Scalar]) -> Scalar:
+    """The sum of the terms less the known ones; what stands on both sides is left out."""
+    rest: Scalar = 0
+    for x in known:
+        same = next((k for k, term in enumerate(terms) if term is x), None)
+        if same is None:
+            rest = rest - x
+        else:
+            terms.pop(same)
+    return sum(terms, start=rest)

@@ -1,0 +1,161 @@
+"""Ties -> states in which the loops close: phi = 0 and J u + sigma = 0, in numbers of 50 digits.
+
+Where loops are redundant the rank of J shows only as well as phi = 0 holds: an error d of the position
+makes redundant rows differ by d. So positions are sought to 1e-28.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError, MissingValues
+from eomgen.mechanics.constraints.ties import Ties
+from eomgen.model.values import exact_parameters, first_guesses, start_values
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
+
+STEPS = 60  # of the search
+SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
+
+State = dict[Node, Any]
+
+
+def generic_state(ties: Ties, rng: Random | None = None, *, shaken: bool = False) -> State:
+    """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
+
+    Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
+
+    Args:
+        shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
+    Raises:
+        MissingValues, DerivationError: the ties do not close there.
+    """
+    rng = rng or Random(1)
+    state, q = _still(ties, rng, shaken=shaken)
+    for spread in SPREADS:
+        found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
+        if found is not None:
+            return _moving(ties, found)
+    raise _open(ties, exact_parameters(ties.motion.scope.model))
+
+
+def scattered_state(ties: Ties) -> State:
+    """Values of every symbol: near the start, off any special position; the ties need not hold."""
+    rng = Random(1)
+    state, q = _still(ties, rng)
+    return state | _scattered(ties, q, SPREADS[0], rng)
+
+
+def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
+    """(values of every symbol but the coordinates, where the coordinates start)."""
+    scope = ties.motion.scope
+    model, symbols = scope.model, scope.symbols
+    known = exact_parameters(model)
+    p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
+    if shaken:
+        p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
+    given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
+    given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
+    state = {node: number(value) for node, value in given.items()}
+    for name, node in symbols.inputs.items():
+        state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
+    return state, start_values(model, p)[0] | first_guesses(model, p)
+
+
+def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -> State:
+    """Coordinates that lie about those given, soon after t = 0."""
+    symbols = ties.motion.scope.symbols
+    shifted = {node: number(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
+    shifted |= on_spheres(ties.motion.scope.quaternions, shifted)
+    return shifted | {symbols.t: number(rng.uniform(0, spread))}
+
+
+def on_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
+    """The symbols whose squares add up to 1, over their norm."""
+    found: State = {}
+    for symbols in spheres:
+        (norm,) = evaluate((sqrt(sum((x * x for x in symbols), start=0)),), state, fifty_digits())
+        found |= {x: state[x] / norm for x in symbols}
+    return found
+
+
+def number(value: float) -> Any:
+    """A float as a number of 50 digits."""
+    return fifty_digits().number(1) * value
+
+
+def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
+    missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
+    if missing:
+        return MissingValues(missing)
+    names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
+    return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
+
+
+def movable(ties: Ties) -> list[Node]:
+    """The coordinates that are not driven."""
+    scope = ties.motion.scope
+    return [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
+
+
+def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
+    """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
+    return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
+
+
+def norms_of(ties: Ties) -> tuple[Scalar, ...]:
+    """e . e - 1 of every quaternion."""
+    return tuple(sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
+
+
+def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | None = None) -> State | None:
+    """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
+
+    Args:
+        sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
+
+    Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
+    also where rows are redundant, and does not leap along directions that only an open loop resists.
+    Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
+    """
+    gaps, scale = (*gaps_of(ties), *norms_of(ties)), np.ones(len(free)) if sizes is None else sizes
+    slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
+    before, left = state, np.inf
+    try:
+        for _ in range(STEPS):
+            phi = evaluate(gaps, state, fifty_digits())
+            size = max((abs(x) for x in phi), default=0)
+            if size < CLOSED_AT_50:
+                return state
+            if left < SUMMED and size > left / 2:
+                return before
+            before, left = state, size
+            slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
+            slope = slope * scale
+            damped = np.vstack([slope, min(float(size), 1.0) * np.eye(len(free))])
+            right = np.array([-float(x / size) for x in phi] + [0.0] * len(free))  # phi may be below what floats add
+            step = scale * np.linalg.lstsq(damped, right, rcond=None)[0]
+            state = state | {q: state[q] + size * float(d) for q, d in zip(free, step, strict=True)}
+    except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        return None
+    return None
+
+
+def _moving(ties: Ties, state: State) -> State:
+    """The state with the nearest speeds that satisfy J u + sigma = 0."""
+    u = ties.motion.scope.symbols.u
+    if not ties.closing or not u:
+        return state
+    entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
+    values = [float(x) for x in evaluate(entries, state, fifty_digits())]
+    k = len(ties.closing)
+    J, open_rate = np.reshape(values[:-k], (k, len(u))), np.array(values[-k:])
+    step = np.linalg.lstsq(J, -open_rate, rcond=LEAST_CHANGE)[0]
+    return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}

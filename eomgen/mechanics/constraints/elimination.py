@@ -1,0 +1,211 @@
+"""Ties -> Elimination: the rates of dependent coordinates, by the rows that determine them.
+
+    J_d u_d + J_i u_i + sigma = 0   ->   u_d = A u_i + b,   N = [1; A],   nu = [0; b]
+
+Linear even where positions are not. A and b have the determinant of J_d below the line: where it vanishes (a dead
+centre, a change point) the dependent coordinates do not follow the independent ones, and have no value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.bodies.scope import Scope, with_speeds_named
+from eomgen.mechanics.bodies.simplify import shorter
+from eomgen.mechanics.constraints.closure import generic_state, scattered_state
+from eomgen.mechanics.constraints.ties import Ties, holds_identically
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.numeric.dense import independent
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK
+from eomgen.symbolic.solve import cramer
+
+Label = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Dependent coordinates that some rows determine together.
+
+    Args:
+        coordinates, ties: their names.
+        determinant: of the rows' coefficients of these rates; where it vanishes they are not determined.
+    """
+
+    coordinates: tuple[str, ...]
+    ties: tuple[str, ...]
+    determinant: Scalar
+
+    def __str__(self) -> str:
+        ties, names = (", ".join(f"'{name}'" for name in each) for each in (self.ties, self.coordinates))
+        return f"{ties} {'does' if len(self.ties) == 1 else 'do'} not determine {names}"
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """What dependent coordinates leave.
+
+    Args:
+        scope: the symbols and kinematic equations with the independent speeds alone.
+        used: the rows that hold by it: of those that determine dependent rates, the coordinate that each would leave
+            free; of those that follow from them, "".
+        blocks: what must stay regular.
+    """
+
+    scope: Scope
+    used: dict[Label, str]
+    blocks: tuple[Block, ...]
+
+
+def dependent_coordinates(scope: Scope) -> tuple[str, ...]:
+    """The names of the coordinates that are eliminated, in the model's order."""
+    return tuple(name for name, part in scope.model.coordinates.items() if part.dependent)
+
+
+def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[Block, ...]:
+    """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
+    moving = (*scope.symbols.q, scope.symbols.t)
+    rates = {q.name: rate for q, rate in zip(scope.symbols.q, scope.rates, strict=True)}
+
+    def divided(block: Block) -> bool:
+        nodes = order([rates[name] for name in block.coordinates])
+        return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
+
+    return () if elimination is None else tuple(filter(divided, elimination.blocks))
+
+
+def elimination_of(ties: Ties) -> Elimination:
+    """The dependent coordinates of a model eliminated through its ties.
+
+    Args:
+        ties: all of them, over the scope in which dependent coordinates are free.
+    Raises:
+        DerivationError: a dependent coordinate that no tie determines.
+    """
+    scope = ties.motion.scope
+    names = dependent_coordinates(scope)
+    dependent = tuple(k for k, u in enumerate(scope.symbols.u) if u.name[:-1] in names)
+    kept = tuple(k for k in range(len(scope.symbols.u)) if k not in dependent)
+    J = _numbers(ties)
+    rows = _determining_rows(ties, J[:, dependent])
+    if len(rows) < len(dependent):
+        raise _undetermined(names, J[np.ix_(rows, dependent)], ties)
+    A, b, blocks = _solved(ties, rows, dependent, kept)
+    scope = _reduced(scope, dependent, kept, A, b)
+    own = [names[j] for j in _released_by(J[np.ix_(rows, dependent)])]
+    found = dict(zip(rows, own, strict=True)) | dict.fromkeys(_following(J, rows, dependent, kept), "")
+    used = {(ties.closing[i].tie, ties.closing[i].number): name for i, name in found.items()}
+    return Elimination(scope, used, tuple(_named(ties, names, rows, block) for block in blocks))
+
+
+# -- which rows --------------------------------------------------------------------------------------
+
+
+def _numbers(ties: Ties) -> np.ndarray:
+    """J of the closing rows at a generic state in which they hold, or where none is near at any state."""
+    try:
+        state = generic_state(ties)
+    except EomgenError:
+        state = scattered_state(ties)
+    width = len(ties.motion.scope.symbols.u)
+    values = evaluate([x for row in ties.J for x in row], state, fifty_digits())
+    return np.array([float(x) for x in values]).reshape(len(ties.closing), width)
+
+
+def _determining_rows(ties: Ties, J_d: np.ndarray) -> list[int]:
+    """The simplest closing rows that are independent in the dependent speeds, in their order."""
+    speeds = _dependent_speeds(ties)
+    chosen: list[int] = []
+    for i in sorted(range(len(ties.closing)), key=lambda i: (*_difficulty(ties, i, speeds), i)):
+        if len(chosen) < J_d.shape[1] and np.any(J_d[i]) and independent(J_d[[*chosen, i]], smallest=RANK):
+            chosen.append(i)
+    return sorted(chosen)
+
+
+def _dependent_speeds(ties: Ties) -> list[int]:
+    model = ties.motion.scope.model
+    return [k for k, u in enumerate(ties.motion.scope.symbols.u) if model.coordinates[u.name[:-1]].dependent]
+
+
+def _difficulty(ties: Ties, i: int, dependent: Sequence[int]) -> tuple[int, int, int]:
+    """How much work a row makes: numbers before parameters before what moves, few coefficients, short ones."""
+    scope = ties.motion.scope
+    moving = (*scope.symbols.q, scope.symbols.t)
+    entries = [ties.J[i][k] for k in dependent if not is_zero(ties.J[i][k])]
+    kinds = [0 if type(x) is not Node else 2 if depends_on(x, moving) else 1 for x in entries]
+    return max(kinds, default=0), len(entries), operations(ties.J[i]).total
+
+
+def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept: tuple[int, ...]) -> list[int]:
+    """The rows that hold wherever the chosen ones do: J_i - J_d (J_d of the chosen)^-1 J_i of the chosen = 0."""
+    found = []
+    for i in range(len(J)):
+        if i not in rows and not independent(J[[*rows, i]][:, [*dependent, *kept]], smallest=RANK):
+            found.append(i)
+    return found
+
+
+def _released_by(J_d: np.ndarray) -> list[int]:
+    """Of each row a dependent speed of its own that moves where that row alone is taken away: J_d^-1 is not zero."""
+    moved = abs(np.linalg.inv(J_d)).T
+    found = cramer.matching([np.flatnonzero(row > RANK * max(row)).tolist() for row in moved])
+    return [found[i] for i in range(len(J_d))]
+
+
+def _undetermined(names: tuple[str, ...], J_d: np.ndarray, ties: Ties) -> DerivationError:
+    """Names the coordinates that the rows leave free."""
+    solved: list[int] = []
+    for k in range(J_d.shape[1]):
+        if independent(J_d[:, [*solved, k]].T, smallest=RANK):
+            solved.append(k)
+    left = [name for k, name in enumerate(names) if k not in solved]
+    what = f"'{left[0]}' is dependent, but " + _why(ties, len(left))
+    return DerivationError(what, f"coordinates.{left[0]}", "add the constraint that moves it, or leave out `dependent`")
+
+
+def _why(ties: Ties, left: int) -> str:
+    if not ties.closing:
+        return "the coordinates satisfy all constraints by themselves" if ties.rows else "there is no constraint"
+    together = "" if left == 1 else f", and {left - 1} more dependent coordinate{'s' * (left > 2)} with it"
+    return f"the constraints leave it free{together}"
+
+
+# -- the rates ---------------------------------------------------------------------------------------
+
+
+def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple[int, ...]) -> Any:
+    """(A, b, blocks) of u_d = A u_i + b."""
+    system = [{j: ties.J[i][k] for j, k in enumerate(dependent)} for i in rows]
+    right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
+    solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=shorter)
+    return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
+
+
+def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A: Any, b: Any) -> Scope:
+    """The scope with the independent speeds, N = [1; A] and nu = [0; b] in the order of the coordinates."""
+    u, a = scope.symbols.u, scope.symbols.a
+    symbols = replace(scope.symbols, u=tuple(u[k] for k in kept), a=tuple(a[k] for k in kept))
+    rates = {u[k].name[:-1]: (tuple(A[j]), b[j]) for j, k in enumerate(dependent)}
+    N, nu = [], []
+    for q, row, bias in zip(scope.symbols.q, scope.N, scope.nu, strict=True):
+        own = rates.get(q.name, (tuple(row[k] for k in kept), bias))
+        N.append(own[0])
+        nu.append(own[1])
+    reduced = replace(scope, symbols=symbols, N=tuple(N), nu=tuple(nu))
+    given = {q.name: rate for q, rate in zip(symbols.q, reduced.rates, strict=True) if q.name in rates}
+    second = reduced.with_accelerations(tuple(given.values()))
+    names = {f"{name}'": rate for name, rate in given.items()}
+    names |= {f"{name}''": acceleration for name, acceleration in zip(given, second, strict=True)}
+    return with_speeds_named(replace(reduced, names={**scope.names, **names}))
+
+
+def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> Block:
+    owners = dict.fromkeys(ties.closing[rows[i]].tie for i in block.equations)
+    return Block(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))

@@ -1,0 +1,212 @@
+"""Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant ties by name.
+
+By rank:     f = nu - rank J  at a generic configuration in which the ties hold; of a quaternion's four rates its norm
+             takes one.
+By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given motions
+             (in space 6 Nb + 3 Np); it counts redundant components too, and then says too little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eomgen.errors import EomgenError, NotYet
+from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.kinematics import Link, Motion, motion_of
+from eomgen.mechanics.bodies.scope import scope_of
+from eomgen.mechanics.constraints.closure import State, generic_state
+from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
+from eomgen.mechanics.constraints.integrability import Integrability, integrability_of
+from eomgen.mechanics.constraints.ties import Ties, ties_of
+from eomgen.model.parts import Model
+from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.dense import independent_rows
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE
+
+Columns = tuple[tuple[Vector, Vector], ...]
+RowName = tuple[str, int]  # of a tie, from 1
+
+
+@dataclass(frozen=True)
+class Redundant:
+    """A closing row that follows from others.
+
+    Args:
+        tie, number: the row, from 1.
+        others: the ties from which it follows.
+    """
+
+    tie: str
+    number: int
+    others: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """Degrees of freedom of a model.
+
+    Args:
+        by_rank: nu - rank J, None where it was not counted.
+        by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
+        formula: the same as text.
+        redundant: closing rows that follow from those declared before them.
+        identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
+        closing_rows: the others.
+        not_counted: why not, or "".
+        integrability: what the rows of velocities alone are, None where there are none; freedoms in position may be
+            more than those in velocity.
+    """
+
+    by_rank: int | None = None
+    by_formula: int | None = None
+    formula: str = ""
+    redundant: tuple[Redundant, ...] = ()
+    identical_rows: tuple[RowName, ...] = ()
+    closing_rows: tuple[RowName, ...] = ()
+    not_counted: str = ""
+    integrability: Integrability | None = None
+
+    @property
+    def identical(self) -> tuple[str, ...]:
+        """The ties with rows that only carry a reaction."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.identical_rows))
+
+    @property
+    def closing(self) -> tuple[str, ...]:
+        """The ties with rows that close."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
+
+
+def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
+    """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
+
+    Args:
+        modes: how contacts are that can end; what is not named is closed.
+    Raises:
+        DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
+    """
+    waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
+    if waiting:
+        return Freedom(not_counted=", ".join(waiting))
+    try:
+        ties = ties_of(motion_of(scope_of(model)), modes=modes)
+    except NotYet as error:
+        return Freedom(not_counted=error.what)
+    if dependent_coordinates(ties.motion.scope):
+        elimination_of(ties)
+    count, formula = counted(ties)
+    identical = tuple((row.tie, row.number) for row in ties.rows if row.identical)
+    closing = tuple((row.tie, row.number) for row in ties.closing)
+    try:
+        redundant, integrability = redundant_rows(ties), integrability_of(ties)
+    except EomgenError as error:
+        return Freedom(None, count, formula, (), identical, closing, error.what)
+    scope = ties.motion.scope
+    speeds = len(scope.symbols.u) - len(scope.quaternions)
+    by_rank = speeds - len(ties.closing) + len(redundant)
+    return Freedom(by_rank, count, formula, redundant, identical, closing, integrability=integrability)
+
+
+# -- by formula ------------------------------------------------------------------------------------
+
+
+def counted(ties: Ties) -> tuple[int, str]:
+    """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
+    motion = ties.motion
+    of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
+    particles = [link for link in motion.links if is_particle(motion, link)]
+    bodies = [link for link in motion.links if link not in particles]
+    free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
+    joints = sum(_components(ties, link, of_body, link.S) for link in bodies)
+    joints += sum(_components(ties, link, of_particle, _sliding(link.S)) for link in particles)
+    driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
+    taken = [(joints, "joints"), (len(ties.rows), "ties"), (driven, "given motions")]
+    total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
+    text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
+    return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
+
+
+def is_particle(motion: Motion, link: Link) -> bool:
+    """A point mass that its joint does not turn."""
+    shape = motion.scope.model.bodies[link.name].shape
+    turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
+    return shape is not None and shape.is_point and (_is_placed(link) or not turns)
+
+
+def _is_placed(link: Link) -> bool:
+    return link.joint is None or not link.joint.carries_reaction
+
+
+def _components(ties: Ties, link: Link, free: int, columns: Columns) -> int:
+    """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
+
+    A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
+    """
+    if _is_placed(link):
+        return 0
+    constant = sum(column not in _ways(ties.motion, link) for column in columns)
+    satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in ties.rows)
+    return free - len(columns) + max(0, constant - satisfied)
+
+
+def _ways(motion: Motion, link: Link) -> Columns:
+    """The columns of S along which the joint moves."""
+    if len(link.S) != len(link.s):  # of a quaternion
+        return link.S
+    return tuple(column for column, s in zip(link.S, link.s, strict=True) if motion.moves((s,)))
+
+
+def _sliding(columns: Columns) -> Columns:
+    """Those that turn nothing."""
+    return tuple((w, v) for w, v in columns if all(is_zero(x) for x in w))
+
+
+# -- by rank ---------------------------------------------------------------------------------------
+
+
+def freedoms(ties: Ties, state: State | None = None) -> int:
+    """nu - rank J; the state and the errors are those of `redundant_rows`."""
+    scope = ties.motion.scope
+    turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
+    return len(scope.symbols.u) - turning - rank_of_ties(ties, state)
+
+
+def rank_of_ties(ties: Ties, state: State | None = None) -> int:
+    """rank J, how many closing rows are independent; the state and the errors are those of `redundant_rows`."""
+    return len(ties.closing) - len(redundant_rows(ties, state))
+
+
+def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, ...]:
+    """The closing rows that follow from those before them, at a generic configuration in which the ties hold.
+
+    Args:
+        state: such a configuration, where one is known already.
+    Raises:
+        MissingValues: the ties cannot be closed without values for the parameters.
+        DerivationError: they do not close near the start.
+    """
+    closing = ties.closing
+    if not closing:
+        return ()
+    entries = evaluate([x for row in ties.J for x in row], state or generic_state(ties), fifty_digits())
+    J = np.array([float(x) for x in entries]).reshape(len(closing), len(ties.motion.scope.symbols.u))
+    kept = independent_rows(J, RANK_NEARBY)
+    return tuple(
+        Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
+        for i, row in enumerate(closing)
+        if i not in kept
+    )
+
+
+def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:
+    """The ties that make up a redundant row."""
+    if not kept:
+        return ()
+    shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
+    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > SHARE)
+    return tuple(name for name in dict.fromkeys(names) if name != tie)

@@ -1,0 +1,284 @@
+"""Motion -> Ties: the rows of the constraints.
+
+A row holds a wrench on each body that it touches; the motion that it forbids is the dual:
+
+    W^T xi + s_t = 0,   J = W^T B,   sigma = W^T beta + s_t,   J u + sigma = 0,   J a + gamma = 0
+
+A row without bodies (`equation`) gives dphi/dq, or its row in the rates, directly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, ModelError, NotYet
+from eomgen.mechanics.bodies.contact_modes import CLOSED, Mode, Modes, friction_factor, rows_in_mode
+from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion, slide_of
+from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes
+from eomgen.mechanics.bodies.simplify import shorter_row
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.symbolic.print.text import text_size, to_text
+
+Push = PointForce | Couple
+
+LONG = 60  # characters of a gap that is not printed
+STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scalar row of a tie.
+
+    Args:
+        tie, number: its name and place in the tie, from 1.
+        wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation.
+        direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
+        velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
+        gap: phi(q, t), or None where only the velocity row is given.
+        status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
+            coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
+        component: "x", "y", "z", "n", "t", "couple", "tension", or "".
+        pushes: the forces and couples behind `wrenches`, as the tie gave them.
+        tangent: of a contact that can rub, the forces and couples for a unit of friction along it.
+        sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
+        friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
+        eliminates: the dependent coordinate that an "eliminated" row determines, or "".
+        part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
+        cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
+        shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
+        round: of a contact that holds on all sides of a line: its friction is for a unit of |N|, of which this row's
+            multiplier is one component and those of the rows before are the others.
+    """
+
+    tie: str
+    number: int
+    wrenches: tuple[tuple[str, Wrench], ...]
+    direct: Scalar
+    velocity: Scalar
+    gap: Scalar | None
+    status: str
+    component: str = ""
+    pushes: tuple[Push, ...] = ()
+    tangent: tuple[Push, ...] = ()
+    sliding: Scalar = 0
+    friction: Scalar | None = None
+    eliminates: str = ""
+    part: str = ""
+    cross_tangent: tuple[Push, ...] = ()
+    across: Scalar | None = None
+    shares: tuple[Scalar, ...] = ()
+    round: bool = False
+
+    @property
+    def identical(self) -> bool:
+        return self.status == "identical"
+
+    @property
+    def label(self) -> str:
+        return f"lam({self.tie}, {self.number})"
+
+
+@dataclass(frozen=True)
+class Ties:
+    """All rows of all ties, and the matrices of those that close."""
+
+    motion: Motion
+    rows: tuple[Row, ...]
+
+    @property
+    def closing(self) -> tuple[Row, ...]:
+        return tuple(row for row in self.rows if row.status == "closing")
+
+    @cached_property
+    def J(self) -> tuple[tuple[Scalar, ...], ...]:
+        """J u + sigma = 0: one row for each closing row."""
+        velocities = tuple(row.velocity for row in self.closing)
+        return jacobian(velocities, self.motion.scope.symbols.u) if velocities else ()
+
+    @cached_property
+    def sigma(self) -> tuple[Scalar, ...]:
+        still = {u: 0 for u in self.motion.scope.symbols.u}
+        return substituted(tuple(row.velocity for row in self.closing), still)
+
+    @cached_property
+    def gamma(self) -> tuple[Scalar, ...]:
+        """J a + gamma = 0: the total derivative of the velocity row at a = 0."""
+        return self.motion.scope.time_derivative(tuple(row.velocity for row in self.closing))
+
+    @property
+    def phi(self) -> tuple[Scalar | None, ...]:
+        return tuple(row.gap for row in self.closing)
+
+
+def ties_of(motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: Modes | None = None) -> Ties:
+    """The rows of every constraint of the model.
+
+    Args:
+        used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
+        modes: how contacts are that can end, rub or stick.
+    Raises:
+        NotYet: a kind whose rows this version does not build.
+    """
+    for where, what in unbuilt_ties(motion.scope.model):
+        raise NotYet(f"the rows of '{what}' are not built yet", where)
+    rows = []
+    for name, constraint in motion.scope.model.constraints.items():
+        scene = SystemScene(motion, f"{constraint.table}.{name}")
+        mode = (modes or {}).get(name, CLOSED)
+        for number, tie_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
+            label = (name, number)
+            row = _row(motion, name, number, tie_row, used=label in (used or {}))
+            row = replace(row, eliminates=(used or {}).get(label, ""))
+            rows.append(_rubbing(scene, constraint, row, mode))
+    stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
+    rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
+    return Ties(motion, tuple(rows))
+
+
+def rows_of(motion: Motion, name: str) -> tuple[Row, ...]:
+    """The rows that a tie has while it is closed, whether it is so or not: how far an open contact is open."""
+    constraint = motion.scope.model.constraints[name]
+    rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
+    return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
+
+
+def _held_on_path(motion: Motion, link: Link) -> TieRow:
+    """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
+    _, v = link.S[0]
+    along = apply(link.pose.R, v)
+    parent = None if link.parent == GROUND else motion.links[link.parent].name
+    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), times(-1, along)))
+    return TieRow(pushes, None, component="t", material=True)
+
+
+def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
+    wrenches = _wrenches(motion, row.pushes)
+    if row.pushes:
+        direct = 0 if row.material else _slide(motion, row.pushes)
+        direct = direct if row.rate is None else direct + row.rate
+    elif row.rate is not None:
+        direct = _linear(motion, name, row.rate)
+    else:
+        assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
+        direct = motion.scope.time_derivative((row.gap,))[0]
+    velocity = _power(motion, wrenches, direct)
+    if row.pushes and row.rate is not None:
+        _linear(motion, name, velocity)
+    if row.pushes and motion.scope.model.space == "space":
+        velocity = shorter_row(velocity)
+    sliding = _dual(motion, row, row.tangent) if row.tangent else 0
+    across = _dual(motion, row, row.cross_tangent) if row.cross_tangent else None
+    status = "eliminated" if used else _status(motion, velocity, row.gap)
+    if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
+        what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
+        off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
+        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
+    return Row(
+        name,
+        number,
+        wrenches,
+        direct,
+        velocity,
+        row.gap,
+        status,
+        row.component,
+        row.pushes,
+        row.tangent,
+        sliding,
+        part=row.part,
+        across=across,
+        cross_tangent=row.cross_tangent,
+        round=row.round,
+    )
+
+
+def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
+    """The velocity that is dual to pushes of a row."""
+    return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
+
+
+def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
+    """The row with its friction, where it has any."""
+    law = getattr(constraint, "friction", None)
+    if law is None or not row.tangent:
+        return row
+    if row.across is not None:
+        if law.coulomb is not None and mode.sense == 0:
+            return row
+        row = _on_surface(row, viscous=law.coulomb is None, still=mode.sense is not None)
+        return replace(row, friction=-mode.push * scene.value(law.viscous if law.coulomb is None else law.coulomb))
+    return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
+
+
+def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
+    """A contact on a surface, with v = (v_1, v_2) along its tangents: it rubs along v / |v|, and slides with |v|.
+
+    Of viscous friction, which is along v itself, the unit is v, and v . v / 2 has the derivatives dual to it. In a
+    phase that may begin at rest, where v has no direction, |v| is sqrt(v . v + STILL^2).
+    """
+    assert row.across is not None, "asked of a contact on a surface"
+    pair = (row.sliding, row.across)
+    square = pair[0] * pair[0] + pair[1] * pair[1]
+    speed = sqrt(square + STILL * STILL if still else square)
+    shares = pair if viscous else tuple(over(v, speed) for v in pair)
+    return replace(row, shares=shares, sliding=Fraction(1, 2) * square if viscous else speed)
+
+
+def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
+    holds = holds_identically(velocity) and (gap is None or holds_identically(gap) or _is_met(motion, gap))
+    return "identical" if holds else "closing"
+
+
+def _is_met(motion: Motion, gap: Scalar) -> bool:
+    """Whether bodies that all stand still meet at the model's own values: 0.2 and r with r = 0.2."""
+    worth = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
+    return worth is not None and abs(worth) < SOLVED
+
+
+def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
+    return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
+
+
+def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Scalar) -> Scalar:
+    return sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
+
+
+def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
+    """What points that move in their bodies add to the power of the pushes."""
+    return sum((slide_power(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
+
+
+def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
+    """The row of an equation in the rates, which must be linear in them: J u + sigma = 0."""
+    speeds = motion.scope.symbols.u
+    if speeds and any(depends_on(entry, speeds) for row in jacobian((rate,), speeds) for entry in row):
+        raise ModelError(
+            f"the rate of '{name}' is not linear in the rates",
+            f"constraints.{name}.rate",
+            "write it as a sum of rates, each times a function of the coordinates",
+        )
+    return rate
+
+
+def slide_power(motion: Motion, push: PointForce) -> Scalar:
+    """Power of a push on a point that moves in its body: F . R r'."""
+    return dot(in_ground_axes(motion, push.force, push.axes), slide_of(motion, push.place))
+
+
+def holds_identically(scalar: Scalar) -> bool:
+    """Whether the scalar is zero at all values of its symbols (exactly, at random states)."""
+    if type(scalar) is int:
+        return scalar == 0
+    return equal_at_random_states([(scalar, 0)]).equal

@@ -1,0 +1,71 @@
+"""What every formulation gives: the equations of motion as graph scalars."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.symbols import Symbols
+
+if TYPE_CHECKING:
+    from eomgen.mechanics.equations.system import System
+
+Row = tuple[Scalar, ...]
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The equations of motion: q' = N u + nu,  M a + c = Q + J^T lam,  J a + gamma = 0.
+
+    Args:
+        symbols: the symbols in which everything below is written.
+        N, nu: kinematic matrix, nq rows of nu entries, and bias, nq.
+        M: mass matrix, nu rows of nu entries.
+        c: inertia terms left when a = 0, nu.
+        Q: generalized forces of everything applied, nu.
+        forcing: Q - c, nu (of its own: it can be cheaper than the difference).
+        J, sigma, gamma: closing rows, k rows of nu entries; velocity bias, k; acceleration bias, k.
+        phi: gaps, k (None for a row that has none).
+        T, V: kinetic and potential energy [J].
+        accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
+        friction: the part of Q that rubbing contacts make, nu; () where nothing rubs.
+    """
+
+    symbols: Symbols
+    N: tuple[Row, ...]
+    nu: Row
+    M: tuple[Row, ...]
+    c: Row
+    Q: Row
+    forcing: Row
+    J: tuple[Row, ...]
+    sigma: Row
+    gamma: Row
+    phi: tuple[Scalar | None, ...]
+    T: Scalar
+    V: Scalar
+    accelerations: Row | None = None
+    friction: Row = ()
+
+
+def assembled(system: System, *, M: tuple[Row, ...], c: Row, Q: Row, T: Scalar, forcing: Row | None = None) -> Assembly:
+    """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
+    scope, ties = system.scope, system.ties
+    if forcing is None:
+        forcing = tuple(force - inertia for force, inertia in zip(Q, c, strict=True))
+    return Assembly(
+        system.symbols,
+        scope.N,
+        scope.nu,
+        M,
+        c,
+        Q,
+        forcing,
+        ties.J,
+        ties.sigma,
+        ties.gamma,
+        ties.phi,
+        T,
+        system.loads.potential_energy,
+    )

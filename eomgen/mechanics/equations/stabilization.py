@@ -1,0 +1,48 @@
+"""Assembly, rates -> Assembly: closing rows that pull back what has opened, after Baumgarte.
+
+    J a + gamma + 2 alpha (J u + sigma) + beta^2 phi = 0
+
+so that phi'' + 2 alpha phi' + beta^2 phi = 0: a gap decays as a damped oscillation does, critically for alpha = beta.
+Of a row that is given as a velocity alone the speed decays, with the rate 2 alpha.
+Source: Baumgarte, Stabilization of constraints and integrals of motion in dynamical systems, Computer Methods in
+Applied Mechanics and Engineering 1 (1972).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from eomgen.errors import UsageError
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+
+Rates = tuple[float, float]
+
+
+def stabilized(system: System, assembly: Assembly, rates: Rates) -> Assembly:
+    """The equations of motion with rows that pull.
+
+    Args:
+        rates: alpha, beta [1/s].
+    Raises:
+        UsageError: a rate that is no positive number; a tie that has no multiplier to pull by.
+    """
+    alpha, beta = (_exact(rate) for rate in rates)
+    taken = dict.fromkeys(row.tie for row in system.ties.rows if row.status == "eliminated")
+    if taken:
+        names = ", ".join(f"'{name}'" for name in taken)
+        raise UsageError(
+            f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
+            mend="take the projection, or declare no coordinate dependent",
+        )
+    rows = zip(assembly.gamma, system.ties.closing, assembly.phi, strict=True)
+    pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
+    return replace(assembly, gamma=tuple(pulling))
+
+
+def _exact(rate: float) -> Fraction:
+    """A decimal as it was written."""
+    if not 0 < rate < float("inf"):
+        raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", mend="give alpha and beta in 1/s")
+    return Fraction(repr(float(rate)))

@@ -1,0 +1,91 @@
+"""Model -> System: motion, loads and ties of one model, over one graph."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.declared_speeds import Solved, with_declared_speeds
+from eomgen.mechanics.bodies.kinematics import Motion, motion_of
+from eomgen.mechanics.bodies.loads import Loads, loads_of
+from eomgen.mechanics.bodies.scope import Scope, scope_of
+from eomgen.mechanics.bodies.simplify import shorter
+from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
+from eomgen.mechanics.constraints.ties import Ties, holds_identically, ties_of
+from eomgen.model.parts import Model
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.symbols import Symbols
+
+
+@dataclass(frozen=True)
+class System:
+    """What every formulation assembles from: the three suppliers, which do not see one another.
+
+    Args:
+        motion, loads, ties: over the independent speeds alone.
+        modes: how the contacts are that can end, rub or stick, by tie.
+        elimination: how the dependent coordinates follow; None where there are none.
+        free: the same system with every rate a speed, dependent coordinates free and all ties closing; None where it
+            is the same.
+        declared: the rates that follow from declared speeds, and where these do not determine them.
+    """
+
+    motion: Motion
+    loads: Loads
+    ties: Ties
+    modes: Modes = field(default_factory=dict)
+    elimination: Elimination | None = None
+    free: System | None = None
+    declared: tuple[Solved, ...] = ()
+
+    @property
+    def scope(self) -> Scope:
+        return self.motion.scope
+
+    @property
+    def inputs(self) -> dict[str, Scalar]:
+        """The model's own expression of each input, in t and parameters."""
+        return {name: self.scope.value(part.value.named(name)) for name, part in self.scope.model.inputs.items()}
+
+    @property
+    def symbols(self) -> Symbols:
+        """The symbols of the model, one multiplier for each closing row included."""
+        symbols = self.scope.symbols
+        lam = tuple(symbols.graph.symbol(row.label) for row in self.ties.closing)
+        return replace(symbols, lam=lam)
+
+
+def system_of(model: Model, modes: Modes | None = None) -> System:
+    """Motion, loads and ties of a model, dependent coordinates eliminated.
+
+    Args:
+        modes: how contacts are that can end, rub or stick, by tie.
+    Raises:
+        NotYet: a kind of joint, force or constraint that this version does not derive.
+        DerivationError: what the model says cannot be derived.
+    """
+    free = free_system_of(model, modes)
+    return reduced(free) if dependent_coordinates(free.scope) or model.speeds else free
+
+
+def free_system_of(model: Model, modes: Modes | None = None) -> System:
+    """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
+    motion = motion_of(scope_of(model))
+    return System(motion, loads_of(motion), ties_of(motion, modes=modes), modes or {})
+
+
+def reduced(free: System) -> System:
+    """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
+
+    Raises:
+        DerivationError: a dependent coordinate that no tie determines.
+        ModelError: declared speeds that do not determine the rates.
+    """
+    elimination = elimination_of(free.ties) if dependent_coordinates(free.scope) else None
+    scope = free.scope if elimination is None else elimination.scope
+    solved: tuple[Solved, ...] = ()
+    if scope.model.speeds:
+        scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
+    motion = motion_of(scope)
+    ties = ties_of(motion, {} if elimination is None else elimination.used, free.modes)
+    return System(motion, loads_of(motion), ties, free.modes, elimination, free, solved)

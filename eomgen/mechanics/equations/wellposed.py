@@ -1,0 +1,143 @@
+"""Assembly -> what can be said of its energy and its mass before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.constraints.closure import generic_state, number, scattered_state
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import from_potential
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
+
+State = dict[Node, Any]
+
+
+def is_conservative(system: System, assembly: Assembly) -> bool:
+    """Whether T + V stays: nothing moves by itself, and Q is -N^T dV/dq alone."""
+    t = assembly.symbols.t
+    by_itself = (*assembly.nu, *assembly.sigma)
+    if any(not is_zero(x) for x in by_itself) or depends_on(assembly.V, (t,)) or depends_on(assembly.T, (t,)):
+        return False
+    elastic = from_potential(system.motion, assembly.V)
+    return equal_at_random_states(zip(assembly.Q, elastic, strict=True)).equal if elastic else True
+
+
+def refuse_massless(system: System, assembly: Assembly) -> None:
+    """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
+
+    Raises:
+        ModelError: naming every such coordinate, or the body that can turn idly.
+    """
+    if problems := massless_motions(system, assembly):
+        raise ModelError(problems)
+
+
+def massless_motions(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+    """The motions that move no mass; () where every acceleration is determined."""
+    held = [any(not is_zero(row[k]) for row in assembly.J) for k in range(len(assembly.M))]
+    moves_nothing = [u.name for k, u in enumerate(assembly.symbols.u) if is_zero(assembly.M[k][k]) and not held[k]]
+    return tuple(map(_massless, moves_nothing)) or _idle(system, assembly)
+
+
+def _massless(speed: str) -> Problem:
+    q = speed.rstrip("'")
+    if q == speed:
+        return Problem(
+            f"speeds.{q}",
+            f"the speed '{q}' moves no mass, so it has no derivative",
+            mend="give the bodies that it moves a mass",
+        )
+    return Problem(
+        f"coordinates.{q}",
+        f"the free coordinate '{q}' moves no mass, so it has no acceleration",
+        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`",
+    )
+
+
+# -- motions that move no mass -----------------------------------------------------------------------
+
+
+def _idle(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+    """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
+    if not assembly.M or _is_full(system):
+        return ()
+    try:
+        if _has_energy(assembly, scattered_state(system.ties)):
+            return ()
+        state = generic_state(system.ties)
+        u = _without_energy(assembly, state)
+        return () if u is None else (_idle_problem(system, u, state),)
+    except (MissingValues, DerivationError, NoValue):
+        return ()  # whoever needs accelerations says what is missing
+
+
+def _is_full(system: System) -> bool:
+    """Whether every body has inertia in all directions, and every speed is that of one joint: M is regular."""
+    rates = [rate for link in system.motion.links for rate in link.s_rate]
+    own = len(rates) == len(set(rates)) and set(rates) == set(system.symbols.u)
+    return own and not any(_is_lean(system, link) for link in system.motion.links)
+
+
+def _is_lean(system: System, link: Link) -> bool:
+    """Whether a body has motions without kinetic energy, as far as zeros on the diagonal of its inertia tell."""
+    mass = mass_properties(system.scope, link.name)
+    axes = (2,) if system.scope.model.space == "plane" else range(3)
+    return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
+
+
+def _has_energy(assembly: Assembly, state: State) -> bool:
+    """Whether all motions have, those that the ties forbid too: M is regular."""
+    values = {node: float(x) for node, x in state.items()}
+    M = np.array(evaluate([x for row in assembly.M for x in row], values, FLOAT)).reshape(len(assembly.M), -1)
+    sizes = np.diag(M)
+    if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
+        return False
+    return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > RANK)
+
+
+def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | None:
+    """Speeds with M u = 0 and J u = 0, the largest 1; None where there are none."""
+    u = assembly.symbols.u
+    entries = evaluate([x for row in (*assembly.M, *assembly.J) for x in row], state, fifty_digits())
+    rows = np.array(entries, dtype=float).reshape(-1, len(u))
+    sizes = np.diag(rows[: len(u)])
+    scale = 1 / np.sqrt(np.where(sizes > SQUARED_AT_50 * max(sizes), sizes, 1.0))
+    M, J = scale[:, None] * rows[: len(u)] * scale, rows[len(u) :] * scale
+    _, values, directions = np.linalg.svd(np.vstack([M, of_one_length(J)]))
+    if values[-1] > SUMMED * values[0]:
+        return None
+    least = scale * directions[-1]
+    return dict(zip(u, least / np.max(np.abs(least)), strict=True))
+
+
+def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
+    """Which body turns idly, or which coordinates move nothing."""
+    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > SHARE]
+    names = ", ".join(f"'{name}'" for name in moving)
+    for link in system.motion.links:
+        if max(abs(w) for w in _spin(link, u, state)) > SHARE:
+            what = f"body '{link.name}' can turn about an axis about which it has no inertia"
+            mend = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
+            return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", mend=mend)
+    what = f"the free coordinates {names} can move together without moving a mass"
+    mend = "give the bodies that they move a mass, or leave out what moves nothing of its own"
+    return Problem("coordinates", f"{what}: nothing determines their accelerations", mend=mend)
+
+
+def _spin(link: Link, u: Mapping[Node, float], state: State) -> list[float]:
+    """The part of a body's angular velocity that is linear in u, at these speeds."""
+    ways = [state | {node: number(k * x) for node, x in u.items()} for k in (1, 0)]
+    with_u, without = (evaluate(link.twist.w, way, fifty_digits()) for way in ways)
+    return [float(x - y) for x, y in zip(with_u, without, strict=True)]

@@ -1,0 +1,121 @@
+"""System, Assembly -> first integrals: what stays constant along every motion.
+
+T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
+u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from eomgen.errors import EomgenError
+from eomgen.mechanics.bodies.scope import integral_from_zero
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.wellposed import is_conservative
+from eomgen.mechanics.first_integrals.constants_of_motion import jacobi
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import dot
+
+WORK = 5_000  # products of terms for finding that a rate of momentum is a function of time
+
+
+@dataclass(frozen=True)
+class Integral:
+    """A function of the motion that stays constant.
+
+    Args:
+        name: "energy", "jacobi" or "momentum(x)".
+        expression: the function, of q, u, t and parameters.
+        coordinate: whose momentum it is, "" of the energy.
+    """
+
+    name: str
+    expression: Scalar
+    coordinate: str = ""
+
+
+def first_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:
+    """The energy where it stays, and the momenta on which only known functions of time act."""
+    return (*energy_integral(system, assembly), *momentum_integrals(system, assembly))
+
+
+def energy_integral(system: System, assembly: Assembly) -> tuple[Integral, ...]:
+    """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
+
+    Where something moves by itself, Jacobi's integral if that stays.
+    """
+    if not assembly.M:
+        return ()
+    for V in (assembly.V, assembly.V - work_of_constant_forces(system)):
+        if is_conservative(system, replace(assembly, V=V)):
+            return (Integral("energy", assembly.T + V),)
+    found = jacobi(system, assembly)
+    return () if found is None else (Integral("jacobi", found),)
+
+
+def work_of_constant_forces(system: System) -> Scalar:
+    """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
+    loads = system.loads
+    work: Scalar = 0
+    for force in loads.applied:
+        for load in () if force.potential is not None else force.loads:
+            work = work + _work(system, load)
+    for effort in loads.efforts:
+        if _is_constant(system, effort.drive):
+            work = work + effort.drive * system.motion.link(effort.body).s[effort.variable]
+    return work
+
+
+def _work(system: System, load: Load) -> Scalar:
+    """The work of one load where it is constant, else 0."""
+    motion = system.motion
+    if isinstance(load, PointForce) and load.axes is None and _is_constant(system, *load.force):
+        return dot(load.force, motion.position(load.place))
+    if isinstance(load, Couple) and _is_constant(system, *load.couple):
+        return load.couple[2] * (motion.link(load.body).angle or 0)
+    if isinstance(load, GeneralizedForce) and _is_constant(system, load.value):
+        return load.value * next(q for q in system.symbols.q if q.name == load.coordinate)
+    return 0
+
+
+def _is_constant(system: System, *scalars: Scalar) -> bool:
+    symbols = system.symbols
+    moving = (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values())
+    return not any(depends_on(x, moving) for x in scalars)
+
+
+def momentum_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:
+    """p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one."""
+    symbols, scope = assembly.symbols, system.scope
+    momenta = gradient(assembly.T, symbols.u)
+    drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
+    found = []
+    for k, (u, p) in enumerate(zip(symbols.u, momenta, strict=True)):
+        if not all(holds_identically(row[k]) for row in assembly.J):
+            continue
+        rate = _of_time_alone(drifts[k] + assembly.forcing[k], (*symbols.q, *symbols.u, *symbols.inputs.values()))
+        if rate is None:
+            continue
+        try:
+            gained = integral_from_zero(rate, symbols.t, "") if type(rate) is Node else rate * symbols.t
+        except EomgenError:  # no closed form
+            continue
+        name = u.name.removesuffix("'")
+        found.append(Integral(f"momentum({name})", p - gained, name))
+    return tuple(found)
+
+
+def _of_time_alone(rate: Scalar, others: Sequence[Node]) -> Scalar | None:
+    """The rate where it depends on none of the others, else None."""
+    if not depends_on(rate, others):
+        return rate
+    if holds_identically(rate):
+        return 0
+    rate = readable(rate, WORK)
+    return None if depends_on(rate, others) else rate

@@ -1,0 +1,105 @@
+"""Momenta, closing rows -> every speed by one of them, without time: both are linear in the speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.integrals import momentum_integrals
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve import linear
+
+LONGEST = 20_000  # products of terms for making a speed readable
+MOST_SPEEDS = 12  # of a system whose speeds are sought from its integrals
+
+
+@dataclass(frozen=True)
+class Relations:
+    """Every speed by one of them:  u_j = share_j u_s + constant_j.
+
+    Args:
+        speed: u_s; None where all speeds are known without it.
+        shares, constants: of every speed, functions of q.
+    """
+
+    speed: Node | None
+    shares: Mapping[Node, Scalar]
+    constants: Mapping[Node, Scalar]
+
+    @property
+    def speeds(self) -> dict[Node, Scalar]:
+        """Every speed as a function of q and u_s."""
+        s = 0 if self.speed is None else self.speed
+        return {u: self.constants[u] + self.shares[u] * s for u in self.shares}
+
+
+def relations_of(
+    system: System, assembly: Assembly, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
+) -> Relations | None:
+    """What momenta and closing rows, all linear in the speeds, say of them; None where more than one stays free.
+
+    Args:
+        start: q and u at the start, scalars of the parameters.
+        at: coordinates whose values are put in before anything is solved.
+    """
+    symbols = assembly.symbols
+    by_itself = (*assembly.sigma, *assembly.nu)
+    if not 0 < len(symbols.u) <= MOST_SPEEDS or any(depends_on(x, (symbols.t,)) for x in by_itself):
+        return None
+    rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in assembly.J]
+    right: list[Scalar] = [-sigma for sigma in assembly.sigma]
+    for integral in momentum_integrals(system, assembly):
+        if depends_on(integral.expression, (symbols.t,)):
+            continue
+        (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
+        rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
+        right.append(at_start(integral.expression, start, symbols) - rest)
+    if at:
+        rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
+        right = list(substituted(tuple(right), at))
+    solution = _solved(system, rows, right, len(symbols.u))
+    if solution is None or len(solution.free) > 1:
+        return None
+    positive = positive_parameters(system.scope)
+    constants = {symbols.u[j]: simplest(x, LONGEST, positive) for j, x in solution.constants.items()}
+    if not solution.free:
+        return Relations(None, dict.fromkeys(symbols.u, 0), constants)
+    (free,) = solution.free
+    speed = symbols.u[free]
+    shares: dict[Node, Scalar] = {speed: 1}
+    shares |= {symbols.u[j]: simplest(-x.get(free, 0), LONGEST, positive) for j, x in solution.shares.items()}
+    return Relations(speed, {u: shares[u] for u in symbols.u}, {speed: 0, **constants})
+
+
+def _solved(
+    system: System, rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int
+) -> linear.Solution | None:
+    """The speeds by the rows, with pivots that do not vanish at a generic state of the motion."""
+    try:
+        state = generic_state(system.ties)
+    except EomgenError:
+        return None
+    return linear.solved(rows, right, unknowns, lambda entries: evaluate(entries, state, fifty_digits()))
+
+
+def at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:
+    """An integral's value at the start; where the speeds are 0 coefficients need not exist, as at a branch point.
+
+    Raises:
+        DerivationError: it holds a coordinate or speed that has no exact value there.
+    """
+    (integral,) = substituted((integral,), {u: start[u] for u in symbols.u if u in start})
+    (value,) = substituted((integral,), start)
+    left = [x.name for x in (*symbols.q, *symbols.u) if depends_on(value, (x,))]
+    if left:
+        raise DerivationError(f"the start has no closed form: {', '.join(left)}")
+    return value

@@ -1,0 +1,234 @@
+"""System -> accelerations at one state, in numbers, from the free bodies: the check that uses no B.
+
+Every body has its own acceleration A_i = (wd, acc) of its origin, its own Newton-Euler equations and an
+unknown wrench F_i from its joint; the joints say how A_i may differ from that of the parent:
+
+    I_i A_i + p_i = W_i + F_i - sum over children X^T F_c + sum over closing rows W lam
+    A_i = X A_parent + b_i + C_i a
+    C_i^T F_i summed over joints + rotors = what acts on joints and coordinates at no place
+    J a + gamma = 0
+
+One linear system in (A, F, a, lam); what depends on velocity is found by differences of numbers along
+the motion, not by derivatives of expressions. Dependent coordinates are free here, and every tie that closes them has
+its lam: so the elimination is checked too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.loads import body_wrench, weights
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import joint_forces, placeless_forces
+from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.numeric.dense import independent, solution, without_rounding
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
+
+State = dict[Node, Any]
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Values of expressions at a state, and along the motion through it."""
+
+    system: System
+    state: State
+
+    def at(self, scalars: tuple[Scalar, ...], shift: int = 0) -> list[Any]:
+        """Values at the state, or a step of 1e-15 later (shift = 1) or earlier (-1) on the path with constant u."""
+        return evaluate(scalars, self._beside[shift] if shift else self.state, fifty_digits())
+
+    @cached_property
+    def _beside(self) -> dict[int, State]:
+        return {sign: self._shifted(sign) for sign in (1, -1)}
+
+    def _shifted(self, sign: int) -> State:
+        """The state a step of 1e-15 later or earlier."""
+        arithmetic, values, symbols = fifty_digits(), dict(self.state), self.system.scope.symbols
+        h = sign * _step(arithmetic)
+        for q, rate in zip(symbols.q, evaluate(self.system.scope.rates, self.state, arithmetic), strict=True):
+            values[q] = values[q] + h * rate
+        values[symbols.t] = values[symbols.t] + h
+        return values
+
+    def array(self, scalars: Any) -> np.ndarray:
+        """Values as floats, in the shape of the nested tuples."""
+        flat, shape = _flattened(scalars)
+        return np.array([float(x) for x in self.at(flat)]).reshape(shape)
+
+    def rate(self, scalars: Any) -> np.ndarray:
+        """Time derivative at a = 0 by central differences."""
+        flat, shape = _flattened(scalars)
+        after, before = self.at(flat, 1), self.at(flat, -1)
+        step = _step(fifty_digits())
+        return np.array([float((x - y) / (2 * step)) for x, y in zip(after, before, strict=True)]).reshape(shape)
+
+
+def free_body_accelerations(system: System, state: State) -> np.ndarray:
+    """a at a state, from the free bodies.
+
+    Args:
+        state: values of all symbols, at 50 digits.
+    Raises:
+        NoValue: a free coordinate moves no mass at the state.
+    """
+    if system.free is None:
+        return _accelerations(system, state)
+    free = system.free.scope
+    state = state | free_speeds(system, system.free, state)
+    found = _accelerations(system.free, state)
+    state |= {a: fifty_digits().number(1) * float(x) for a, x in zip(free.symbols.a, found, strict=True)}
+    own = evaluate(tuple(free.names[a.name] for a in system.scope.symbols.a), state, fifty_digits())
+    return np.array([float(x) for x in own])
+
+
+def free_speeds(system: System, free: System, state: State) -> State:
+    """The speeds of the free system, the dependent ones as they follow."""
+    rates = evaluate(free_rates(system, free), state, fifty_digits())
+    return dict(zip(free.scope.symbols.u, rates, strict=True))
+
+
+def _accelerations(system: System, state: State) -> np.ndarray:
+    """a of a system in which every tie that closes has its multiplier."""
+    numbers = Numbers(system, state)
+    n, nu = len(system.motion.links), len(system.scope.symbols.u)
+    k = len(system.ties.closing) + len(system.scope.quaternions)
+    size = 12 * n + nu + k
+    A, right = np.zeros((size, size)), np.zeros(size)
+    speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
+    _put_bodies(numbers, A, right, speeds)
+    direct = [a + b for a, b in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
+    rotors = armature_bias(system.motion, nu)
+    right[speeds] = numbers.array(tuple(a - b for a, b in zip(direct, rotors, strict=True))) if nu else 0
+    for i, j, value in armature_mass(system.motion):
+        A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
+    _close(numbers, A, right, multipliers)
+    J = without_rounding(A[multipliers, speeds])
+    A[:, multipliers] *= np.any(J, axis=1)  # what says nothing pushes nothing
+    A[multipliers, speeds] = J
+    regular = independent(J, smallest=LEAST_CHANGE)
+    return solution(A, right, regular=regular, smallest=LEAST_CHANGE)[speeds]
+
+
+def _put_bodies(numbers: Numbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:
+    """Into A and the right side: Newton and Euler for every body, and what its joint says of its motion."""
+    links = numbers.system.motion.links
+    n = len(links)
+    for i, link in enumerate(links):
+        column, bias = _joint(numbers, link)
+        motion, wrench = slice(6 * i, 6 * i + 6), slice(6 * (n + i), 6 * (n + i) + 6)
+        inertia, push = _body(numbers, link)
+        A[motion, motion], A[motion, wrench], right[motion] = inertia, -np.eye(6), push
+        A[wrench, motion], A[wrench, speeds], right[wrench] = np.eye(6), -column, bias
+        if link.parent >= 0:
+            X = _transfer(numbers, link)
+            A[wrench, 6 * link.parent : 6 * link.parent + 6] = -X
+            A[6 * link.parent : 6 * link.parent + 6, wrench] = X.T
+        A[speeds, wrench] = column.T
+
+
+def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
+    """(I, W - p) of a free body about its origin, body axes: W the applied wrench, p what velocity takes."""
+    system = numbers.system
+    mass = mass_properties(system.scope, link.name)
+    m, com, I_com = float(numbers.array((mass.m,))[0]), numbers.array(mass.com), numbers.array(mass.I)
+    w = numbers.array(link.twist.w)
+    C = _tilde(com)
+    inertia = np.block([[I_com - m * C @ C, m * C], [-m * C, m * np.eye(3)]])
+    centripetal = m * np.cross(w, np.cross(w, com))
+    p = np.concatenate([np.cross(w, I_com @ w) + np.cross(com, centripetal), centripetal])
+    applied = np.zeros(6)
+    for load in (*system.loads.placed, *weights(system.loads)):
+        found = body_wrench(system.motion, load)
+        if found is not None and found[0] == link.name:
+            applied += numbers.array((*found[1].tau, *found[1].f))
+    return inertia, applied - p
+
+
+def _joint(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
+    """(columns, b): the child's acceleration against its parent per unit of a, and at a = 0."""
+    scope = numbers.system.scope
+    parent = numbers.system.motion.links[link.parent] if link.parent >= 0 else None
+    R_CP = numbers.array(link.local.R).T
+    offset = _origin(link)
+    first = scope.time_derivative(offset)
+    spin = _relative_spin(link)
+    w_p = np.zeros(3) if parent is None else numbers.array(parent.twist.w)
+    velocity, w = numbers.rate(offset), numbers.array(spin)
+    acc = np.cross(w_p, np.cross(w_p, numbers.array(offset))) + 2 * np.cross(w_p, velocity) + numbers.rate(first)
+    bias = np.concatenate([numbers.rate(spin) + np.cross(R_CP @ w_p, w), R_CP @ acc])
+    columns = [[*numbers.array(gradient(x, scope.symbols.u))] for x in (*spin, *first)]
+    turned = np.array(columns).reshape(6, len(scope.symbols.u))
+    return np.vstack([turned[:3], R_CP @ turned[3:]]), bias
+
+
+def _origin(link: Link) -> Vector:
+    """The child's origin in the parent's axes."""
+    return link.local.point(times(-1, link.point))
+
+
+def _relative_spin(link: Link) -> Vector:
+    """Angular velocity of the child against its parent, child's axes."""
+    spin = ZERO
+    for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
+        spin = plus(spin, times(rate, w))
+    return spin
+
+
+def _transfer(numbers: Numbers, link: Link) -> np.ndarray:
+    """X: acceleration of the parent's origin, parent's axes -> of the child's origin if it were fixed in the parent."""
+    R_CP = numbers.array(link.local.R).T
+    return np.block([[R_CP, np.zeros((3, 3))], [-R_CP @ _tilde(numbers.array(_origin(link))), R_CP]])
+
+
+def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slice) -> None:
+    """Columns of the closing rows' wrenches, and the rows W^T A + d/dt(W^T) xi ... = 0 as J a + gamma = 0."""
+    system = numbers.system
+    n = len(system.motion.links)
+    for j, row in enumerate(system.ties.closing):
+        place = multipliers.start + j
+        for body, wrench in row.wrenches:
+            i = system.motion.index[body]
+            A[6 * i : 6 * i + 6, place] -= numbers.array((*wrench.tau, *wrench.f))
+        J = gradient(row.velocity, system.scope.symbols.u)
+        A[place, 12 * n : 12 * n + len(J)] = numbers.array(J)
+        A[12 * n : 12 * n + len(J), place] = -numbers.array(gradient(row.direct, system.scope.symbols.u))
+        right[place] = -float(numbers.rate((row.velocity,))[0])
+    _hold_norms(numbers, A, right, multipliers.start + len(system.ties.closing))
+
+
+def _hold_norms(numbers: Numbers, A: np.ndarray, right: np.ndarray, place: int) -> None:
+    """e . e'' + e' . e' = 0 of every quaternion, with a multiplier of its own."""
+    scope, n = numbers.system.scope, len(numbers.system.motion.links)
+    speeds = [u.name for u in scope.symbols.u]
+    for j, four in enumerate(scope.quaternions, start=place):
+        for e in four:
+            k = 12 * n + speeds.index(f"{e.name}'")
+            A[j, k] = A[k, j] = float(numbers.at((e,))[0])
+            right[j] -= float(numbers.at((scope.names[f"{e.name}'"],))[0]) ** 2
+
+
+def _tilde(a: np.ndarray) -> np.ndarray:
+    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
+def _step(arithmetic: Any) -> Any:
+    return arithmetic.number(1) / arithmetic.number(10**15)
+
+
+def _flattened(scalars: Any) -> tuple[tuple[Scalar, ...], tuple[int, ...]]:
+    """A scalar tuple or a tuple of rows, flat, and its shape."""
+    if scalars and isinstance(scalars[0], tuple):
+        return tuple(x for row in scalars for x in row), (len(scalars), len(scalars[0]))
+    return tuple(scalars), (len(scalars),)

@@ -1,0 +1,326 @@
+"""System -> the state at the start: dependent coordinates where the ties put them, and the ties found to hold.
+
+Of the dependent coordinates those that position ties fix are sought from `near`, else from `start`; those that only
+velocity ties move really start at `start`. Other coordinates and speeds stay as given where the ties hold there. Where
+these do not, the nearest values are taken at which they do (`consistency`), and what has changed is told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.bifurcations import Fork, at_rest, fork_at, leads_on, speeds_along
+from eomgen.mechanics.constraints.closure import closed, gaps_of, number
+from eomgen.mechanics.constraints.consistency import bilateral, is_guess, nearest_places, nearest_speeds
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.constraints.ties import Row, Ties
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.initial_state.open_ties import excess, listed, refuse_open_gaps, refuse_open_rates
+from eomgen.model.begun_speeds import begun_speeds
+from eomgen.model.contacts import contacts_of
+from eomgen.model.own_units import in_own_unit
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50
+
+State = dict[Node, Any]
+
+
+@dataclass(frozen=True)
+class Change:
+    """A coordinate or speed that does not start as it was written.
+
+    Args:
+        given: whether somebody gave it; else it is a guess, or 0.
+        words: as its user writes it, in his unit.
+    """
+
+    name: str
+    before: float
+    after: float
+    given: bool
+    words: str
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a motion begins.
+
+    Args:
+        values: of every coordinate and independent speed; all ties hold.
+        changes: of those that are not dependent, so that the ties hold.
+        ties: the names of the ties that did not hold at the values given.
+        fork: where branches meet there.
+    """
+
+    values: dict[str, float]
+    changes: tuple[Change, ...] = ()
+    ties: tuple[str, ...] = ()
+    fork: Fork | None = None
+
+    @property
+    def words(self) -> str:
+        """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
+        if not self.changes:
+            return ""
+        names, how = listed(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
+        hold = "holds" if len(self.ties) == 1 else "hold"
+        return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
+
+
+def start_state(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """The values of `start_of_motion`, with its arguments and errors."""
+    return start_of_motion(system, parameters, start).values
+
+
+def begun_state(system: System) -> State:
+    """A value of every symbol that stands in the ties, at the start, with 50 digits."""
+    return _numbers(system, start_state(system), None)
+
+
+def start_of_motion(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> Start:
+    """Every coordinate and independent speed at the start, at which all ties hold.
+
+    Args:
+        parameters: values in place of the model's own.
+        start: values of coordinates and speeds in place of the model's own; of a dependent coordinate the first guess.
+    Raises:
+        UsageError: a name in `start` that is no coordinate and no speed.
+        MissingValues: a start value, or a tie, needs parameters without values.
+        DerivationError: a tie that does not close near there.
+    """
+    values = _given(system, parameters, start or {})
+    if all(row.identical for row in system.ties.rows):
+        return Start(values)
+    before = _numbers(system, values, parameters)
+    sought = fixed_by_position(system)
+    state = (closed(system.ties, before, sought) or before) if sought else before
+    state, open_gaps = _with_gaps_closed(system, state, start or {})
+    refuse_open_gaps(system, state)
+    state, open_rates = _with_rates_closed(system, state, start or {}, parameters)
+    refuse_open_rates(system, state)
+    state, fork, turned = _along_a_branch(system, state, start or {})
+    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
+    found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
+    return Start(found, _changes(system, values, found, start or {}) if names else (), names, fork)
+
+
+# -- values at which the ties hold -------------------------------------------------------------------
+
+
+def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which positions agree with the ties, the ties that did not hold)."""
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    apart = _apart(((row, row.gap) for row in rows if row.gap is not None), system.symbols.q, state)
+    ties = _that_stay(system, apart)
+    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    if not opened:
+        return state, ()
+    model, standing = system.scope.model, set(symbols_of(gaps_of(ties)))
+    sought = fixed_by_position(system)
+    own = [q for q in system.symbols.q if q in standing and q not in sought and not model.coordinates[q.name].driven]
+    called = [q for q in own if q.name in start]
+    silent = [q for q in own if q not in called and is_guess(model, q.name)]
+    tiers = ([*sought, *silent], [q for q in own if q not in called and q not in silent], called)
+    return nearest_places(ties, state, tiers, (*sought, *silent)) or state, opened
+
+
+def _with_rates_closed(
+    system: System, state: State, start: Mapping[str, float], parameters: Mapping[str, Any] | None
+) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
+    apart = _apart(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
+    ties = _that_stay(system, apart)
+    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    if not opened:
+        return state, ()
+    M = _inertia(system, state, parameters)
+    return nearest_speeds(ties, state, _speeds(system, start), M) or state, opened
+
+
+def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
+    """M at a state; None where a mass has no value."""
+    known = exact_parameters(system.scope.model, parameters)
+    values = {node: float(known[name]) for name, node in system.symbols.parameters.items() if name in known}
+    values |= {node: float(x) for node, x in state.items()}
+    rows = recursive.mass(system.motion, branches_of(system.motion))
+    entries = [x for row in rows for x in row]
+    if not set(symbols_of(entries)) <= values.keys():
+        return None
+    M = np.array(evaluate(entries, values, FLOAT)).reshape(len(rows), -1)
+    return M if np.all(np.isfinite(M)) else None
+
+
+def _along_a_branch(
+    system: System, state: State, start: Mapping[str, float]
+) -> tuple[State, Fork | None, tuple[str, ...]]:
+    """(the nearest state whose speeds lead along a branch, where branches meet, the ties that they did not keep).
+
+    Raises:
+        DerivationError: they lead along none.
+    """
+    try:
+        fork = fork_at(system.ties, state)
+    except EomgenError:  # the ties close nowhere near: there is but this place
+        return state, None, ()
+    if fork is None or at_rest(system.ties, state) or leads_on(system.ties, fork, state):
+        return state, fork, ()
+    found = speeds_along(system.ties, fork, state, _speeds(system, start))
+    if found is None:
+        what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
+        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
+    return found, fork, fork.ties
+
+
+def _speeds(system: System, start: Mapping[str, float]) -> tuple[list[Node], list[Node], list[Node]]:
+    """The speeds that nobody gave, those of the model, those that the caller gave."""
+    u, model = system.symbols.u, system.scope.model
+    called = [node for node in u if node.name in start]
+    silent = [node for node in u if node not in called and is_guess(model, node.name)]
+    return silent, [node for node in u if node not in called and node not in silent], called
+
+
+def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
+    """The ties whose scalars ought to be zero and are not."""
+    return tuple(dict.fromkeys(row.tie for row, x in pairs if excess(x, symbols, state)))
+
+
+def _that_stay(system: System, apart: Sequence[str]) -> Ties:
+    """All ties but the contacts that are open and may be so."""
+    ending = [contact.name for contact in contacts_of(system.scope.model) if contact.unilateral]
+    return bilateral(system.ties, ending, [name for name in ending if name not in apart])
+
+
+def _changes(
+    system: System, before: Mapping[str, float], after: Mapping[str, float], start: Mapping[str, float]
+) -> tuple[Change, ...]:
+    """What differs, dependent coordinates left out."""
+    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
+    return tuple(
+        _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in start)
+        for x in own
+        if abs(after[x.name] - before[x.name]) > COMPUTED * (1 + abs(before[x.name]))
+    )
+
+
+def _change(model: Model, name: str, values: tuple[float, float], called: bool) -> Change:
+    """A change from the first of two values to the second."""
+    before, after = values
+    given = called or not is_guess(model, name)
+    was = f" (not {in_own_unit(model, name, before, 6)})" if given else ""
+    return Change(name, before, after, given, f"{name} = {in_own_unit(model, name, after)}{was}")
+
+
+def _rounded(x: Any, given: float) -> float:
+    """A number of 50 digits as a float; 0 where it is rounding, and not given."""
+    return 0.0 if abs(x) < COORDINATE_AT_50 and float(x) != given else float(x)
+
+
+def start_speeds(system: System) -> dict[Node, Scalar]:
+    """Every speed at the start, as functions of the parameters and of where it starts.
+
+    Where no declared speed of the same rates has a start, they are what the start speeds of the coordinates make them.
+    """
+    scope, begun = system.scope, begun_speeds(system.scope.model.speeds)
+    model = scope.model
+    found: dict[Node, Scalar] = {}
+    rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
+    for u in scope.symbols.u:
+        if u.name in rates:
+            found[u] = rates[u.name]
+        elif u.name in begun:
+            found[u] = scope.value(model.speeds[u.name].start)
+        else:
+            found[u] = _by_rates(system, u.name, rates)
+    return found
+
+
+def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar:
+    """A declared speed at given rates, those of dependent coordinates as the ties make them, at t = 0."""
+    free = system.free
+    assert free is not None, "declared speeds leave the system over the rates behind"
+    scope = free.scope if system.elimination is None else system.elimination.scope
+    known: dict[Node, Scalar] = {u: rates[u.name] for u in scope.symbols.u}
+    return substituted((scope.names[speed],), {**known, scope.symbols.t: 0})[0]
+
+
+def fixed_by_position(system: System) -> list[Node]:
+    """The dependent coordinates that stand in a gap."""
+    names = dependent_coordinates(system.scope)
+    standing = set(symbols_of(gaps_of(system.ties)))
+    return [q for q in system.symbols.q if q.name in names and q in standing]
+
+
+def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[str, float]) -> dict[str, float]:
+    """The start values as they are written, and those in their place."""
+    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
+    unknown = [name for name in start if name not in names]
+    if unknown:
+        raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
+    q, u = start_values(system.scope.model, parameters)
+    guesses = first_guesses(system.scope.model, parameters)
+    sought = {node.name for node in fixed_by_position(system)}
+    values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
+    values |= _normed(system, values)
+    values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}
+    return {name: float(values[name]) for name in names}
+
+
+def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
+    """The coordinates of quaternions over their norm."""
+    found: dict[str, float] = {}
+    for four in system.scope.quaternions:
+        norm = math.sqrt(sum(values[e.name] ** 2 for e in four))
+        if norm == 0:
+            raise UsageError(f"the quaternion {', '.join(e.name for e in four)} cannot start at 0")
+        found |= {e.name: values[e.name] / norm for e in four}
+    return found
+
+
+def _by_coordinates(
+    system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None
+) -> dict[str, float]:
+    """The declared speeds by the start speeds of the coordinates, where none of the same rates has a start."""
+    model, symbols = system.scope.model, system.symbols
+    begun = begun_speeds(model.speeds)
+    silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
+    formulas = start_speeds(system) if silent else {}
+    asked = tuple(formulas[u] for u in silent)
+    used = set(symbols_of(asked))
+    p = numeric_parameters(model, parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
+    state = {symbols.parameters[name]: value for name, value in p.items()}
+    state |= {q: values[q.name] for q in symbols.q}
+    return {u.name: float(x) for u, x in zip(silent, evaluate(asked, state, FLOAT), strict=True)}
+
+
+def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None) -> State:
+    """A value of every symbol that may stand in a tie, at t = 0, with 50 digits; what is not needed may be missing."""
+    symbols = system.symbols
+    rows = [row for row in system.ties.rows if not row.identical]
+    used = set(symbols_of([x for row in rows for x in (row.velocity, 0 if row.gap is None else row.gap)]))
+    used |= set(symbols_of(system.inputs.values()))
+    needed = [name for name, node in symbols.parameters.items() if node in used]
+    p = numeric_parameters(system.scope.model, parameters, needed=needed)
+    state = {symbols.parameters[name]: number(value) for name, value in p.items()} | {symbols.t: number(0)}
+    state |= {node: number(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    for name, node in symbols.inputs.items():
+        state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
+    return state

@@ -1,0 +1,121 @@
+"""System, a state -> whether its ties hold there: more than rounding apart, they are refused by name."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.closure import number
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.nearest_miss import nearest_miss
+from eomgen.model.own_units import in_own_unit
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP
+
+State = dict[Node, Any]
+
+
+def refuse_open_gaps(system: System, state: State) -> None:
+    """Raises DerivationError for the tie that is open by most."""
+    q = system.symbols.q
+    gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
+    found = _worst(gaps, q, state)
+    if found is None:
+        return
+    row, gap, size = found
+    if size == float("inf"):
+        raise DerivationError(
+            f"'{row.tie}' (row {row.number}) has no value at the start",
+            f"constraints.{row.tie}",
+            "give start values at which its roots and quotients have one",
+        )
+    what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
+    raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
+
+
+def _nearest(system: System, state: State) -> str:
+    """; how near the ties come to closing, and where."""
+    miss = nearest_miss(system, state)
+    if miss is None:
+        return ""
+    model = system.scope.model
+    there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
+    if not miss.open:
+        return f"; all ties close at {there}, farther than a start is moved"
+    stay = f"{listed(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
+    return f"; wherever the coordinates go, {stay}: by {miss.open:.3g} at {there}, the least that was found"
+
+
+def _mend(system: System, gap: Scalar) -> str:
+    """What closes a gap: another guess, a coordinate marked dependent, other start values."""
+    dependent = dependent_coordinates(system.scope)
+    standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
+    sought = [name for name in standing if name in dependent]
+    if sought:
+        return f"give start values at which it can close, or another guess: `near` of {listed(sought)}"
+    free = [name for name in standing if not system.scope.model.coordinates[name].driven]
+    if not free:
+        return "change the given motions"
+    return f"give start values that close it, or mark a coordinate as `dependent`: {listed(free)}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: 'pin', 'rod'."""
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def refuse_open_rates(system: System, state: State) -> None:
+    """Raises DerivationError for the closing tie whose velocity row is off by most."""
+    u = system.symbols.u
+    found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
+    if found is None:
+        return
+    row, _, size = found
+    speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
+    what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
+    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {listed(speeds)}")
+
+
+def _worst(
+    pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State
+) -> tuple[Row, Scalar, float] | None:
+    """(row, scalar, size) of the largest scalar that ought to be zero and is not; None where all are."""
+    found = [(row, x, excess(x, symbols, state)) for row, x in pairs]
+    return max((each for each in found if each[2]), key=lambda each: each[2], default=None)
+
+
+def excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:
+    """|x|, where it is more than rounding: against its terms, and against what the symbols would have to move."""
+    try:
+        slopes = evaluate(gradient(x, symbols), state, fifty_digits())
+        value, terms = _value_and_terms(x, state)
+    except (NoValue, ZeroDivisionError):
+        return float("inf")
+    steepest = float(max((abs(slope) for slope in slopes), default=0))
+    return value if value > OPEN_GAP * terms and value > COMPUTED * steepest else 0.0
+
+
+def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
+    """(|x|, the same with every sum taken of absolute values): how large the terms are that cancel."""
+    nodes = order((x,))
+    values = dict(zip(nodes, evaluate(nodes, state, fifty_digits()), strict=True))
+    terms = {node: abs(value) for node, value in values.items()}
+    for node in nodes:
+        if node.op in _OF_TERMS:
+            terms[node] = _OF_TERMS[node.op](*(terms[a] if type(a) is Node else abs(number(a)) for a in node.args))
+    return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
+
+
+_OF_TERMS: dict[str, Callable[..., Any]] = {
+    "add": operator.add,
+    "sub": operator.add,
+    "mul": operator.mul,
+    "neg": operator.pos,
+}

@@ -1,0 +1,115 @@
+"""System -> its configuration at rest: coordinates at the start, exact; speeds, accelerations and time 0."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
+from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.closure import gaps_of, number
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.model.arithmetic import in_order
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+
+TRIES = 20
+
+State = dict[Node, Scalar]
+
+
+def at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
+    """Every symbol that moves, at rest at the start: exact scalars of the parameters.
+
+    Args:
+        places: coordinates that are elsewhere than at the start.
+    Raises:
+        DerivationError: the ties do not close at the start, or not in closed form.
+    """
+    symbols, scope = system.symbols, system.scope
+    state: State = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
+    sought = fixed_by_position(system)
+    given = {q: start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q if q not in sought}
+    given = with_unit_quaternions(scope, given)
+    state |= {**given, **(places or {})}
+    left = [q for q in sought if q not in state]
+    if left:
+        state |= _closed_in(system, state, left)
+    inputs = substituted(tuple(system.inputs[name] for name in symbols.inputs), state)
+    return {**state, **dict(zip(symbols.inputs.values(), inputs, strict=True))}
+
+
+def _closed_in(system: System, state: State, sought: list[Node]) -> State:
+    """The dependent coordinates that the ties place, in closed form."""
+    numbers: dict[Node, float] = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+    numbers |= {
+        node: value
+        for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
+    }
+    located = Located(numbers, positive_parameters(system.scope))
+    found = places_of(substituted(gaps_of(system.ties), state), sought, located)
+    missing = [q.name for q in sought if q not in found]
+    if missing:
+        raise DerivationError(
+            f"where the ties place '{missing[0]}' has no closed form here",
+            f"coordinates.{missing[0]}",
+            "give start values at which it has one",
+        )
+    return found
+
+
+def values_of_parameters(scope: Scope, rng: Random | None, *, shaken: bool = False) -> dict[Node, Any]:
+    """Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value.
+
+    Args:
+        shaken: all near the model's own and none of them special.
+    """
+    model, arithmetic = scope.model, fifty_digits()
+    known = exact_parameters(model)
+    names, values = scope.symbols.parameters, dict[Node, Any]()
+    given = {name: part.value for name, part in model.parameters.items() if part is not None}
+    for name in in_order(given)[0]:
+        if name in known:
+            values[names[name]] = evaluate((scope.value(given[name]),), values, arithmetic)[0]
+    if rng is None:
+        return values
+    for node in names.values():
+        value = values.get(node)
+        if value is None:
+            values[node] = number(rng.uniform(0.7, 1.3))
+        elif shaken:
+            values[node] = value * rng.uniform(0.8, 1.2) if value else number(rng.uniform(0.05, 0.2))
+    return values
+
+
+def values_for(
+    scope: Scope, scalars: Iterable[Scalar], near: Mapping[Node, float] | None = None, *, shaken: bool = False
+) -> dict[Node, Any]:
+    """Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them.
+
+    Args:
+        near: where symbols of the configuration are.
+        shaken: as of `values_of_parameters`.
+    Raises:
+        DerivationError: they have none.
+    """
+    wanted, arithmetic = tuple(scalars), fifty_digits()
+    for seed in range(1, TRIES):
+        rng = Random(seed)
+        values = values_of_parameters(scope, rng, shaken=shaken)
+        values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
+        values |= {x: number(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
+        try:
+            evaluate(wanted, values, arithmetic)
+        except (NoValue, ZeroDivisionError):
+            continue
+        return values
+    raise DerivationError("the configuration has no value at these parameters")

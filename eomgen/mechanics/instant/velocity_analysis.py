@@ -1,0 +1,336 @@
+"""Model, [given] -> Snapshot: velocities and accelerations of all bodies at one configuration.
+
+    J u + sigma = 0,   J a + gamma = 0        the ties, bodies that only ties hold displaced (`loose`)
+    left - right = 0                          what is given, linear in u or in a and in the unknowns
+
+Both are solved exactly at the configuration. What they leave free stays as a symbol, so that whatever does not depend
+on it (a ratio of two spins, a centre of rotation) has its answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+
+from eomgen.errors import DerivationError, MissingValues
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System, free_system_of, reduced
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.mechanics.initial_state.values_at_rest import at_rest
+from eomgen.mechanics.instant.given_rows import (
+    Line,
+    given_lines,
+    linear_line,
+    open_gaps,
+    solution_of,
+    speed_lines,
+    tie_lines,
+)
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.instant.unassembled import freed
+from eomgen.model.fields import Equation
+from eomgen.model.part import altered
+from eomgen.model.parts import Model
+from eomgen.model.trusses import is_node
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size
+
+WORK = 50_000  # products of terms for one value
+SHORT = 80  # characters of where a coordinate is that stands for it in formulas
+LONG = 400  # characters from which a value is no easier to read than it came
+
+State = dict[Node, Scalar]
+
+
+class Undetermined(DerivationError):
+    """A value that the ties and what is given leave open."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What the equations of one order say.
+
+    Args:
+        values: of the velocities (or accelerations) and unknowns; those that stay free stand in them.
+        free: what stays free.
+        freedoms: how many freedoms the ties leave.
+        unknowns: how many unknowns stand in the given equations.
+        given: how many of both the given equations take.
+    """
+
+    values: State
+    free: tuple[Node, ...]
+    freedoms: int
+    unknowns: int
+    given: int
+
+    @property
+    def missing(self) -> int:
+        """How many equations would determine the rest."""
+        return self.freedoms + self.unknowns - self.given
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A system at one configuration.
+
+    Args:
+        system: of the freed model, dependent coordinates as free as others.
+        places: the configuration: exact scalars of the parameters in place of q, t and inputs.
+        velocity, acceleration: the given equations.
+        speeds: the start speeds of the model's own coordinates that are given, too.
+        assumed: a velocity that is taken to be a symbol: {text: symbol}.
+        exact: whether the places are; else they are numbers.
+        located: where coordinates are that stay symbols, as their closed form would be long, in numbers.
+    """
+
+    system: System
+    places: State
+    velocity: tuple[Equation, ...] = ()
+    acceleration: tuple[Equation, ...] = ()
+    speeds: Mapping[str, Expression] = field(default_factory=dict)
+    assumed: Mapping[str, Node] = field(default_factory=dict)
+    exact: bool = True
+    located: Mapping[Node, float] = field(default_factory=dict)
+
+    # -- what is known -----------------------------------------------------------------------------
+
+    @cached_property
+    def velocities(self) -> Known:
+        """u, and the unknowns among the velocities.
+
+        Raises:
+            DerivationError: given velocities that contradict one another or the ties.
+        """
+        symbols = self.system.symbols
+        ties = tie_lines(self.system, self.places)
+        given = speed_lines(self.system, self.speeds, self.places)
+        given += given_lines(self.system, self.places, self.velocity, symbols.u, "velocity")
+        for text, symbol in self.assumed.items():
+            gap = self._at(parse(text, references=True), self.places) - symbol
+            given.append(linear_line(f"'{text}'", gap, symbols.u, "given"))
+        return self._known(ties, given, symbols.u, self.places)
+
+    @cached_property
+    def accelerations(self) -> Known:
+        """a, and the unknowns among the accelerations, the velocities put in.
+
+        Raises:
+            DerivationError: given accelerations that contradict one another or the ties.
+        """
+        symbols, state = self.system.symbols, self.moving
+        given = given_lines(self.system, state, self.acceleration, symbols.a, "acceleration")
+        return self._known(self._bending, given, symbols.a, state)
+
+    @cached_property
+    def moving(self) -> State:
+        """Places and velocities."""
+        return {**self.places, **self.velocities.values}
+
+    @cached_property
+    def state(self) -> State:
+        """Places, velocities and accelerations."""
+        return {**self.moving, **self.accelerations.values}
+
+    def _known(self, ties: list[Line], given: list[Line], rates: Sequence[Node], state: State) -> Known:
+        unknowns = [x for x in self.system.symbols.unknowns.values() if x not in state]
+        standing = [x for x in unknowns if any(x in line.entries for line in given)]
+        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), self._near)
+        values = {node: self.simple(x) for node, x in solution.items()}
+        free = tuple(node for node in (*rates, *standing) if node not in values)
+        return Known(values, free, len(rates) - ranks[0], len(standing), ranks[1] - ranks[0])
+
+    @property
+    def _near(self) -> Mapping[Node, float] | None:
+        """Where coordinates are that are known in numbers only; None where all are known exactly."""
+        return None if self.exact and not self.located else self.located
+
+    # -- values ------------------------------------------------------------------------------------
+
+    def value(self, formula: Expression) -> Scalar:
+        """A formula of the model here, as a function of the parameters.
+
+        Raises:
+            Undetermined: it depends on what ties and given equations leave open.
+            DerivationError: it has no value here.
+        """
+        scalar = self.raw(formula)
+        self.refuse_open(scalar)
+        self.refuse_impossible()
+        return scalar
+
+    def raw(self, formula: Expression) -> Scalar:
+        """A formula here in which the velocities and accelerations that are left open may stand."""
+        symbols, scalar = self.system.symbols, self._at(formula, self.moving)
+        later = (*symbols.a, *(x for x in symbols.unknowns.values() if x not in self.moving))
+        return self._at(formula, self.state) if depends_on(scalar, later) else scalar
+
+    def _at(self, formula: Expression, state: State) -> Scalar:
+        quantities = Quantities(self.system, state)
+        scalar = formula.evaluate(self.system.scope.names, quantities.value)
+        return self.simple(substituted((scalar,), state)[0])
+
+    def simple(self, x: Scalar) -> Scalar:
+        """A scalar as a person writes it; as it came where multiplying out made it longer still."""
+        return legible(x, WORK, positive_parameters(self.system.scope), LONG)
+
+    def refuse_impossible(self) -> None:
+        """Refuse velocities that redundant ties allow to first order, as at a change point, and no motion has.
+
+        Raises:
+            DerivationError: J a + gamma = 0 has no solution.
+        """
+        symbols, known = self.system.symbols, self.velocities
+        rank = len(symbols.u) - known.freedoms
+        if rank < len(self._bending) and not known.free:
+            solution_of(self.system, self._bending, (), symbols.a, self._near)
+
+    @cached_property
+    def _bending(self) -> list[Line]:
+        return tie_lines(self.system, self.moving, accelerations=True)
+
+    # -- what is left open ---------------------------------------------------------------------------
+
+    def refuse_open(self, scalar: Scalar) -> None:
+        """Refuse a value in which something stands that is left open.
+
+        Raises:
+            Undetermined: says how many equations are missing, and offers one.
+        """
+        symbols = self.system.symbols
+        if depends_on(scalar, symbols.u):
+            raise self._open(self.velocities, "velocity", "rate")
+        if depends_on(scalar, symbols.a):
+            raise self._open(self.accelerations, "acceleration", "acceleration")
+        for name, node in symbols.unknowns.items():
+            if depends_on(scalar, (node,)) and node in self.velocities.free:
+                raise self._open(self.velocities, "velocity", "rate")
+            if depends_on(scalar, (node,)) and node in self.accelerations.free:
+                raise self._open(self.accelerations, "acceleration", "acceleration")
+            if depends_on(scalar, (node,)):
+                raise Undetermined(
+                    f"the unknown '{name}' is not determined by what is given",
+                    f"unknowns.{name}",
+                    "let it stand in an equation of [given], or in a load",
+                )
+
+    def _open(self, known: Known, order: str, noun: str) -> Undetermined:
+        many = "1 freedom" if known.freedoms == 1 else f"{known.freedoms} freedoms"
+        if known.unknowns:
+            many += f" and {known.unknowns} unknown{'s' if known.unknowns > 1 else ''}"
+            noun = "equation"
+        rates = f"{known.given} {noun}{'s' if known.given != 1 else ''} given"
+        more = "one more" if known.given else "one" if known.missing == 1 else f"{known.missing}"
+        offer = self._offered(known, order)
+        return Undetermined(
+            f"it is not determined: {many}, {rates}", "given", f'give {more} in [given]: {order} = ["{offer} = ..."]'
+        )
+
+    def _offered(self, known: Known, order: str) -> str:
+        """A quantity that is still open: the spin of a body, or the velocity of a point."""
+        state = self.moving if order == "velocity" else self.state
+        for asked in self._quantities(order):
+            if depends_on(self._at(parse(asked, references=True), state), known.free):
+                return asked
+        return "omega(...)" if order == "velocity" else "epsilon(...)"
+
+    def _quantities(self, order: str) -> Iterator[str]:
+        """Spins of bodies and velocities of points (or their rates), as one would give them."""
+        plane = self.system.scope.model.space == "plane"
+        turn, along = ("omega", "v") if order == "velocity" else ("epsilon", "a")
+        for name in self.system.motion.index:
+            if not is_node(name):
+                yield from [f"{turn}({name})"] if plane else [f"{turn}_{axis}({name})" for axis in "xyz"]
+            point = name if is_node(name) else f"{name}.origin"
+            yield from (f"{along}{axis}({point})" for axis in ("xy" if plane else "xyz"))
+
+    @property
+    def open_rate(self) -> str:
+        """A velocity that the ties and what is given leave open; "" where there is none."""
+        return self._offered(self.velocities, "velocity") if self.velocities.free else ""
+
+    def assuming(self, rate: str, symbol: Node) -> Snapshot:
+        """The same with a velocity that is this symbol."""
+        return replace(self, assumed={**self.assumed, rate: symbol})
+
+    def refuse_several(self) -> None:
+        """Refuse more than one rate that is left open.
+
+        Raises:
+            Undetermined: says what to give.
+        """
+        if self.velocities.missing > 1:
+            raise self._open(self.velocities, "velocity", "rate")
+
+
+def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
+    """The model at its start, with what it gives of velocities and accelerations.
+
+    Start speeds that the model says count as given.
+
+    Args:
+        by_coordinates: coordinates that the ties place in no short closed form stay symbols; else they are numbers.
+    Raises:
+        DerivationError: ties that do not close at the start.
+    """
+    free = free_system_of(freed(model))
+    places, numbers = _places(free)
+    located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
+    exact = by_coordinates or not located
+    still = _still(free, at_rest(free, {**{q: q for q in located}, **places})) if exact else _in_numbers(free, numbers)
+    if not located:
+        open_gaps(free, still)
+    given = model.given
+    speeds = {
+        f"{name}'": part.speed for name, part in model.coordinates.items() if part.speed is not None and not part.driven
+    }
+    speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
+    velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
+    return Snapshot(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
+
+
+def _places(free: System) -> tuple[State, Mapping[str, float]]:
+    """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
+    system = reduced(free)
+    sought, found = fixed_by_position(system), State()
+    if not sought:
+        return {}, {}
+    try:
+        found = at_rest(system)
+    except DerivationError:
+        start_state(system)
+    short = {q: found[q] for q in sought if q in found and text_size(found[q]) <= SHORT}
+    try:
+        return short, {} if len(short) == len(sought) else start_state(system)
+    except MissingValues:
+        return {q: found[q] for q in sought}, {}
+
+
+def _in_numbers(free: System, start: Mapping[str, float]) -> State:
+    """Coordinates, and the parameters that have values, as the exact numbers that these doubles are."""
+    symbols, values = free.symbols, exact_parameters(free.scope.model)
+    parameters = {symbols.parameters[name]: Fraction(x) for name, x in values.items()}
+    places = {q: Fraction(start[q.name]) for q in symbols.q}
+    still = _still(free, at_rest(free, places))
+    return {node: substituted((x,), parameters)[0] for node, x in still.items()} | parameters
+
+
+def _still(system: System, state: State) -> State:
+    """A state without its velocities and accelerations, which are 0 there."""
+    moving = {*system.symbols.u, *system.symbols.a}
+    return {node: x for node, x in state.items() if node not in moving}
+
+
+def mobility_of(model: Model) -> int:
+    """In how many ways the bodies of a model can move at its start, those that only ties hold included.
+
+    Raises:
+        DerivationError: ties that do not close at the start.
+    """
+    return snapshot_of(altered(model, given=None)).velocities.freedoms

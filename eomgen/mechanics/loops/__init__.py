@@ -1,1 +1,0 @@
-"""Ties that close: where they hold, what stays free, starts, branches, singular positions."""

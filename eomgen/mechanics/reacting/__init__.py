@@ -1,1 +1,0 @@
-"""Reactions: the balance of every body, component by component."""

@@ -1,0 +1,316 @@
+"""Balance -> Reactions: every reaction of every joint and tie, as functions of q, u and the accelerations.
+
+The equations of the bodies hold more rows than there are reactions: those left over are the equations of motion. Where
+they hold fewer independent ones, some reactions are indeterminate, and the null space says how they may be shared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import Balance, balance_of
+from eomgen.mechanics.balance.balance_solution import Combination, combined, solution_of_balance
+from eomgen.mechanics.balance.components import Component
+from eomgen.mechanics.balance.friction import round_symbols, sizes_of
+from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.mechanics.balance.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.values_at_rest import at_rest
+from eomgen.mechanics.reactions.unheld import refuse_unheld
+from eomgen.model.driven import driving_ties
+from eomgen.symbolic.exact.normal_form import LIMIT
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
+from eomgen.symbolic.solve.linear import Solution
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """All reactions of a system.
+
+    Args:
+        balance: the equations of the bodies.
+        solution: of them, for the components.
+        at: what stands in place of coordinates, speeds and accelerations, {} where they are left as symbols.
+    """
+
+    balance: Balance
+    solution: Solution
+    at: Mapping[Node, Scalar]
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        return self.balance.components
+
+    @property
+    def indeterminate(self) -> tuple[Component, ...]:
+        """The components that have no single value."""
+        return tuple(c for j, c in enumerate(self.components) if not self.solution.determined(j))
+
+    @property
+    def null_space(self) -> tuple[dict[str, Scalar], ...]:
+        """Of each free component: what may be added to all reactions without a trace, by name."""
+        found = []
+        for f in self.solution.free:
+            row: dict[str, Scalar] = {self.balance.names[f]: 1}
+            row |= {self.balance.names[j]: -s[f] for j, s in self.solution.shares.items() if f in s}
+            found.append(row)
+        return tuple(found)
+
+    @cached_property
+    def unknowns(self) -> dict[Node, Scalar]:
+        """What the unknowns of the loads are at rest, those that have a single value."""
+        first = len(self.components)
+        pairs = enumerate(self.balance.unknowns, start=first)
+        return {p: self.solution.constants[j] for j, p in pairs if self.solution.determined(j)}
+
+    def unknown(self, name: str) -> Scalar:
+        """An unknown of the loads.
+
+        Raises:
+            DerivationError: it stands in no load.
+            Indeterminate: the balance at rest leaves it open.
+        """
+        if name not in self.balance.names[len(self.components) :]:
+            raise DerivationError(
+                f"the unknown '{name}' stands in no load and in no equation of [given]",
+                f"unknowns.{name}",
+                "write it where it is meant",
+            )
+        return self.combined({self.balance.names.index(name, len(self.components)): 1}, name)
+
+    def value(self, j: int) -> Scalar:
+        """Component j.
+
+        Raises:
+            Indeterminate: it has no single value.
+        """
+        return self.combined({j: 1}, self.components[j].name)
+
+    @property
+    def values(self) -> tuple[Scalar | None, ...]:
+        """Every component, None for those that are indeterminate."""
+        return tuple(
+            self.solution.constants[j] if self.solution.determined(j) else None for j in range(len(self.components))
+        )
+
+    def force(self, owner: str, side: str = "", frame: str = "") -> Vector:
+        """Force of a joint on its child, of a tie on its first-named body or on `side`; ground axes or `frame`'s.
+
+        Raises:
+            DerivationError: there is no such reaction, or it is indeterminate.
+        """
+        return vector_of(self.component("force", k, owner, side, frame) for k in range(3))
+
+    def couple(self, owner: str, side: str = "", frame: str = "") -> Vector:
+        """Couple, as `force`, about the point of the joint or tie."""
+        return vector_of(self.component("couple", k, owner, side, frame) for k in range(3))
+
+    def component(self, what: str, k: int, owner: str, side: str = "", frame: str = "") -> Scalar:
+        """Component k of the "force" or "couple"; the others may be indeterminate."""
+        if self.is_open(owner):
+            return 0
+        combinations, given = self._sums(what, owner, side, frame)
+        given = vector_of(substituted(given, self.unknowns)) if self.unknowns else given
+        place = f"{owner}.{side}" if side else owner
+        plane = self.balance.system.scope.model.space == "plane"
+        along = "xyz"[k] if what == "force" else "couple" if plane else f"couple_{'xyz'[k]}"
+        name = f"reaction_{along}({place})"
+        return given[k] + self.combined(combinations[k], name)
+
+    def is_open(self, owner: str) -> bool:
+        """Whether a contact has ended: its reaction is 0."""
+        mode = self.balance.system.modes.get(owner)
+        return mode is not None and not mode.closed
+
+    def normal(self, owner: str) -> Scalar:
+        """The normal reaction, positive along the tie's normal; friction is not in it.
+
+        Of what holds on all sides of a line in space sqrt(N_1^2 + N_2^2).
+        """
+        if self.is_open(owner):
+            return 0
+        if owner in self.balance.sizes:
+            return self._replaced((self.balance.sizes[owner], 0, 0))[0]
+        several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]
+        if several:
+            return sqrt(sum((x * x for x in map(self.value, several)), start=0))
+        return self._labelled(owner, "n", "normal reaction")
+
+    def friction(self, owner: str, along: str = "t") -> Scalar:
+        """The force along the contact, positive along the normal turned clockwise: it rubs, or keeps from sliding.
+
+        In space it has two components, along "t" and "s".
+        """
+        if self.is_open(owner):
+            return 0
+        name = f"reaction_{along}({owner})"
+        for named in named_reactions(self.balance):
+            if named.name == name:
+                return self.combined({j: self._replaced((k, 0, 0))[0] for j, k in named.combination.items()}, name)
+        return self._labelled(owner, along, "friction")
+
+    def member(self, truss: str, first: str, second: str) -> Scalar:
+        """Tension of the member of a truss between two nodes.
+
+        Raises:
+            DerivationError: there is none.
+        """
+        members = {c.side: j for j, c in enumerate(self.components) if c.owner == truss}
+        found = [j for member, j in members.items() if set(member.split("-")) == {first, second}]
+        if not found:
+            raise DerivationError(
+                f"truss '{truss}' has no member between '{first}' and '{second}'",
+                mend=f"its members: {', '.join(members)}",
+            )
+        return self.value(found[0])
+
+    def tension(self, owner: str, strand: int = 1) -> Scalar:
+        """Tension of a link, or of a strand of a string."""
+        if self.is_open(owner):
+            return 0
+        tie = self.balance.system.scope.model.constraints.get(owner)
+        numbers = () if tie is None else tie.strand_rows()
+        if numbers and not 1 <= strand <= len(numbers):
+            raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
+        number = numbers[strand - 1] if numbers else strand
+        found = [
+            j
+            for j, c in enumerate(self.components)
+            if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number
+        ]
+        if not found:
+            raise DerivationError(f"tension({owner}): '{owner}' has no tension there, it pulls on no body")
+        return self.value(found[0])
+
+    def multiplier(self, owner: str) -> Scalar:
+        """The multiplier of a tie of one row."""
+        if self.is_open(owner):
+            return 0
+        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "tie"]
+        if len(found) != 1:
+            raise DerivationError(f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them")
+        return self.value(found[0])
+
+    def _labelled(self, owner: str, label: str, words: str) -> Scalar:
+        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.label == label]
+        if len(found) != 1:
+            others = ", ".join(c.name for c in self.components if c.owner == owner) or "none"
+            raise DerivationError(f"'{owner}' has no {words}", mend=f"its reactions: {others}")
+        return self.value(found[0])
+
+    def _sums(self, what: str, owner: str, side: str, frame: str) -> tuple[list[Combination], Vector]:
+        """Force or couple on one body as combinations of the owner's components, and what its drive and spring add."""
+        motion = self.balance.system.motion
+        mine = {j: c for j, c in enumerate(self.components) if c.owner == owner}
+        efforts = efforts_of(self.balance.system, owner)
+        if not mine and not efforts:
+            driven = next((q for q, ties in driving_ties(motion.scope.model).items() if owner in ties), "")
+            mend = f"ask drive({driven})" if driven else "what is placed carries none: name the tie"
+            raise DerivationError(f"'{owner}' carries no reaction", mend=mend)
+        on = self._side(owner, side, [e for c in mine.values() for e in c.effects] or efforts)
+        vectors = {j: self._on(c, on, what) for j, c in mine.items()}
+        given = ZERO
+        for effect in efforts:
+            given = plus(given, getattr(effect, what)) if effect.link == on else given
+        R = self._turning(on, frame, motion)
+        turned = {j: self._replaced(vector if R is None else apply(R, vector)) for j, vector in vectors.items()}
+        combinations = [{j: v[k] for j, v in turned.items() if not is_zero(v[k])} for k in range(3)]
+        return combinations, self._replaced(given if R is None else apply(R, given))
+
+    def _turning(self, on: int, frame: str, motion: Motion) -> Matrix | None:
+        """From the axes of the equations of a body to the ground's, or to those of `frame`; None where they agree."""
+        R = None if motion.scope.model.space == "plane" or on < 0 else motion.links[on].pose.R
+        if not frame or frame == "ground":
+            return R
+        to_frame = transposed(motion.link(frame).pose.R)
+        return to_frame if R is None else product(to_frame, R)
+
+    def _on(self, component: Component, on: int, what: str) -> Vector:
+        """What a unit of the component does to one body; to the ground (-1) the opposite of what it does to all."""
+        total = ZERO
+        for effect in (*component.effects, *component.rubbing):
+            if effect.link == on or on < 0:
+                total = plus(total, getattr(effect, what))
+        return total if on >= 0 else times(-1, total)
+
+    def _side(self, owner: str, side: str, effects: Sequence[Effect]) -> int:
+        """The body on which the reaction is asked: an index, -1 for the ground."""
+        motion = self.balance.system.motion
+        if not side:
+            return effects[0].link
+        if side == "ground":
+            return -1
+        index = motion.index[side]
+        if all(effect.link != index for effect in effects):
+            raise DerivationError(f"'{owner}' does not act on body '{side}'")
+        return index
+
+    def _replaced(self, vector: Vector) -> Vector:
+        return vector_of(substituted(tuple(vector), self.at)) if self.at else vector
+
+    def combined(self, combination: Combination, name: str) -> Scalar:
+        """sum of k_j x_j.
+
+        Raises:
+            Indeterminate: it has no single value; `name` says what it is.
+        """
+        return combined(self.balance, self.solution, combination, name)
+
+
+def reactions_of(
+    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = LIMIT
+) -> Reactions:
+    """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
+
+    Args:
+        at: exact scalars in place of coordinates, speeds, accelerations and t.
+        short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
+        work: products of terms by which one coefficient is made readable at a configuration.
+    Raises:
+        DerivationError: a body is held by nothing; a force acts at no place.
+    """
+    sizes = sizes_of(system)
+    balance = balance_of(system, sizes)
+    if balance.unknowns:
+        return _at_rest(balance, at or {}, work)
+    if at and sizes:
+        return Reactions(balance, _with_sizes(system, at, sizes, work), at)
+    if at:
+        return Reactions(balance, solution_of_balance(balance, at, work=work), at)
+    solution = solution_of_balance(balance, {}, sure=None if short else 1)
+    refuse_unheld(balance, solution)
+    return Reactions(balance, solution, {})
+
+
+def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:
+    """The reactions at a configuration, |N| of what rubs on all sides put in at last: multiplied out it is long."""
+    symbols = round_symbols(system)
+    solution = solution_of_balance(balance_of(system, symbols), at, work=work)
+    names, values = list(solution.constants), tuple(solution.constants.values())
+    known = dict(zip((symbols[name] for name in sizes), substituted(tuple(sizes.values()), at), strict=True))
+    return replace(solution, constants=dict(zip(names, substituted(values, known), strict=True)))
+
+
+def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reactions:
+    """Reactions and unknown loads where nothing moves: as functions of the coordinates, or at the start alone.
+
+    Raises:
+        DerivationError: the loads are not in balance there, whatever the unknowns are.
+    """
+    refuse_rubbing(balance)
+    state = {**at, **still(balance.system)}
+    solution = solution_of_balance(balance, state, work=work)
+    if not is_balanced(balance, solution):
+        state = {**at_rest(balance.system), **at}
+        solution = solution_of_balance(balance, state, work=work)
+        if not is_balanced(balance, solution):
+            raise unbalanced(balance, solution)
+    return Reactions(balance, solution, state)

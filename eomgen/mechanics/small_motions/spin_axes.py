@@ -1,0 +1,119 @@
+"""LinearEquations of a body that spins, by quaternion -> the same over small turns about its own axes.
+
+In a steady spin the quaternion e moves on, and equations in de have coefficients that change with it. The small turn
+dtheta about the body's axes, de = N dtheta with e' = N w, goes with the body:
+
+    de_c = T dtheta,  T = N_c of the three of e that stay;      T dtheta' + T' dtheta = F T dtheta + E du
+    K -> K T,   P -> P T,   F -> T^-1 (F T - T'),   E -> T^-1 E
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.small_motions.field import Field, Matrix, at, negative, product, solved, total
+from eomgen.mechanics.small_motions.first_order import Choice
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.model.quaternions import quaternions_of
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import fifty_digits
+
+NAME = "turn_"
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A quaternion that moves in the reference.
+
+    Args:
+        four: its coordinates.
+        speeds: its angular velocity, body axes.
+        carriers: which columns of the equations are three of the four.
+    """
+
+    four: tuple[Node, ...]
+    speeds: tuple[Node, ...]
+    carriers: tuple[int, ...]
+
+
+def spinning(reference: Reference, choice: Choice) -> tuple[Turn, ...]:
+    """The quaternions that move in the reference, three of each independent."""
+    system, found = reference.system, []
+    speeds = {u.name: u for u in system.symbols.u}
+    names = quaternions_of(system.scope.model)
+    for four, part in zip(system.scope.quaternions, names, strict=True):
+        carriers = tuple(j for j, k in enumerate(choice.q) if system.symbols.q[k] in four)
+        moves = any(e in reference.moving for e in four)
+        if moves and len(carriers) == len(part.speeds) and all(w in speeds for w in part.speeds):
+            found.append(Turn(four, tuple(speeds[w] for w in part.speeds), carriers))
+    return tuple(found)
+
+
+def over_turns(field: Field, system: System, equations: LinearEquations, turns: tuple[Turn, ...]) -> LinearEquations:
+    """The equations with small turns in the place of quaternions that move."""
+    for turn in turns:
+        equations = _over_turn(field, system, equations, turn)
+    return equations
+
+
+def _over_turn(field: Field, system: System, e: LinearEquations, turn: Turn) -> LinearEquations:
+    n, graph = len(e.coordinates), system.scope.graph
+    T, rate = _by_turn(field, system, e, turn, n)
+    one = [[int(i == j) for j in range(n)] for i in range(n)]
+    T_inverse = solved(field, T, one)
+    F = product(field, T_inverse, total(field, product(field, e.F, T), negative(rate)))
+    names = dict(zip(turn.carriers, turn.speeds, strict=True))
+    labels = tuple(graph.symbol(NAME + names[j].name) if j in names else q for j, q in enumerate(e.coordinates))
+    return replace(
+        e, coordinates=labels, K=product(field, e.K, T), P=product(field, e.P, T), F=F, E=product(field, T_inverse, e.E)
+    )
+
+
+def _by_turn(field: Field, system: System, e: LinearEquations, turn: Turn, n: int) -> tuple[Matrix, Matrix]:
+    """(T, T') of all coordinates: 1 and 0 for those that are no part of the quaternion."""
+    scope = system.scope
+    places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]
+    columns = [scope.symbols.u.index(w) for w in turn.speeds]
+    rows = [tuple(scope.N[i][k] for k in columns) for i in places]
+    flat = scope.time_derivative(tuple(x for row in rows for x in row))
+    size = len(columns)
+    block, moved = at(field, rows), at(field, [flat[size * i : size * i + size] for i in range(len(rows))])
+    T, rate = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
+    for i, j in enumerate(turn.carriers):
+        T[j] = _spread(block[i], turn.carriers, n)
+        rate[j] = _spread(moved[i], turn.carriers, n)
+    return T, rate
+
+
+def _spread(row: list[Any], columns: tuple[int, ...], n: int) -> list[Any]:
+    found = [0] * n
+    for j, x in zip(columns, row, strict=True):
+        found[j] = x
+    return found
+
+
+def turned_on(turns: tuple[Turn, ...], numbers: Mapping[Node, Any], time: float) -> dict[Node, Any]:
+    """The quaternions that long later: e o (cos(|w| t/2), sin(|w| t/2) w/|w|)."""
+    found: dict[Node, Any] = {}
+    for turn in turns:
+        found |= _turned(turn.four, [numbers[x] for x in turn.speeds], [numbers[x] for x in turn.four], time)
+    return found
+
+
+def _turned(four: tuple[Node, ...], w: list[Any], e: list[Any], time: Any) -> dict[Node, Any]:
+    f = fifty_digits().functions
+    size = f["sqrt"](sum(x * x for x in w))
+    c, s = f["cos"](size * time / 2), f["sin"](size * time / 2) / size
+    x, y, z = (s * k for k in w)
+    e0, e1, e2, e3 = e
+    product_ = (
+        e0 * c - e1 * x - e2 * y - e3 * z,
+        e0 * x + e1 * c + e2 * z - e3 * y,
+        e0 * y - e1 * z + e2 * c + e3 * x,
+        e0 * z + e1 * y - e2 * x + e3 * c,
+    )
+    return dict(zip(four, product_, strict=True))

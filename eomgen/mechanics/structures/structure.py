@@ -1,0 +1,284 @@
+"""System, a configuration -> Structure: what holds the bodies there, and how they could move.
+
+The equations of the bodies at rest are  G rho + applied = 0:  a column a reaction, a row a direction in which a body
+may move. Read the other way they are the velocities that the reactions forbid:
+
+    G^T xi = 0        xi: velocity of the mass centre and spin of every body
+
+so that   mobility = rows - rank,   degree of indeterminacy = columns - rank.   With one reaction released,
+G^T xi = its unit vector, the bodies have one motion left: the mechanism of the principle of virtual work.
+A force that is asked for ([unknowns]) holds the bodies like a reaction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import Balance, balance_of
+from eomgen.mechanics.balance.components import Component
+from eomgen.mechanics.balance.unit_wrenches import Axes
+from eomgen.mechanics.balance.unknown_loads import slope
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.values_at_rest import State, at_rest, values_for
+from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.dense import sparse_rank
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.solve.scaling import solved
+
+WORK = 50_000  # products of terms for one velocity
+
+Column = tuple[int, int]
+"""(index of the body, direction in DIRECTIONS): one velocity."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Bodies and what holds them, at one configuration.
+
+    Args:
+        balance: the equations of the bodies.
+        at: what stands in place of coordinates, speeds, accelerations, inputs and time.
+        columns: the velocities that bodies have.
+        rows: of every component, and then of every unknown of the loads, {index of the column: coefficient}.
+    """
+
+    balance: Balance
+    at: State
+    columns: tuple[Column, ...]
+    rows: tuple[dict[int, Scalar], ...]
+
+    @property
+    def system(self) -> System:
+        return self.balance.system
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        return self.balance.components
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of every row: reaction_x(B), or the unknown."""
+        return self.balance.names
+
+    @property
+    def unknowns(self) -> tuple[Node, ...]:
+        """Of the loads."""
+        return self.balance.unknowns
+
+    # -- counts ------------------------------------------------------------------------------------
+
+    @property
+    def rank(self) -> int:
+        """How many of the reactions are independent, at the model's values of the parameters."""
+        return self._ranks[0]
+
+    @property
+    def mobility(self) -> int:
+        """In how many independent ways the bodies can move."""
+        return len(self.columns) - self.rank
+
+    @property
+    def indeterminacy(self) -> int:
+        """How many reactions too many there are for the balance of the bodies."""
+        return len(self.rows) - self.rank
+
+    @property
+    def is_special(self) -> bool:
+        """Whether its rank is less than that of structures with other values of the parameters."""
+        return self.rank < self._ranks[1]
+
+    # -- motions -----------------------------------------------------------------------------------
+
+    @cached_property
+    def loose(self) -> tuple[Plan, ...]:
+        """Independent motions that nothing resists; () where the bodies are held."""
+        plans = []
+        for f in self._solved.solution.free:
+            shares = self._solved.solution.shares
+            xi: list[Scalar] = [0] * len(self.columns)
+            xi[f] = 1
+            for j, share in shares.items():
+                xi[j] = -share.get(f, 0)
+            plans.append(self._plan(xi))
+        return tuple(plans)
+
+    @cached_property
+    def turns_idly(self) -> bool:
+        """Whether all that can move are straight bodies about their own lines, no point displaced, no load at work."""
+        return bool(self.loose) and all(self._is_idle(plan) for plan in self.loose)
+
+    @cached_property
+    def is_in_balance(self) -> bool:
+        """Whether the loads do no work in any motion that nothing resists."""
+        return all(plan.vanishes((self._work(plan),)) for plan in self.loose)
+
+    def _is_idle(self, plan: Plan) -> bool:
+        points = self.system.motion.points
+        moved = [x for body in plan.moving for r in points[body].values() for x in plan.raw_velocity((body, r))]
+        return plan.vanishes((*moved, self._work(plan)))
+
+    def _work(self, plan: Plan) -> Scalar:
+        """Of all loads, as the bodies' equations hold them; unknown ones do none in a motion that nothing resists."""
+        applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
+        given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
+        loads = substituted(tuple(applied.get(column, 0) for column in self.columns), given)
+        works = zip(loads, (plan.velocities[body][direction] for body, direction in self.columns), strict=True)
+        return sum((f * v for f, v in works), start=0)
+
+    @cached_property
+    def stresses(self) -> tuple[dict[int, Scalar], ...]:
+        """Self-stresses: reactions {row: share} that are in balance without any load."""
+        found = []
+        for left in self._solved.solution.left:
+            shares = self._readable([derivative(left, d) for d in self._solved.deltas])
+            kept = {k: x for k, x in enumerate(shares) if not is_zero(x)}
+            if kept:
+                found.append(kept)
+        return tuple(found)
+
+    def determines(self, combination: Mapping[int, Scalar]) -> bool:
+        """Whether the balance gives sum of k_j rho_j a single value."""
+        works = (sum((k * stress.get(j, 0) for j, k in combination.items()), start=0) for stress in self.stresses)
+        return all(is_zero(x) or holds_identically(x) for x in works)
+
+    def released(self, row: int | Mapping[int, Scalar]) -> Plan:
+        """The motion that one released reaction leaves: a velocity 1 along it, 0 along all others.
+
+        Where the bodies have freedoms besides, these stand still. A combination k of reactions is released as one:
+        velocities k along them.
+
+        Raises:
+            DerivationError: the others hold the bodies without it: it is statically indeterminate.
+        """
+        combination = {row: 1} if isinstance(row, int) else dict(row)
+        if not self.determines(combination):
+            names = ", ".join(self.names[j] for j in combination)
+            raise DerivationError(f"{names} released, nothing can move: the other reactions hold the bodies without it")
+        deltas = self._solved.deltas
+        xi = tangent(self._solved.velocities, {deltas[j]: k for j, k in combination.items()})
+        return self._plan(xi)
+
+    def index(self, name: str) -> int:
+        """The row of a reaction or unknown by its name.
+
+        Raises:
+            KeyError: there is none of this name.
+        """
+        return {own: j for j, own in reversed(list(enumerate(self.names)))}[name]
+
+    def _plan(self, xi: Sequence[Scalar]) -> Plan:
+        velocities: list[list[Scalar]] = [[0] * 6 for _ in self.system.motion.links]
+        for (body, direction), value in zip(self.columns, self._readable(xi), strict=True):
+            velocities[body][direction] = value
+        return Plan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
+
+    def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        return readable_all(tuple(scalars), WORK, self.positive)
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        """The parameters that stand for positive numbers."""
+        return positive_parameters(self.system.scope)
+
+    # -- the solution of G^T xi = delta --------------------------------------------------------------
+
+    @cached_property
+    def _ranks(self) -> tuple[int, int]:
+        """At the model's own parameters, and at others like these."""
+        own, others = (self._numbers(self._parameters(shaken=shaken)) for shaken in (False, True))
+        return sparse_rank(own), sparse_rank(others)
+
+    def _numbers(self, parameters: State) -> list[dict[int, Any]]:
+        """The rows in numbers of 50 digits."""
+        flat = iter(evaluate([x for row in self.rows for x in row.values()], parameters, fifty_digits()))
+        return [{k: next(flat) for k in row} for row in self.rows]
+
+    @cached_property
+    def _solved(self) -> _Solved:
+        """With pivots that do not vanish at parameters like the model's, or where those are special, at these."""
+        graph = self.system.scope.graph
+        parameters = self._parameters(shaken=not self.is_special)
+        deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
+
+        def values(scalars: Sequence[Scalar]) -> list[Any]:
+            return evaluate(scalars, parameters, fifty_digits())
+
+        sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
+        solution = solved(self.rows, deltas, len(self.columns), values, sure_symbols=sure)
+        return _Solved(solution, deltas, len(self.columns), parameters)
+
+    def _parameters(self, *, shaken: bool) -> State:
+        """The model's own, or the first generic ones at which all entries have a value."""
+        return values_for(self.system.scope, [x for row in self.rows for x in row.values()], shaken=shaken)
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """G^T xi = delta, solved for xi."""
+
+    solution: Solution
+    deltas: tuple[Node, ...]
+    size: int
+    parameters: State
+
+    @property
+    def velocities(self) -> tuple[Scalar, ...]:
+        """xi as functions of delta; those that stay free are 0."""
+        return tuple(self.solution.constants.get(j, 0) for j in range(self.size))
+
+
+def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Structure:
+    """The structure at a configuration, at rest.
+
+    Args:
+        at: exact scalars in place of coordinates; None: the start.
+    Raises:
+        DerivationError: there is no body; a force, an energy or a tie that acts at no place; ties that do not close;
+            loads that are not linear in an unknown.
+    """
+    if not system.motion.links:
+        raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
+    balance = balance_of(system)
+    state = at_rest(system, at)
+    unknowns = balance.unknowns
+    table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
+    columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))
+    rows: list[dict[int, Scalar]] = [{} for _ in (*balance.components, *unknowns)]
+    for k, column in enumerate(columns):
+        equation = table.get(column)
+        for j, x in ({} if equation is None else equation.coefficients).items():
+            rows[j][k] = x
+        for j, unknown in enumerate(unknowns, start=len(balance.components)):
+            rows[j][k] = 0 if equation is None else slope(balance, equation, unknown)
+    return Structure(balance, state, columns, _placed(system, rows, state))
+
+
+def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) -> tuple[dict[int, Scalar], ...]:
+    """The rows at the configuration, zeros left out."""
+    entries = substituted(tuple(x for row in rows for x in row.values()), state)
+    flat = iter(readable_all(entries, WORK, positive_parameters(system.scope)))
+    placed = [{k: next(flat) for k in row} for row in rows]
+    return tuple({k: x for k, x in row.items() if not is_zero(x)} for row in placed)
+
+
+def _directions(system: System) -> list[Column]:
+    axes = Axes(system.motion)
+    return [(i, d) for i in range(len(system.motion.links)) for d in axes.rows]
+
+
+def _is_point_that_turns(system: System, column: Column) -> bool:
+    """Whether it is the turning of a node or a point mass on which no moment acts: it is no motion of its own."""
+    body, direction = column
+    part = system.scope.model.bodies.get(system.motion.links[body].name)
+    point = part is None or (part.shape is not None and part.shape.is_point)
+    return point and direction > 2

@@ -1,0 +1,210 @@
+"""Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.
+
+v(P) = v_C + w x r_CP,   power of a force F at P: F . v(P),   of a couple M: M . w,
+of a line load q: the integral of q(s) . v(s) ds
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
+from eomgen.mechanics.bodies.loads import in_ground_axes
+from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.fields.field import Field, rotation_center
+from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, vector_of
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+
+WORK = 20_000  # products of terms for one velocity
+SIXTH = Fraction(1, 6)
+
+
+@dataclass(frozen=True)
+class Center:
+    """The centre of rotation of a body in the plane.
+
+    Args:
+        place: where it is; None: at infinity, the body translates, or everywhere, it is at rest.
+        direction: of a translation, the velocity of all points; (0, 0, 0) at rest; None for a centre in sight.
+    """
+
+    place: Vector | None
+    direction: Vector | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A field of velocities of rigid bodies, a velocity plan.
+
+    Args:
+        system: whose bodies.
+        at: the configuration.
+        parameters: values of 50 digits at which the motion is what it is for all others, or is asked for.
+        velocities: of each body (velocity of the mass centre, spin) in the axes of its equations, 6.
+    """
+
+    system: System
+    at: Mapping[Node, Scalar]
+    parameters: Mapping[Node, Any]
+    velocities: tuple[tuple[Scalar, ...], ...]
+
+    def scaled(self, k: Scalar) -> Plan:
+        """k times as fast."""
+        if k == 1:
+            return self
+        flat = readable_all([k * x for six in self.velocities for x in six], WORK, self._positive)
+        return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
+
+    def plus(self, other: Plan, k: Scalar = 1) -> Plan:
+        """Both motions at once, the other k times as fast."""
+        pairs = zip(self.velocities, other.velocities, strict=True)
+        rows = tuple(tuple(self.simple(x + k * y) for x, y in zip(a, b, strict=True)) for a, b in pairs)
+        return replace(self, velocities=rows)
+
+    # -- of bodies ---------------------------------------------------------------------------------
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """The bodies that do not stay at rest."""
+        links = self.system.motion.links
+        return tuple(link.name for link, six in zip(links, self.velocities, strict=True) if not self.vanishes(six))
+
+    def spin(self, body: str | None) -> Vector:
+        """Angular velocity in ground axes; of the ground (None) 0."""
+        return self._simple(self.raw_spin(body))
+
+    def center_velocity(self, body: str) -> Vector:
+        """Of the mass centre, ground axes."""
+        return self._simple(self.field(body).v)
+
+    def velocity(self, place: Place) -> Vector:
+        """Of a place of a body, ground axes; of the ground 0."""
+        return self._simple(self.raw_velocity(place))
+
+    def raw_spin(self, body: str | None) -> Vector:
+        """`spin`, not written out."""
+        return ZERO if body is None else self.field(body).w
+
+    def raw_velocity(self, place: Place) -> Vector:
+        """`velocity`, not written out."""
+        body, _ = place
+        return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
+
+    def raw_velocity_at(self, body: str, position: Vector) -> Vector:
+        """Of the point of a body that is at a place of the ground, ground axes, not written out."""
+        return self.field(body).velocity(position)
+
+    def field(self, body: str) -> Field:
+        """Velocities of a body by that of its mass centre; of a body at rest all 0."""
+        if body not in self._fields:
+            self._fields[body] = self._field(body) if body in self.moving else Field()
+        return self._fields[body]
+
+    def _field(self, body: str) -> Field:
+        six = self._six(body)
+        return Field(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
+
+    def position(self, place: Place) -> Vector:
+        """Of a place in this configuration, ground axes."""
+        return vector_of(substituted(self.system.motion.position(place), self.at))
+
+    def mass_center(self, body: str) -> Vector:
+        return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
+
+    def center(self, field: Field) -> Center:
+        """The centre of rotation of what moves so in the plane."""
+        if self.vanishes(field.w):
+            return Center(None, ZERO if self.vanishes(field.v) else self._simple(field.v))
+        return Center(self._simple(rotation_center(field)))
+
+    # -- work ----------------------------------------------------------------------------------------
+
+    def work(self, load: PointForce | Couple | SpreadLoad) -> Scalar:
+        """Power of a load on the bodies in this motion, its virtual work, not written out."""
+        if isinstance(load, Couple):
+            return dot(self.force(load.couple, load.axes), self.raw_spin(load.body))
+        if isinstance(load, PointForce):
+            return dot(self.force(load.force, load.axes), self.raw_velocity(load.place))
+        return self._work_along(load)
+
+    def _work_along(self, load: SpreadLoad) -> Scalar:
+        """L/6 (2 q_A.v_A + q_A.v_B + q_B.v_A + 2 q_B.v_B): the integral of two linear functions of s."""
+        a, b = self.raw_velocity(load.start), self.raw_velocity(load.end)
+        along = minus(self.position(load.end), self.position(load.start))
+        q_A, q_B = self.force(load.at_start), self.force(load.at_end)
+        total = 2 * dot(q_A, a) + dot(q_A, b) + dot(q_B, a) + 2 * dot(q_B, b)
+        return SIXTH * self.simple(sqrt(self.simple(dot(along, along)))) * total
+
+    def work_of_effects(self, effects: Sequence[Effect]) -> Scalar:
+        """Of forces and couples as the bodies' equations hold them, not written out."""
+        total: Scalar = 0
+        for effect in effects:
+            pairs = zip(substituted(effect.six, self.at), self.velocities[effect.link], strict=True)
+            total = total + sum((f * v for f, v in pairs), start=0)
+        return total
+
+    def force(self, vector: Vector, axes: str | None = None) -> Vector:
+        """A vector of a load in this configuration, ground axes."""
+        return vector_of(substituted(in_ground_axes(self.system.motion, vector, axes), self.at))
+
+    def vanishes(self, scalars: Sequence[Scalar]) -> bool:
+        """Whether all of them are 0."""
+        if not all(is_zero(x) for x in scalars if type(x) is not Node):
+            return False
+        return all(abs(x) < ZERO_AT_50 for x in self.numbers([x for x in scalars if type(x) is Node]))
+
+    def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
+        """What scalars are worth at these parameters, with 50 digits."""
+        return evaluate(scalars, self.parameters, fifty_digits())
+
+    # -- helpers -------------------------------------------------------------------------------------
+
+    def simple(self, x: Scalar) -> Scalar:
+        """A scalar as a person writes it."""
+        if type(x) is not Node:
+            return x
+        if x not in self._written:
+            self._written[x] = simplest(x, WORK, self._positive)
+        return self._written[x]
+
+    def _simple(self, vector: Vector) -> Vector:
+        return vector_of(map(self.simple, vector))
+
+    @cached_property
+    def _written(self) -> dict[Node, Scalar]:
+        return {}
+
+    @cached_property
+    def _fields(self) -> dict[str, Field]:
+        return {}
+
+    @cached_property
+    def _positive(self) -> frozenset[Node]:
+        return positive_parameters(self.system.scope)
+
+    @cached_property
+    def _axes(self) -> Axes:
+        return Axes(self.system.motion)
+
+    def _six(self, body: str) -> tuple[Scalar, ...]:
+        return self.velocities[self.system.motion.index[body]]
+
+    def _in_ground(self, body: str, components: Sequence[Scalar]) -> Vector:
+        """From the axes of the body's equations."""
+        vector = vector_of(components)
+        if self._axes.plane:
+            return vector
+        R = substituted([x for row in self.system.motion.link(body).pose.R for x in row], self.at)
+        rotation = (vector_of(R[0:3]), vector_of(R[3:6]), vector_of(R[6:9]))
+        return apply(rotation, vector)
