@@ -26,7 +26,7 @@ from typing import Any
 from eomgen.version import __version__ as __version__
 
 _HOMES = {
-    "answers": ("solve",),
+    "questions.answers": ("solve",),
     "proof.check": ("Certificate", "Check"),
     "errors": (
         "DerivationError",
@@ -64,9 +64,9 @@ _HOMES = {
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),
     "report.statics.result": ("Statics", "statics"),
-    "simulation.trajectory": ("Trajectory",),
+    "simulation.result": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),
-    "velocities": ("kinematics",),
+    "questions.velocities": ("kinematics",),
 }
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)

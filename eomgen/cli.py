@@ -292,7 +292,7 @@ def simulate(
     It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns. Ties are
     kept closed, and how well, and how well energy is kept, is said.
     """
-    from eomgen.simulation.stepping import RATES, Stepping
+    from eomgen.simulation.integrator import RATES, Stepping
     from eomgen.verbs.simulate import simulate as simulated
 
     if baumgarte and stabilize != "baumgarte":

@@ -1,4 +1,4 @@
-"""Model -> Equations -> RightHandSide -> Trajectory: the whole journey on one screen."""
+"""Model -> Equations -> RightHandSide -> Trajectory: the whole motion on one screen."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from eomgen.model.parts import Model
 from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion
 from eomgen.running import run
-from eomgen.simulation.course import modes_at_start
-from eomgen.simulation.stepping import Stepping
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.phase_change import modes_at_start
+from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
 

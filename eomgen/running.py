@@ -21,21 +21,21 @@ from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.model.parts import Model
+from eomgen.simulation.breakpoints import knots_of
 from eomgen.simulation.conditions import Condition, condition_of
-from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.events import TOUCH, Events
+from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.contact_phases import run_phases
+from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrate import SAMPLES, check, integrate
+from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import thinned
-from eomgen.simulation.knots import knots_of
 from eomgen.simulation.measures import independence_of, measure, nearness_of
-from eomgen.simulation.phases import run_phases
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import with_reactions
+from eomgen.simulation.result import Trajectory
 from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import IMPLICIT
-from eomgen.simulation.stepping import Stepping
-from eomgen.simulation.trajectory import Trajectory
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, COMPUTED, FINEST_RUN
 
@@ -86,8 +86,8 @@ def run(
             how=how,
             until=condition,
         )
-        rhs, stage = equations.rhs(target), found.phases[0].stage
-        begun = None if stage is None else start_of_motion(stage.system, parameters, start)
+        rhs, phase = equations.rhs(target), found.phases[0].model
+        begun = None if phase is None else start_of_motion(phase.system, parameters, start)
         found = found if begun is None else replace(found, assembled=begun.words)
     else:
         begun = start_of_motion(equations.system, parameters, start)

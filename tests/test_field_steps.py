@@ -6,15 +6,15 @@ import pytest
 
 import eomgen
 from eomgen import report
-from eomgen.journey import Journey
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.moments import parameters_of
+from eomgen.questions.at_instant import parameters_of
+from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.report.kinematics.centrode_plot import centrode_panel
 from eomgen.report.kinematics.field_steps import field_payload, field_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.report.statements import Derivation
-from eomgen.situation import Situation
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.expressions import parse
 
@@ -58,9 +58,9 @@ def rows_of(steps, key: str) -> dict[str, tuple[str, ...]]:
     return {row[0]: tuple(row[1:]) for grid in grids for row in grid["rows"]}
 
 
-def same(situation: Situation, *texts: str) -> bool:
+def same(phase: PhaseEquations, *texts: str) -> bool:
     """Whether two texts are one function."""
-    first, second = (parse(text).evaluate(situation.system.scope.names) for text in texts)
+    first, second = (parse(text).evaluate(phase.system.scope.names) for text in texts)
     return equal(first, second)
 
 
@@ -68,14 +68,14 @@ def derivation(steps) -> Derivation:
     return Derivation("test", "", "", "plane", "kinematics", tuple(steps))
 
 
-def journey_of(text: str) -> Journey:
-    return Journey(eomgen.loads(text), False)
+def journey_of(text: str) -> MotionFromStart:
+    return MotionFromStart(eomgen.loads(text), False)
 
 
 def test_forces_of_a_turning_frame_stand_in_its_equation_of_motion():
     """m a_r = F - m epsilon x r - m omega x (omega x r) - 2 m omega x v_r, each in the axes of the table."""
-    situation = journey_of(TURNTABLE).situation
-    rows = rows_of(relative_steps(situation.system, "puck.center", "table", {}), "moving frame")
+    phase = journey_of(TURNTABLE).phase
+    rows = rows_of(relative_steps(phase.system, "puck.center", "table", {}), "moving frame")
     true = {
         "applied": ("3", "0"),
         "Euler": ("m*Omega*y", "-m*Omega*x"),
@@ -83,29 +83,29 @@ def test_forces_of_a_turning_frame_stand_in_its_equation_of_motion():
         "Coriolis": ("2*m*Omega*t*y'", "-2*m*Omega*t*x'"),
     }
     for name, row in true.items():
-        assert all(same(situation, *pair) for pair in zip(rows[name], row, strict=True)), name
+        assert all(same(phase, *pair) for pair in zip(rows[name], row, strict=True)), name
 
 
 def test_the_moving_frames_equation_is_the_equation_of_motion():
     """Put the accelerations in: m a_r is the sum of the other rows."""
-    situation = journey_of(TURNTABLE).situation
-    rows = rows_of(relative_steps(situation.system, "puck.center", "table", {}), "moving frame")
-    names = situation.system.scope.names
+    phase = journey_of(TURNTABLE).phase
+    rows = rows_of(relative_steps(phase.system, "puck.center", "table", {}), "moving frame")
+    names = phase.system.scope.names
     for axis in range(2):
         left = parse(rows["m*a_r"][axis]).evaluate(names)
         right = sum(parse(row[axis]).evaluate(names) for name, row in rows.items() if name not in ("m*a_r", "force"))
-        assert situation.simple(situation.eliminated(left - right)) == 0
+        assert phase.simple(phase.eliminated(left - right)) == 0
 
 
 def test_parts_of_velocity_add_up_in_the_report():
     """v = v_t + v_r, a = a_t + a_r + a_C as printed."""
-    situation = journey_of(TURNTABLE).situation
-    found = relative_payload(situation.system, "puck.center", "table", {})
-    names = situation.system.scope.names
+    phase = journey_of(TURNTABLE).phase
+    found = relative_payload(phase.system, "puck.center", "table", {})
+    names = phase.system.scope.names
 
     def total(*parts: str) -> list:
         columns = zip(*(found[part] for part in parts), strict=True)
-        return [situation.simple(sum(parse(x).evaluate(names) for x in column)) for column in columns]
+        return [phase.simple(sum(parse(x).evaluate(names) for x in column)) for column in columns]
 
     assert total("velocity") == total("transport_velocity", "relative_velocity")
     assert total("acceleration") == total("transport_acceleration", "relative_acceleration", "coriolis")
@@ -114,9 +114,9 @@ def test_parts_of_velocity_add_up_in_the_report():
 
 def test_the_ladders_field_and_centrodes_are_told():
     """Kind, centre, pole, slowest point; the circles as such."""
-    journey = journey_of(LADDER)
-    system = journey.situation.system
-    kinds = Kinds(system, journey.start)
+    motion = journey_of(LADDER)
+    system = motion.phase.system
+    kinds = Kinds(system, motion.start)
     text = report.rendered(derivation(field_steps(system, {}, kinds)), "text")
     assert "rod: plane motion; rotation at this instant." in text
     assert "a circle about (0, 0), radius" in text
@@ -125,15 +125,15 @@ def test_the_ladders_field_and_centrodes_are_told():
     moving = ("l*cos(theta)^2", "l*cos(theta)*sin(theta)", "0")
     fixed = ("l*cos(theta)", "l*sin(theta)", "0")
     for found, true in ((payload["center"], fixed), (payload["centrodes"]["moving"], moving)):
-        assert all(same(journey.situation, *pair) for pair in zip(found, true, strict=True))
+        assert all(same(motion.phase, *pair) for pair in zip(found, true, strict=True))
 
 
 @pytest.mark.parametrize("name", [member.name for member in report.ALL])
 def test_steps_are_set_in_every_format(name):
     """No format leaves a table or a formula out."""
-    journey = journey_of(TURNTABLE)
-    system = journey.situation.system
-    steps = field_steps(system, {}, Kinds(system, journey.start))
+    motion = journey_of(TURNTABLE)
+    system = motion.phase.system
+    steps = field_steps(system, {}, Kinds(system, motion.start))
     steps = (*steps, *relative_steps(system, "puck.center", "table", {}))
     shown = report.rendered(derivation(steps), name)
     assert all(word in shown for word in ("rotation about a fixed axis", "Coriolis", "centrifugal"))
@@ -143,11 +143,11 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
     """The fixed one about the corner with the ladder's length as radius; the moving one lies with it at the centre."""
     from matplotlib.figure import Figure
 
-    journey = journey_of(LADDER)
-    system = journey.situation.system
-    (found,) = all_centrodes(Kinds(system, journey.start))
+    motion = journey_of(LADDER)
+    system = motion.phase.system
+    (found,) = all_centrodes(Kinds(system, motion.start))
     panel = Figure().subplots()
-    centrode_panel(panel, system, found, {**parameters_of(journey.situation), **journey.numbers})
+    centrode_panel(panel, system, found, {**parameters_of(motion.phase), **motion.numbers})
     fixed, moving, now = (line.get_xydata() for line in panel.get_lines())
     assert abs((fixed**2).sum(axis=1) ** 0.5 - 2).max() < 1e-9
     assert abs(((moving - now / 2) ** 2).sum(axis=1) ** 0.5 - 1).max() < 1e-9

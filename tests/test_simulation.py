@@ -20,8 +20,8 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.report.figures import mathtext
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
+from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of
-from eomgen.simulation.trajectory import Trajectory
 
 MODELS = Path(__file__).parent.parent / "models"
 PENDULUM = {"x0": [1.0, 0.0], "p": [1.0, 1.0, 9.81]}

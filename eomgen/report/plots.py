@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.report.figures import Picture, mathtext
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.result import Trajectory
 
 MOST_IN_LEGEND = 12
 MOST_REACTIONS = 10  # lines in one panel

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.model.parts import Model
-from eomgen.simulation.course import Course, at_start, course_of
+from eomgen.simulation.contact_phases import Plan, passed
 from eomgen.simulation.endings import Condition, met
+from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import told
-from eomgen.simulation.phases import Plan, passed
-from eomgen.simulation.stage import Stage, Values
-from eomgen.simulation.stepping import Stepping
-from eomgen.simulation.stretch import Stretch
+from eomgen.simulation.phase_change import Course, at_start, course_of
+from eomgen.simulation.phase_model import PhaseModel, Values
+from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import FINE_RUN
 
@@ -26,18 +26,18 @@ class Passage:
     """One phase of a motion.
 
     Args:
-        stage: its equations.
+        phase: its equations.
         start, end: coordinates and rates by name, at its beginning and at its end.
         t_0, t_1: its times [s].
-        kind: what ended it: "condition", "time", "failure", or as of Bound: "ends", "turns", "closes", "stops",
+        kind: what ended it: "condition", "time", "failure", or as of EventFunction: "ends", "turns", "closes", "stops",
             "slips", "piece".
         owner: the contact, or the body on a path, whose bound ended it; "" where none did.
-        value: what became zero, over the symbols of the stage; None for "time", "failure", a slack without a formula.
+        value: what became zero, over the symbols of the phase; None for "time", "failure", a slack without a formula.
         message: in words.
-        after: of the last one, where the condition holds just as the phase ends: the stage and the values that follow.
+        after: of the last one, where the condition holds just as the phase ends: the phase and the values that follow.
     """
 
-    stage: Stage
+    phase: PhaseModel
     start: Values
     end: Values
     t_0: float
@@ -46,7 +46,7 @@ class Passage:
     owner: str
     value: Scalar | None
     message: str
-    after: tuple[Stage, Values] | None = None
+    after: tuple[PhaseModel, Values] | None = None
 
 
 def history(
@@ -64,7 +64,7 @@ def history(
     Args:
         p: the parameters' values; parameters: those of them that replace the model's.
         start: start values and speeds that replace the model's.
-        until: of a stage, what becomes 0.
+        until: of a phase, what becomes 0.
     Raises:
         DerivationError: the ties do not hold at the start; the reaction of a contact is indeterminate.
     """
@@ -79,17 +79,17 @@ def history(
     return tuple(found)
 
 
-def _passage(course: Course, stretch: Stretch, until: Condition | None, holds: bool) -> Passage:
-    here, stage, run, bound = stretch.here, stretch.stage, stretch.run, stretch.bound
+def _passage(course: Course, stretch: PhaseRun, until: Condition | None, holds: bool) -> Passage:
+    here, phase, run, bound = stretch.here, stretch.phase, stretch.run, stretch.bound
     after, follows = stretch.after, None
     value: Scalar | None
     if holds or (bound is None and run.crossing is not None):
         assert until is not None
-        follows = None if after is None else (course.stages.of(after.configuration), after.values)
-        kind, owner, value = "condition", "", until(stage)
+        follows = None if after is None else (course.phase_models.of(after.configuration), after.values)
+        kind, owner, value = "condition", "", until(phase)
     elif bound is not None:
         kind, owner, value = bound.kind, bound.owner, bound.value
     else:
         kind, owner, value = "time" if run.status == "finished" else "failure", "", None
-    values = stage.values(run.end, run.last)
-    return Passage(stage, here.values, values, here.t, run.end, kind, owner, value, told(course, stretch), follows)
+    values = phase.values(run.end, run.last)
+    return Passage(phase, here.values, values, here.t, run.end, kind, owner, value, told(course, stretch), follows)

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.ties import Row, rows_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.simulation.stage import Values, slack_name
+from eomgen.simulation.phase_model import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE

@@ -13,7 +13,7 @@ SHARE = 0.1  # of a row's part in the combination that vanishes, above which its
 
 
 @dataclass(frozen=True)
-class Independence:
+class ConstraintRank:
     """The closing rows J of a system.
 
     Args:

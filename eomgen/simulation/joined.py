@@ -7,65 +7,65 @@ from dataclasses import replace
 
 import numpy as np
 
-from eomgen.simulation.contacts import changed
-from eomgen.simulation.course import Course
+from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
-from eomgen.simulation.stretch import Stretch
-from eomgen.simulation.track import measured
-from eomgen.simulation.trajectory import Phase, Trajectory
+from eomgen.simulation.phase_change import Course
+from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.result import Phase, Trajectory
+from eomgen.simulation.step_states import measured
 
 
-def joined(course: Course, stretches: Sequence[Stretch]) -> Trajectory:
+def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
     """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
-    coordinates, speeds = _union(stretches)
-    columns = [stretch.stage.columns(stretch.run.t, stretch.run.x) for stretch in stretches]
+    coordinates, speeds = _union(runs)
+    columns = [stretch.phase.columns(stretch.run.t, stretch.run.x) for stretch in runs]
     tables = [
         np.column_stack([found.get(name, np.zeros(len(stretch.run.t))) for name in (*coordinates, *speeds)])
-        for stretch, found in zip(stretches, columns, strict=True)
+        for stretch, found in zip(runs, columns, strict=True)
     ]
-    energies = [stretch.stage.energies(stretch.run.t, stretch.run.x) for stretch in stretches]
-    ends = np.cumsum([0, *(len(stretch.run.t) for stretch in stretches)])
-    gap, gap_rate = _open(stretches)
+    energies = [stretch.phase.energies(stretch.run.t, stretch.run.x) for stretch in runs]
+    ends = np.cumsum([0, *(len(stretch.run.t) for stretch in runs)])
+    gap, gap_rate = _open(runs)
     return Trajectory(
-        t=np.concatenate([stretch.run.t for stretch in stretches]),
+        t=np.concatenate([stretch.run.t for stretch in runs]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
         energy=np.concatenate([T + V for T, V in energies]),
-        drift=_drift(stretches),
+        drift=_drift(runs),
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(
-            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.stage)
-            for s, first, last in zip(stretches, ends[:-1], ends[1:], strict=True)
+            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.phase)
+            for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
-        status=stretches[-1].run.status,
-        message=stretches[-1].run.message,
-        steps=sum(stretch.run.steps for stretch in stretches),
-        evaluations=sum(stretch.run.evaluations for stretch in stretches),
-        passages=tuple(passage for stretch in stretches for passage in stretch.run.carried),
+        status=runs[-1].run.status,
+        message=runs[-1].run.message,
+        steps=sum(stretch.run.steps for stretch in runs),
+        evaluations=sum(stretch.run.evaluations for stretch in runs),
+        passages=tuple(passage for stretch in runs for passage in stretch.run.carried),
     )
 
 
-def _union(stretches: Sequence[Stretch]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Coordinates and speeds of all phases, each in the order in which it comes."""
-    coordinates = dict.fromkeys(name for stretch in stretches for name in stretch.stage.coordinates)
-    speeds = dict.fromkeys(name for stretch in stretches for name in stretch.stage.speeds)
+    coordinates = dict.fromkeys(name for stretch in runs for name in stretch.phase.coordinates)
+    speeds = dict.fromkeys(name for stretch in runs for name in stretch.phase.speeds)
     return tuple(coordinates), tuple(speeds)
 
 
-def _drift(stretches: Sequence[Stretch]) -> float | None:
+def _drift(runs: Sequence[PhaseRun]) -> float | None:
     """The largest of the phases in which energy should stay."""
-    return max((drift_of(*s.stage.energies(*_measured(s))) for s in stretches if s.stage.conservative), default=None)
+    return max((drift_of(*s.phase.energies(*_measured(s))) for s in runs if s.phase.conservative), default=None)
 
 
-def _measured(stretch: Stretch) -> tuple[np.ndarray, np.ndarray]:
+def _measured(stretch: PhaseRun) -> tuple[np.ndarray, np.ndarray]:
     return measured(stretch.run.t, stretch.run.x, stretch.run.tracks)
 
 
-def _open(stretches: Sequence[Stretch]) -> tuple[float | None, float | None]:
+def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
     """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
-    found = [s.stage.projection.open(*_measured(s)) for s in stretches if s.stage.projection is not None]
+    found = [s.phase.projection.open(*_measured(s)) for s in runs if s.phase.projection is not None]
     if not found:
         return None, None
     gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)
@@ -98,7 +98,7 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
     )
 
 
-def told(course: Course, stretch: Stretch) -> str:
+def told(course: Course, stretch: PhaseRun) -> str:
     """What ended a phase, and when."""
     after = stretch.after
     if after is None:

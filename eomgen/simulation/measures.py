@@ -12,8 +12,8 @@ from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
-from eomgen.simulation.independence import Independence
-from eomgen.simulation.nearness import Measure, Nearness
+from eomgen.simulation.constraint_rank import Measure, Nearness
+from eomgen.simulation.independence import ConstraintRank
 from eomgen.symbolic.expression.graph import Scalar
 
 
@@ -37,10 +37,10 @@ def nearness_of(system: System, assembly: Assembly, p: np.ndarray) -> Nearness |
     return None if determinants is None and rows is None else Nearness(determinants, rows, what)
 
 
-def independence_of(system: System, assembly: Assembly, p: np.ndarray) -> Independence | None:
+def independence_of(system: System, assembly: Assembly, p: np.ndarray) -> ConstraintRank | None:
     """How independent the rows are that close by multipliers; None without such."""
     rank = rank_of_ties(system.ties)
     if not rank:
         return None
     J = measure(system, tuple(x for row in assembly.J for x in row), p)
-    return Independence(J, tuple(row.tie for row in system.ties.closing), rank)
+    return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank)

@@ -22,8 +22,8 @@ from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.simulation.first_slide import begun
-from eomgen.simulation.peeling import Step, solved, steps_of
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.leaf_to_root_balance import Step, solved, steps_of
+from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE, SUMMED, UNBALANCED
@@ -192,19 +192,19 @@ def with_reactions(
     if not len(run.t):
         return run
     try:
-        pieces = [(slice(*phase.rows), phase.stage) for phase in run.phases if phase.stage is not None]
-        own = [(rows, stage, stage.reactions, stage.rhs) for rows, stage in pieces]
+        pieces = [(slice(*phase.rows), phase.model) for phase in run.phases if phase.model is not None]
+        own = [(rows, phase, phase.reactions, phase.rhs) for rows, phase in pieces]
         parts = own or [(slice(None), None, reactions(), rhs)]
     except DerivationError as error:
         return replace(run, remark=f"No reactions: {error.what}.")
     found: dict[str, np.ndarray] = {}
     always: dict[str, None] = {}
     made: dict[int, ReactionColumns] = {}
-    for rows, stage, balanced_by, equations in parts:
+    for rows, phase, balanced_by, equations in parts:
         columns = made.setdefault(id(balanced_by), ReactionColumns(balanced_by, equations))
         always |= dict.fromkeys(columns.indeterminate)
         x = _states(run, rows, equations)
-        x = x if stage is None else begun(run.t[rows], x, stage.rhs.at(p), stage.slowest)
+        x = x if phase is None else begun(run.t[rows], x, phase.rhs.at(p), phase.slowest)
         values = columns.along(run.t[rows], x, p)
         for name, column in zip(columns.names, values.T, strict=True):
             found.setdefault(name, np.zeros(len(run.t)))[rows] = column

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import RUN, RUNS_AGREE
 
 STEPS = 100  # tolerances of one step by which they may differ

@@ -9,12 +9,12 @@ import numpy as np
 
 from eomgen.codegen.spheres import Places
 from eomgen.simulation.arrival import Arrival, NeverReached
-from eomgen.simulation.events import TOUCH, Events
-from eomgen.simulation.nearness import Nearness
-from eomgen.simulation.passages import Flow, march_across
+from eomgen.simulation.constraint_rank import Nearness
+from eomgen.simulation.event_location import TOUCH, Events
+from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping
 from eomgen.simulation.projection import Projection
+from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.simulation.solvers import Rate
-from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FAIR_RUN, FINE_RUN
 
 TOLERANCES = (FINE_RUN, FAIR_RUN)  # of one step; the coarser where the finer does not come across

@@ -17,7 +17,7 @@ from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.course import modes_at_start
+from eomgen.simulation.phase_change import modes_at_start
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
-from eomgen.velocities import kinematics as found_in
+from eomgen.questions.velocities import kinematics as found_in
 from eomgen.verbs.given import nearest
 from eomgen.verbs.outcome import Outcome, told
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen import answers, pipeline
+from eomgen import pipeline
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
@@ -23,6 +23,7 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
+from eomgen.questions import answers
 from eomgen.report.answer import Answer
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said

@@ -15,8 +15,8 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.stepping import Stepping
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.verbs.given import assignments, nearest
 from eomgen.verbs.outcome import Outcome, prepared
@@ -69,8 +69,8 @@ def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: M
     """Accelerations and multipliers at the start; null where one has no single value."""
     if not len(run.t):
         return {"start_accelerations": {}, "start_multipliers": {}}
-    stage, x = run.phases[0].stage, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
-    system, assembly = (equations.system, equations.graph) if stage is None else (stage.system, stage.assembly)
+    phase, x = run.phases[0].model, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
+    system, assembly = (equations.system, equations.graph) if phase is None else (phase.system, phase.assembly)
     state = np.array([x[node.name] for node in (*system.symbols.q, *system.symbols.u)])
     p = parameter_vector(equations.model, parameters)
     found = accelerations_at(system, assembly, float(run.t[0]), state, p)

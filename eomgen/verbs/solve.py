@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from eomgen import answers
 from eomgen.model.parts import Model
+from eomgen.questions import answers
 from eomgen.report.answer import table
 from eomgen.verbs.outcome import Outcome, listed
 

@@ -11,7 +11,7 @@ import eomgen
 from eomgen.errors import DerivationError
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.history import history
-from eomgen.simulation.trajectory import Trajectory
+from eomgen.simulation.result import Trajectory
 
 G = 9.81
 HEAD = """
@@ -474,7 +474,7 @@ def passages(text: str, name: str, level: int, time: float):
     """The phases until a coordinate or rate is at a level."""
     model = eomgen.loads(HEAD + text)
     p = np.array(list(numeric_parameters(model).values()))
-    return history(model, p, until=lambda stage: stage.system.scope.names[name] - level, time=time)
+    return history(model, p, until=lambda phase: phase.system.scope.names[name] - level, time=time)
 
 
 def test_a_condition_is_met_in_the_phase_in_which_it_holds():
@@ -489,9 +489,9 @@ def test_a_condition_is_met_in_the_phase_in_which_it_holds():
 def test_a_condition_that_ends_a_phase_has_a_before_and_an_after():
     """x' = 0 is the stop itself: the phase before decelerates, the one after slides back."""
     (only,) = passages(BLOCK, "x'", 0, 5.0)
-    stage, values = only.after
-    t, x = np.array([only.t_1]), stage.state(values)[None, :]
-    before, after = (s.evaluated(t, x, s.system.symbols.a)[0, 0] for s in (only.stage, stage))
+    phase, values = only.after
+    t, x = np.array([only.t_1]), phase.state(values)[None, :]
+    before, after = (s.evaluated(t, x, s.system.symbols.a)[0, 0] for s in (only.phase, phase))
     assert only.kind == "condition" and only.t_1 == pytest.approx(4 / (G * (math.sin(0.5) + 0.3 * math.cos(0.5))))
     assert before == pytest.approx(-G * (math.sin(0.5) + 0.3 * math.cos(0.5)))
     assert after == pytest.approx(-G * (math.sin(0.5) - 0.3 * math.cos(0.5)))

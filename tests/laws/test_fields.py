@@ -13,9 +13,7 @@ import pytest
 from mpmath import mp, mpf
 
 import eomgen
-from eomgen import answers
 from eomgen.errors import DerivationError
-from eomgen.journey import Journey
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.field import (
@@ -30,7 +28,9 @@ from eomgen.mechanics.fields.field import (
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.instant.body_motion import body_motions
-from eomgen.situation import Situation, situation_of
+from eomgen.questions import answers
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
+from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Node
@@ -74,21 +74,21 @@ joint = { kind = "prismatic", on = "arm", at = [0, 0.3, 0.2], axis = [2, 1, 2], 
 
 
 @cache
-def instant(text: str) -> tuple[Situation, dict[Node, float]]:
-    """The situation of a driven model, and its state at t = 0.7."""
-    situation = situation_of(eomgen.loads(text))
-    scope = situation.system.scope
+def instant(text: str) -> tuple[PhaseEquations, dict[Node, float]]:
+    """The phase of a driven model, and its state at t = 0.7."""
+    phase = phase_equations_of(eomgen.loads(text))
+    scope = phase.system.scope
     state = {scope.symbols.parameters[n]: float(x.value.literal) for n, x in scope.model.parameters.items()}
     state |= {scope.symbols.t: 0.7}
     for q in scope.symbols.q:
         state[q] = evaluate((scope.value(scope.model.coordinates[q.name].motion),), state, FLOAT)[0]
-    return situation, state
+    return phase, state
 
 
 def value(text: str, formula: str) -> float:
     """A formula of the outputs at t = 0.7."""
-    situation, state = instant(text)
-    return situation.number(parse(formula, references=True), state)
+    phase, state = instant(text)
+    return phase.number(parse(formula, references=True), state)
 
 
 def matrix(axis: tuple[float, ...], angle: mpf) -> mp.matrix:
@@ -317,8 +317,8 @@ def test_curvature_of_an_ellipse():
 
 def kinds_of(text: str) -> tuple[Kinds, eomgen.Model]:
     model = eomgen.loads(text)
-    journey = Journey(model, False)
-    return Kinds(journey.situation.system, journey.start), model
+    motion = MotionFromStart(model, False)
+    return Kinds(motion.phase.system, motion.start), model
 
 
 BODIES = """
@@ -467,9 +467,9 @@ def test_the_moving_centrode_touches_the_fixed_one(text):
 def test_every_body_of_a_mechanism_has_its_motion_told():
     """A slider-crank at an instant: the crank's centre is its hinge, the piston has none."""
     model = eomgen.load("models/slider_crank.toml")
-    journey = Journey(model, False)
-    system = journey.situation.system
-    motions = {m.body: m for m in body_motions(system, {}, Kinds(system, journey.start))}
+    motion = MotionFromStart(model, False)
+    system = motion.phase.system
+    motions = {m.body: m for m in body_motions(system, {}, Kinds(system, motion.start))}
     assert [to_text(x) for x in motions["flywheel"].center] == ["0", "0", "0"]
     assert motions["piston"].center is None
     assert motions["piston"].kind.name == "rectilinear translation"

@@ -13,15 +13,15 @@ import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
-from eomgen.instants import Instant, reached
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import numeric_parameters
+from eomgen.questions.first_instant import Instant, reached
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.simulation.arrival import NeverReached, first_arrival
-from eomgen.situation import Situation, situation_of, start_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
@@ -163,9 +163,9 @@ def bar(start: str, speed: str = "0") -> str:
     return HEAD + BAR.replace("START", start).replace("SPEED", speed)
 
 
-def asked(text: str, condition: str) -> tuple[Situation, Instant]:
+def asked(text: str, condition: str) -> tuple[PhaseEquations, Instant]:
     """The instant at which the condition (= 0) holds."""
-    each = situation_of(eomgen.loads(text))
+    each = phase_equations_of(eomgen.loads(text))
     symbols = each.system.symbols
     start = start_of(each, at_rest=False)
     numbers: dict = {}
@@ -177,7 +177,7 @@ def asked(text: str, condition: str) -> tuple[Situation, Instant]:
     return each, reached(each.system, each.assembly, each.accelerations, scalar, start, numbers)
 
 
-def exact_places(each: Situation, start: dict, numbers: dict) -> dict:
+def exact_places(each: PhaseEquations, start: dict, numbers: dict) -> dict:
     """Dependent coordinates at the start in closed form."""
     symbols = each.system.symbols
     values = numeric_parameters(each.model)
@@ -186,7 +186,7 @@ def exact_places(each: Situation, start: dict, numbers: dict) -> dict:
     return places_of(gaps, [q for q in symbols.q], located)
 
 
-def is_exactly(each: Situation, found: Any, expected: str) -> bool:
+def is_exactly(each: PhaseEquations, found: Any, expected: str) -> bool:
     """Whether a scalar is the function that a text says."""
     names = {**each.system.symbols.parameters, "pi": each.system.symbols.graph.pi}
     return equal_at_random_states([(found, parse(expected).evaluate(names))]).equal
@@ -390,7 +390,7 @@ def test_what_never_holds_is_refused(condition):
 def test_two_freedoms_at_rest_are_refused():
     """An upright double pendulum could fall either way, and energy alone does not say how."""
     model = eomgen.load("models/double_pendulum.toml")
-    each = situation_of(model)
+    each = phase_equations_of(model)
     symbols = each.system.symbols
     start = {**dict.fromkeys(symbols.q, symbols.graph.pi), **dict.fromkeys(symbols.u, 0)}
     numbers = {**dict.fromkeys(symbols.q, math.pi), **dict.fromkeys(symbols.u, 0.0)}

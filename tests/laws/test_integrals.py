@@ -14,7 +14,7 @@ from eomgen.mechanics.first_integrals.integrals import first_integrals
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.situation import Situation, situation_of
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import parse
@@ -219,11 +219,11 @@ ONE_WAY = {  # name -> (model, how far along the motion is followed: no speed ch
 }
 
 
-def situation(text: str) -> Situation:
-    return situation_of(eomgen.loads(text))
+def phase(text: str) -> PhaseEquations:
+    return phase_equations_of(eomgen.loads(text))
 
 
-def motion(each: Situation, end: float) -> tuple[np.ndarray, list[dict]]:
+def motion(each: PhaseEquations, end: float) -> tuple[np.ndarray, list[dict]]:
     """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
     system = each.system
     rhs = compiled(right_hand_side(with_accelerations(system, each.assembly), system.inputs), "numpy")
@@ -241,7 +241,7 @@ def motion(each: Situation, end: float) -> tuple[np.ndarray, list[dict]]:
     ]
 
 
-def exact_start(each: Situation) -> dict:
+def exact_start(each: PhaseEquations) -> dict:
     scope = each.system.scope
     part = each.model.coordinates
     start = {q: scope.value(part[q.name].start) for q in scope.symbols.q}
@@ -252,7 +252,7 @@ def exact_start(each: Situation) -> dict:
 def test_first_integrals_stay_constant(name):
     """E and p_k - integral of Q_k dt at seven instants of a motion."""
     text, end = ONE_WAY[name]
-    each = situation(text)
+    each = phase(text)
     _, states = motion(each, end)
     for integral in first_integrals(each.system, each.assembly):
         values = [evaluate((integral.expression,), state, FLOAT)[0] for state in states]
@@ -274,7 +274,7 @@ def test_first_integrals_stay_constant(name):
 )
 def test_the_integrals_of_a_system_are_found(name, expected):
     """Cyclic coordinates have momenta; energy stays where no force without potential works."""
-    each = situation(ONE_WAY[name][0])
+    each = phase(ONE_WAY[name][0])
     assert {integral.name for integral in first_integrals(each.system, each.assembly)} == expected
 
 
@@ -286,7 +286,7 @@ def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
         + PARTICLE
         + ('joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F*sin(c*t)" }\n')
     )
-    each = situation(text)
+    each = phase(text)
     (integral,) = first_integrals(each.system, each.assembly)
     symbols = each.system.symbols
     names = {**symbols.parameters, "t": symbols.t, "x'": symbols.u[0]}
@@ -298,7 +298,7 @@ def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
 def test_speeds_by_the_integrals_are_those_of_the_motion(name):
     """u(q) of the energy theorem and the momenta against u(t) at q(t)."""
     text, end = ONE_WAY[name]
-    each = situation(text)
+    each = phase(text)
     rates = rates_of(each.system, each.assembly, exact_start(each), accelerations=each.accelerations)
     assert rates is not None
     _, states = motion(each, end)
@@ -310,13 +310,13 @@ def test_speeds_by_the_integrals_are_those_of_the_motion(name):
 
 def test_two_freedoms_without_momenta_have_no_speeds():
     """A double pendulum's speeds are no functions of its angles."""
-    each = situation_of(eomgen.load("models/double_pendulum.toml"))
+    each = phase_equations_of(eomgen.load("models/double_pendulum.toml"))
     assert rates_of(each.system, each.assembly, exact_start(each)) is None
 
 
 def test_an_energy_with_an_unknown_start_is_refused():
     """V at a start that is not known exactly must not cancel against V."""
-    each = situation(PENDULUM)
+    each = phase(PENDULUM)
     start = {node: x for node, x in exact_start(each).items() if node.name != "theta"}
     with pytest.raises(eomgen.EomgenError, match="no closed form: theta"):
         rates_of(each.system, each.assembly, start)
@@ -405,7 +405,7 @@ LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()
 @pytest.mark.parametrize("name", LAWS)
 def test_laws_of_motion_are_the_motion(name):
     """q(t) and u(t) in closed form against an integration in time."""
-    each = situation(LAWS[name])
+    each = phase(LAWS[name])
     laws = laws_of_motion(each.system, each.accelerations, exact_start(each))
     symbols = each.system.symbols
     assert {*symbols.q, *symbols.u} <= laws.keys()
@@ -418,7 +418,7 @@ def test_laws_of_motion_are_the_motion(name):
 
 def test_a_law_from_a_later_start_counts_time_from_there():
     """x = x0 + v (t - t0) + F (t - t0)^2/(2 m)"""
-    each = situation(LAWS["constant force"])
+    each = phase(LAWS["constant force"])
     symbols = each.system.symbols
     start = {**exact_start(each), symbols.t: symbols.parameters["c"]}
     laws = laws_of_motion(each.system, each.accelerations, start)
@@ -430,13 +430,13 @@ def test_a_law_from_a_later_start_counts_time_from_there():
 @pytest.mark.parametrize("name", ["pendulum", "orbit", "bead on a rough ring"])
 def test_what_is_not_linear_has_no_law(name):
     """No law is made up."""
-    each = situation(ONE_WAY[name][0])
+    each = phase(ONE_WAY[name][0])
     assert laws_of_motion(each.system, each.accelerations, exact_start(each)) == {}
 
 
 def test_friction_by_its_law_has_no_law_of_motion_before_its_sense_is_chosen():
     """x'' = -g (sin + mu cos sign(x')) is not linear in x'."""
-    each = situation(INCLINE)
+    each = phase(INCLINE)
     assert laws_of_motion(each.system, each.accelerations, exact_start(each)) == {}
 
 
@@ -461,7 +461,7 @@ point = "disc.center"
 force = ["F", 0]
 """
     )
-    each = situation(text)
+    each = phase(text)
     symbols = each.system.symbols
     start = exact_start(each) | {q: each.system.scope.value(each.model.coordinates[q.name].start) for q in symbols.q}
     laws = laws_of_motion(each.system, each.accelerations, start)

@@ -13,8 +13,8 @@ from scipy.special import ellipj, ellipk
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.running import run
+from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.projection import projection_of
-from eomgen.simulation.stepping import Stepping
 from tests.float_loops import bricard
 
 MODELS = Path(__file__).parents[2] / "models"

@@ -17,7 +17,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Mechanism
-from eomgen.velocities import state_of
+from eomgen.questions.velocities import state_of
 
 SEEDS = range(3)
 BODIES = "[bodies.I]\npoints = { O = [0, 0], A = [0, 2] }\n"

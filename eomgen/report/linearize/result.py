@@ -28,7 +28,7 @@ from eomgen.report.linearize.steps import linearization_steps
 from eomgen.report.setting_steps import data_step
 from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation
-from eomgen.simulation.course import modes_at_start
+from eomgen.simulation.phase_change import modes_at_start
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

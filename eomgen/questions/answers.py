@@ -19,7 +19,6 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
-from eomgen.journey import Journey
 from eomgen.mechanics.first_integrals.constants_of_motion import stays
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
@@ -29,11 +28,12 @@ from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
 from eomgen.model.values import exact_parameters
-from eomgen.moments import Moment, resting
+from eomgen.questions.at_instant import StateAtInstant, resting
+from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.report.answer import Answer
 from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.statics.result import why_not_at_rest
-from eomgen.situation import Situation
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
@@ -71,14 +71,14 @@ class _Solver:
     model: Model
 
     @cached_property
-    def journeys(self) -> dict[bool, Journey]:
+    def motions(self) -> dict[bool, MotionFromStart]:
         """The motion from the start, and from rest at the start."""
-        return {at_rest: Journey(self.model, at_rest) for at_rest in (False, True)}
+        return {at_rest: MotionFromStart(self.model, at_rest) for at_rest in (False, True)}
 
     @property
-    def situation(self) -> Situation:
+    def phase(self) -> PhaseEquations:
         """The first phase: contacts as they are at the start."""
-        return self.journeys[False].situation
+        return self.motions[False].phase
 
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
@@ -99,7 +99,7 @@ class _Solver:
         return self._of_state(output)
 
     def _in_unit(self, scalar: Scalar, output: Output) -> Scalar:
-        return scalar if output.unit is None else output.unit.from_si(scalar, self.situation.system.scope.graph.pi)
+        return scalar if output.unit is None else output.unit.from_si(scalar, self.phase.system.scope.graph.pi)
 
     # -- at the one instant that [given] speaks of -----------------------------------------------
 
@@ -138,7 +138,7 @@ class _Solver:
         """A formula of the matrices and frequencies of the linearized system; exact where all of them are."""
         if output.from_ or output.side or (output.at is not None and not isinstance(output.at, AtRest)):
             raise DerivationError("small motions have the state of [linearize]", mend="leave out `at`, `from`, `side`")
-        scope = self.situation.system.scope
+        scope = self.phase.system.scope
         exact = True
 
         def value(call: Call) -> Scalar:
@@ -153,20 +153,20 @@ class _Solver:
             return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
 
         scalar = output.value.evaluate(scope.names, value)
-        found = self._started(self.situation.simple(self._in_unit(scalar, output)), "small motions")
+        found = self._started(self.phase.simple(self._in_unit(scalar, output)), "small motions")
         return found if exact else replace(found, exact=None)
 
     # -- functions of the state, and of the configuration ---------------------------------------
 
     def _of_state(self, output: Output) -> Answer:
         """A function of coordinates and rates."""
-        situation = self.situation
-        scalar = situation.of_state(output.value)
-        method = situation.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
+        phase = self.phase
+        scalar = phase.of_state(output.value)
+        method = phase.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         if self._not_at_rest:
             raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
-        answer = self._regular(self._started(situation.simple(self._in_unit(scalar, output)), method), output)
-        failure = self.journeys[False].failure
+        answer = self._regular(self._started(phase.simple(self._in_unit(scalar, output)), method), output)
+        failure = self.motions[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         without = answer.value is None and answer.message == NO_VALUE.format("at the start")
@@ -179,21 +179,21 @@ class _Solver:
     @cached_property
     def _rubs_at_rest(self) -> str:
         """The contacts on surfaces that begin to slide from rest, by their names."""
-        situation = self.situation
-        values = {**known_parameters(situation.system.scope), **self.journeys[False].numbers}
-        rows = [row for row in situation.system.ties.rows if row.shares and row.friction is not None]
+        phase = self.phase
+        values = {**known_parameters(phase.system.scope), **self.motions[False].numbers}
+        rows = [row for row in phase.system.ties.rows if row.shares and row.friction is not None]
         return ", ".join(f"'{row.tie}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 
     def _regular(self, answer: Answer, output: Output) -> Answer:
         """The answer with the value that it has where its closed form divides by what vanishes at the start."""
-        situation = self.situation
-        if not situation.system.ties.closing or not situation.needs_equations(output.value):
+        phase = self.phase
+        if not phase.system.ties.closing or not phase.needs_equations(output.value):
             return answer
-        symbols = situation.system.symbols
+        symbols = phase.system.symbols
         try:
-            state = start_state(situation.system)
+            state = start_state(phase.system)
             numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
-            found = situation.number(output.value, {**known_parameters(situation.system.scope), **numbers})
+            found = phase.number(output.value, {**known_parameters(phase.system.scope), **numbers})
         except (KeyError, MissingValues):
             return answer
         value = found if output.unit is None else float(output.unit.from_si(found, math.pi))
@@ -203,26 +203,26 @@ class _Solver:
     @cached_property
     def _not_at_rest(self) -> str:
         """What contacts of bodies without coordinates cannot do; "" where they can."""
-        return why_not_at_rest(self.model, self.situation.system)
+        return why_not_at_rest(self.model, self.phase.system)
 
     def _of_configuration(self, output: Output) -> Answer:
         """A function of the coordinates, rates eliminated by the energy theorem."""
-        journey = self.journeys[output.from_ == "rest"]
-        situation = journey.situation
-        scalar = situation.of_state(output.value)
-        if not depends_on(scalar, situation.system.symbols.u):
-            method = situation.method_for(output.value) or "kinematics"
-            return self._started(situation.simple(self._in_unit(scalar, output)), method)
-        if not journey.start:
+        motion = self.motions[output.from_ == "rest"]
+        phase = motion.phase
+        scalar = phase.of_state(output.value)
+        if not depends_on(scalar, phase.system.symbols.u):
+            method = phase.method_for(output.value) or "kinematics"
+            return self._started(phase.simple(self._in_unit(scalar, output)), method)
+        if not motion.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
-        rates = rates_of(situation.system, situation.assembly, journey.start, accelerations=situation.accelerations)
+        rates = rates_of(phase.system, phase.assembly, motion.start, accelerations=phase.accelerations)
         if rates is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
                 mend="ask it at an instant: `at`",
             )
         (scalar,) = substituted((scalar,), rates)
-        return self._started(situation.simple(self._in_unit(scalar, output)), "energy theorem")
+        return self._started(phase.simple(self._in_unit(scalar, output)), "energy theorem")
 
     def _started(self, scalar: Scalar, method: str) -> Answer:
         """The text, and the value at the start."""
@@ -245,7 +245,7 @@ class _Solver:
             return evaluate((scalar,), {x: float(known[x.name]) for x in symbols_of((scalar,))}, FLOAT)[0]
         if names <= self.model.parameters.keys():
             raise MissingValues(tuple(name for name in self.model.parameters if name in names and name not in known))
-        system = self.situation.system
+        system = self.phase.system
         names |= {x.name for name in names & self.model.inputs.keys() for x in symbols_of((system.inputs[name],))}
         missing = tuple(name for name in self.model.parameters if name in names and name not in known)
         if missing:
@@ -269,55 +269,55 @@ class _Solver:
                 raise DerivationError("a place of rest has no way that leads there", mend="leave out `from` and `side`")
             moment = self._resting
         else:
-            moment = self.journeys[output.from_ == "rest"].until(output.at, output.side)
-        situation, method = moment.situation, moment.method
+            moment = self.motions[output.from_ == "rest"].until(output.at, output.side)
+        phase, method = moment.phase, moment.method
         found = self._exactly(moment, output)
         if found is None:
             found, method = self._constant(moment, output), "constant of motion"
         if found is None:
             return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
-        exact = situation.simple(self._in_unit(found, output))
+        exact = phase.simple(self._in_unit(found, output))
         text = to_text(exact) if text_size(exact) <= LONGEST else None
         try:
             return _valued(Answer(text, None, "", method), self._at_start(exact), "at the instant")
         except MissingValues as error:
             return Answer(text, None, "", method, error.what)
 
-    def _exactly(self, moment: Moment, output: Output) -> Scalar | None:
+    def _exactly(self, moment: StateAtInstant, output: Output) -> Scalar | None:
         """The value by what is known of the instant exactly; None where that is too little."""
         if self._is_long_and_open(moment, output):
             return None
         try:
-            return moment.situation.at(output.value, moment.exact)
+            return moment.phase.at(output.value, moment.exact)
         except MissingValues:
             return None
 
-    def _is_long_and_open(self, moment: Moment, output: Output) -> bool:
+    def _is_long_and_open(self, moment: StateAtInstant, output: Output) -> bool:
         """Whether a formula too long to be shown holds what is known of the instant in numbers alone."""
-        situation, symbols = moment.situation, moment.situation.system.symbols
+        phase, symbols = moment.phase, moment.phase.system.symbols
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in moment.exact]
         if isinstance(output.at, AtRest) or not missing or not moment.numbers:
             return False
-        closed = situation.eliminated(situation.raw(output.value))
+        closed = phase.eliminated(phase.raw(output.value))
         return depends_on(closed, missing) and text_size(closed) > LONGEST
 
-    def _constant(self, moment: Moment, output: Output) -> Scalar | None:
+    def _constant(self, moment: StateAtInstant, output: Output) -> Scalar | None:
         """What stays constant along every motion, as it is at the start; None: it changes, or a contact has."""
-        journey = self.journeys[output.from_ == "rest"]
-        situation = journey.situation
-        if moment.situation is not situation or not journey.start:
+        motion = self.motions[output.from_ == "rest"]
+        phase = motion.phase
+        if moment.phase is not phase or not motion.start:
             return None
-        asked = situation.eliminated(situation.raw(output.value))
-        if not stays(situation.system, situation.assembly, (asked,))[0]:
+        asked = phase.eliminated(phase.raw(output.value))
+        if not stays(phase.system, phase.assembly, (asked,))[0]:
             return None
-        return substituted((asked,), journey.start)[0]
+        return substituted((asked,), motion.start)[0]
 
     @cached_property
-    def _resting(self) -> Moment:
+    def _resting(self) -> StateAtInstant:
         """Where all forces balance, or the start held by unknowns."""
-        return resting(self.situation.system)
+        return resting(self.phase.system)
 
-    def _number_at(self, moment: Moment, output: Output) -> float:
+    def _number_at(self, moment: StateAtInstant, output: Output) -> float:
         """The value in floating point.
 
         Raises:
@@ -325,8 +325,8 @@ class _Solver:
         """
         if not moment.numbers:
             raise RunFailed("the instant has no closed form, and without values of all parameters no number")
-        situation = moment.situation
-        value = situation.number(output.value, {**known_parameters(situation.system.scope), **moment.numbers})
+        phase = moment.phase
+        value = phase.number(output.value, {**known_parameters(phase.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 

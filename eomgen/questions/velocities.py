@@ -13,7 +13,6 @@ from fractions import Fraction
 from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
-from eomgen.journey import Journey
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.kinematic_state import KinematicState, State
@@ -21,9 +20,10 @@ from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
 from eomgen.model.parts import Given, Model
-from eomgen.moments import Moment, parameters_of
+from eomgen.questions.at_instant import StateAtInstant, parameters_of
+from eomgen.questions.in_phase import PhaseEquations, exact_numbers
+from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.report.kinematics.result import Kinematics
-from eomgen.situation import Situation, exact_numbers
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse_equation
 from eomgen.symbolic.expression.graph import Node, is_zero
@@ -112,10 +112,11 @@ def _rests(state: KinematicState) -> bool:
 
 
 def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
-    moment, when = _moment(Journey(model, at_rest=False), at), "at the start" if at is None else f"when {at.text}"
-    situation, exact, numbers = moment.situation, moment.exact, moment.numbers
-    symbols = situation.system.symbols
-    needed = (*symbols.q, *symbols.u, *([symbols.t] if _sees_time(situation) else []))
+    moment = _moment(MotionFromStart(model, at_rest=False), at)
+    when = "at the start" if at is None else f"when {at.text}"
+    phase, exact, numbers = moment.phase, moment.exact, moment.numbers
+    symbols = phase.system.symbols
+    needed = (*symbols.q, *symbols.u, *([symbols.t] if _sees_time(phase) else []))
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)
     if not moving and (symbols.q or symbols.u):
@@ -124,46 +125,46 @@ def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
             mend="give the parameters values",
         )
     moving = {**{symbols.t: 0}, **moving}
-    free = freedoms(situation.system.ties)
-    count = counted((situation.system.free or situation.system).ties)
-    found = KinematicState(situation.system, moving, {}, free, count, when, exact=whole)
+    free = freedoms(phase.system.ties)
+    count = counted((phase.system.free or phase.system).ties)
+    found = KinematicState(phase.system, moving, {}, free, count, when, exact=whole)
     if at is None and free == 1 == len(symbols.u) and _rests(found):
         (u,) = symbols.u
         return replace(found, moving={**moving, u: u}, rate=u.name, symbol=u)
-    accelerated, rounded = _with_accelerations(situation, moving, numbers)
+    accelerated, rounded = _with_accelerations(phase, moving, numbers)
     return replace(found, accelerated=accelerated, rounded=rounded)
 
 
-def _sees_time(situation: Situation) -> bool:
+def _sees_time(phase: PhaseEquations) -> bool:
     """Whether time itself stands in where bodies are and how they move."""
-    links, t = situation.system.motion.links, situation.system.symbols.t
+    links, t = phase.system.motion.links, phase.system.symbols.t
     return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
 
 
-def _moment(journey: Journey, at: Equation | None) -> Moment:
+def _moment(motion: MotionFromStart, at: Equation | None) -> StateAtInstant:
     """The start, or where the condition is met."""
     if at is not None:
-        return journey.until(at)
-    return Moment(journey.situation, journey.start, journey.numbers, "at the start")
+        return motion.until(at)
+    return StateAtInstant(motion.phase, motion.start, motion.numbers, "at the start")
 
 
-def _with_accelerations(situation: Situation, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
+def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
     """(with the accelerations by the equations of motion, whether in numbers as formulas are long); {}: no mass."""
-    symbols = situation.system.symbols
+    symbols = phase.system.symbols
     if not symbols.u:
         return moving, False
     try:
-        raw = substituted(situation.accelerations, moving)
+        raw = substituted(phase.accelerations, moving)
         if not numbers or sum(map(text_size, raw)) <= LONG:
-            state = situation.complete(moving)
+            state = phase.complete(moving)
             return (state if all(a in state for a in symbols.a) else {}), False
-        values = {**parameters_of(situation), **numbers}
-        found = [situation.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
+        values = {**parameters_of(phase), **numbers}
+        found = [phase.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
     except EomgenError:
         return {}, False
     if not all(map(isfinite, found)):
         return {}, False
-    inputs = situation.complete(moving, Expression.number(0))
+    inputs = phase.complete(moving, Expression.number(0))
     return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))}, True
 
 

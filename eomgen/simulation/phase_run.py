@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.simulation.course import Standing
-from eomgen.simulation.stage import Stage
-from eomgen.simulation.stepping import Run
-from eomgen.simulation.watching import Bound
+from eomgen.simulation.contact_events import EventFunction
+from eomgen.simulation.integrator import Run
+from eomgen.simulation.phase_change import PhaseStart
+from eomgen.simulation.phase_model import PhaseModel
 
 
 @dataclass(frozen=True)
-class Stretch:
+class PhaseRun:
     """One phase as it was run.
 
     Args:
         here: its start.
-        stage: its equations.
+        phase: its equations.
         run: what the integrator left.
         bound: what ended it; None where the time, a condition or a failure did.
         after: what follows the bound.
     """
 
-    here: Standing
-    stage: Stage
+    here: PhaseStart
+    phase: PhaseModel
     run: Run
-    bound: Bound | None
-    after: Standing | None
+    bound: EventFunction | None
+    after: PhaseStart | None

@@ -1,4 +1,4 @@
-"""System, configuration of its contacts -> Watch: what the contacts say, and the functions that end a phase.
+"""System, configuration of its contacts -> ContactEvents: what the contacts say, and the functions that end a phase.
 
 Each function is positive while the configuration holds:
 
@@ -23,7 +23,7 @@ from eomgen.mechanics.constraints.ties import Row, rows_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.contacts import Contact
-from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.configuration import Configuration
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -38,7 +38,7 @@ class Signal:
         owner: the contact.
         what: "N", of a string also "N2", ...; "hold", the force that lets it stick; "mu"; "slide", "slide'"; "gap",
             "gap'", "gap''".
-        value: over the stage's symbols, accelerations and multipliers; of a gap without a formula None.
+        value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
         column: of what follows from the balance of the bodies, its name among their reactions.
     """
 
@@ -49,13 +49,13 @@ class Signal:
 
 
 @dataclass(frozen=True)
-class Bound:
+class EventFunction:
     """A function that must stay positive.
 
     Args:
         owner: the contact, or the body on a path.
         kind: what its end means: "ends", "turns" (N changes its sign), "closes", "stops", "slips", "piece".
-        value: over the stage's symbols, accelerations and multipliers; of a gap without a formula None.
+        value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
         unit: what it measures.
         step: to which piece of a path its end leads.
         row: of a string with several tensions, the row that goes slack alone; else 0.
@@ -70,7 +70,7 @@ class Bound:
 
 
 @dataclass(frozen=True)
-class Watch:
+class ContactEvents:
     """What the contacts of one phase say, as functions of its symbols.
 
     Args:
@@ -112,8 +112,8 @@ class Watch:
         return None
 
     @cached_property
-    def bounds(self) -> tuple[Bound, ...]:
-        found: list[Bound] = []
+    def bounds(self) -> tuple[EventFunction, ...]:
+        found: list[EventFunction] = []
         for contact in self.contacts:
             if self.mode(contact).closed and self.undetermined is not None:
                 continue  # at rest: nothing is watched
@@ -130,32 +130,32 @@ class Watch:
     def mode(self, contact: Contact) -> Mode:
         return self.configuration.modes[contact.name]
 
-    def _bounds(self, contact: Contact, signals: Mapping[str, Any]) -> list[Bound]:
+    def _bounds(self, contact: Contact, signals: Mapping[str, Any]) -> list[EventFunction]:
         name, mode = contact.name, self.mode(contact)
         if not mode.closed:
-            return [Bound(name, "closes", signals["gap"], "gap")]
+            return [EventFunction(name, "closes", signals["gap"], "gap")]
         found = []
         if contact.unilateral:
             tensions = [value for what, value in signals.items() if what[0] == "N"]
             several = len(tensions) > 1
-            found += [Bound(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
+            found += [EventFunction(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
         elif mode.sense != 0 and not contact.round:
-            found.append(Bound(name, "turns", mode.push * signals["N"], "force"))
+            found.append(EventFunction(name, "turns", mode.push * signals["N"], "force"))
         if mode.sense == 0:
             grip = signals["mu"] * _size(signals["N"])
-            found.append(Bound(name, "slips", grip - _size(signals["hold"]), "force"))
+            found.append(EventFunction(name, "slips", grip - _size(signals["hold"]), "force"))
         elif mode.sense is not None:
-            found.append(Bound(name, "stops", mode.sense * signals["slide"] - stopped_below(contact), "rate"))
+            found.append(EventFunction(name, "stops", mode.sense * signals["slide"] - stopped_below(contact), "rate"))
         return found
 
     @property
-    def _ends_of_pieces(self) -> list[Bound]:
+    def _ends_of_pieces(self) -> list[EventFunction]:
         """The way left to both ends of each path's piece; the first and the last piece go on."""
         found = []
         for body, (more_before, length) in self.lengths.items():
             s = self.system.motion.link(body).s[0]
-            found += [Bound(body, "piece", s, "gap", -1)] if more_before else []
-            found += [Bound(body, "piece", length - s, "gap", 1)] if length is not None else []
+            found += [EventFunction(body, "piece", s, "gap", -1)] if more_before else []
+            found += [EventFunction(body, "piece", length - s, "gap", 1)] if length is not None else []
         return found
 
     def _of_open(self, contact: Contact) -> list[Signal]:

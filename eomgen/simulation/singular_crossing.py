@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.spheres import Places
-from eomgen.simulation.events import Crossing, Events, Watch
-from eomgen.simulation.nearness import Lookout, Nearness
+from eomgen.simulation.constraint_rank import Lookout, Nearness
+from eomgen.simulation.event_location import Crossing, Events, EventSearch
+from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping, march
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import Rate, Slope
-from eomgen.simulation.stepping import LOOKED_OUT, Run, Stepping, march
 from eomgen.symbolic.numeric.tolerances import FINEST_RUN, WIDE_STEP
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
@@ -147,7 +147,7 @@ def _met(events: Events, passage: Passage) -> Crossing | None:
     def motion(t: Any) -> np.ndarray:
         return passage.motion(np.atleast_1d(t)).T if np.ndim(t) else passage.motion(np.array([t]))[0]
 
-    return Watch(events, passage.start, motion(passage.start)).step(passage.start, passage.end, motion)
+    return EventSearch(events, passage.start, motion(passage.start)).step(passage.start, passage.end, motion)
 
 
 def _stopped(run: Run, crossing: Crossing) -> Run:

@@ -1,4 +1,4 @@
-"""Model, start -> Standing: where a motion begins, and how it goes on after each event.
+"""Model, start -> PhaseStart: where a motion begins, and how it goes on after each event.
 
 An event that closes a contact is an impact without rebound. Then the configuration is sought that agrees with the
 forces (`settling`).
@@ -20,17 +20,17 @@ from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
-from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, paths_of
-from eomgen.simulation.events import Crossing
+from eomgen.simulation.configuration import Configuration, bounds_of, on_pieces, paths_of
+from eomgen.simulation.contact_decision import settled
+from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.impact import Loose
-from eomgen.simulation.settling import settled
-from eomgen.simulation.stage import Stage, Values, smallest_speed
-from eomgen.simulation.stages import Stages
+from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
+from eomgen.simulation.phase_models import PhaseModels
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 @dataclass(frozen=True)
-class Standing:
+class PhaseStart:
     """Where the motion is, and how it goes on.
 
     Args:
@@ -52,32 +52,32 @@ class Course:
     """What stays the same through all phases."""
 
     model: Model
-    stages: Stages
+    phase_models: PhaseModels
 
     @property
     def loose(self) -> Loose:
         """The model without the contacts that can end."""
-        return self.stages.loose
+        return self.phase_models.loose
 
-    def after(self, stage: Stage, crossing: Crossing, ended: frozenset[Configuration]) -> Standing:
+    def after(self, phase: PhaseModel, crossing: Crossing, ended: frozenset[Configuration]) -> PhaseStart:
         """What follows the event that ended a phase."""
-        bound = stage.bounds[crossing.index]
-        pieces = dict(stage.configuration.pieces)
+        bound = phase.bounds[crossing.index]
+        pieces = dict(phase.configuration.pieces)
         if bound.step:
             pieces[bound.owner] += bound.step
-        values = stage.values(crossing.t, crossing.x)
+        values = phase.values(crossing.t, crossing.x)
         if bound.row:
             what = f"strand {bound.row} of the string '{bound.owner}' goes slack alone, and what follows is not derived"
-            return Standing(crossing.t, values, stage.configuration, failure=what)
-        if bound.kind == "stops" and stage.contact(bound.owner).surface:
-            values = self._stopped(stage, bound.owner, crossing.t, values)
-        return _decided(self, crossing.t, values, pieces, before=stage.configuration, ended=ended)
+            return PhaseStart(crossing.t, values, phase.configuration, failure=what)
+        if bound.kind == "stops" and phase.contact(bound.owner).surface:
+            values = self._stopped(phase, bound.owner, crossing.t, values)
+        return _decided(self, crossing.t, values, pieces, before=phase.configuration, ended=ended)
 
-    def _stopped(self, stage: Stage, name: str, t: float, values: dict[str, float]) -> dict[str, float]:
+    def _stopped(self, phase: PhaseModel, name: str, t: float, values: dict[str, float]) -> dict[str, float]:
         """The state in which a contact does not slide: on a surface a speed comes near to 0, and stops there."""
-        modes = Table({**stage.configuration.modes, name: Mode(sense=0)})
+        modes = Table({**phase.configuration.modes, name: Mode(sense=0)})
         try:
-            held = self.stages.of(replace(stage.configuration, modes=modes))
+            held = self.phase_models.of(replace(phase.configuration, modes=modes))
         except DerivationError:  # nothing can hold it: the next phase says so
             return values
         if held.projection is None:
@@ -86,13 +86,13 @@ class Course:
 
 
 def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: Rates | None = None) -> Course:
-    """The stages of a model, none of them made yet; rates: of Baumgarte's rows."""
-    return Course(model, Stages(model, p, target, rates))
+    """The phases of a model, none of them made yet; rates: of Baumgarte's rows."""
+    return Course(model, PhaseModels(model, p, target, rates))
 
 
 def at_start(
     course: Course, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
-) -> Standing:
+) -> PhaseStart:
     """The state at the start; a contact that can end may be open there.
 
     Raises:
@@ -114,15 +114,15 @@ def _closed_or_open(
     """(coordinates and rates at the start, the contacts open there): none, where the values allow it."""
 
     def values(away: Sequence[str]) -> dict[str, float]:
-        stage = course.stages.of(plain(course.model, pieces, away))
-        return stage.values(t, stage.state(start_state(stage.system, parameters, start)))
+        phase = course.phase_models.of(plain(course.model, pieces, away))
+        return phase.values(t, phase.state(start_state(phase.system, parameters, start)))
 
     try:
         return values(()), ()
     except DerivationError:
-        if not course.stages.ends:
+        if not course.phase_models.ends:
             raise
-    free = values(course.stages.ends)
+    free = values(course.phase_models.ends)
     _refuse_overlap(course, t, free)
     away = tuple(name for name, (gap, rate) in course.loose.gaps(t, free).items() if _apart(gap, rate, free))
     return values(away), away
@@ -156,10 +156,10 @@ def _refuse_overlap(course: Course, t: float, values: Values) -> None:
 
 def _piece_at(course: Course, body: str, t: float, values: Values) -> int:
     """The piece on which a body is; between two of them the one into which it moves."""
-    stage = course.stages.of(plain(course.model, {b: 0 for b in paths_of(course.model)}, ()))
-    link, value = stage.system.motion.link(body), stage.system.scope.value
+    phase = course.phase_models.of(plain(course.model, {b: 0 for b in paths_of(course.model)}, ()))
+    link, value = phase.system.motion.link(body), phase.system.scope.value
     asked = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(course.model, body)[:-1]))
-    s, rate, *ends = stage.evaluated(np.array([t]), stage.state(values)[None, :], asked)[0]
+    s, rate, *ends = phase.evaluated(np.array([t]), phase.state(values)[None, :], asked)[0]
     close = _length(values)
     return sum(s > end - close if rate > 0 else s > end + close for end in ends)
 
@@ -172,17 +172,17 @@ def _decided(
     *,
     before: Configuration,
     ended: frozenset[Configuration],
-) -> Standing:
+) -> PhaseStart:
     """Velocities after an impact where there is one, and the configuration that then holds."""
     values, apart, hit = _contact(course, t, values, before) if before.open else (values, frozenset(), False)
     try:
-        found = settled(course.stages, t, values, pieces=pieces, apart=apart, ended=ended, before=before)
+        found = settled(course.phase_models, t, values, pieces=pieces, apart=apart, ended=ended, before=before)
     except DerivationError as error:  # a contact ends that nothing can leave
-        return Standing(t, values, before, hit, error.what)
+        return PhaseStart(t, values, before, hit, error.what)
     if found is not None:
-        return Standing(t, values, found, hit)
+        return PhaseStart(t, values, found, hit)
     standing = plain(course.model, pieces, tuple(apart))
-    return Standing(t, values, standing, hit, _jammed(standing))
+    return PhaseStart(t, values, standing, hit, _jammed(standing))
 
 
 def _contact(course: Course, t: float, values: Values, before: Configuration) -> tuple[Values, frozenset[str], bool]:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.simulation.events import PARTS, Crossing
-from eomgen.simulation.independence import Independence
-from eomgen.simulation.stepping import LOOKED_OUT
+from eomgen.simulation.event_location import PARTS, Crossing
+from eomgen.simulation.independence import ConstraintRank
+from eomgen.simulation.integrator import LOOKED_OUT
 
 STEEP = 2.0  # times the steepest fall or rise in the steps before: s may not change faster in a step
 REMEMBERED = 4  # steps
@@ -34,7 +34,7 @@ class Nearness:
     """
 
     determinants: Measure | None
-    rows: Independence | None
+    rows: ConstraintRank | None
     what: tuple[str, ...] = ()
     lengths: np.ndarray | float = 0.0
     largest: np.ndarray | float = 0.0

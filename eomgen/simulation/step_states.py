@@ -14,7 +14,7 @@ MOST = 20_000  # states
 
 
 @dataclass
-class Track:
+class StepStates:
     """States at the ends of steps: of all of them, or of every second, fourth, ... so that they do not grow too many.
 
     Args:
@@ -38,7 +38,7 @@ class Track:
             self.t, self.x, self.every = self.t[1::2], self.x[1::2], 2 * self.every
 
 
-def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[Track]) -> tuple[np.ndarray, np.ndarray]:
+def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[StepStates]) -> tuple[np.ndarray, np.ndarray]:
     """(t n, x n x states): the rows of a run and the states of its tracks, in the order of time."""
     times = np.concatenate([t, *(np.array(track.t, dtype=float) for track in tracks)])
     states = np.concatenate([x, *(np.array(track.x).reshape(len(track.t), x.shape[1]) for track in tracks)])

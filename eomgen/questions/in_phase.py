@@ -1,4 +1,4 @@
-"""Model -> Situation: the equations of one phase, and what a formula of the model is worth in it, exactly.
+"""Model -> PhaseEquations: the equations of one phase, and what a formula of the model is worth in it, exactly.
 
 A formula may hold coordinates, rates, accelerations, and functions of the motion and of the reactions. As a function of
 the state, accelerations and multipliers are replaced by the equations of motion. At one instant the instant's values
@@ -49,7 +49,7 @@ State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)
-class Situation:
+class PhaseEquations:
     """The equations of motion of one phase.
 
     Args:
@@ -253,9 +253,9 @@ class Situation:
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 
 
-def situation_of(model: Model, modes: Modes | None = None) -> Situation:
+def phase_equations_of(model: Model, modes: Modes | None = None) -> PhaseEquations:
     """The equations of a model in one configuration of its contacts."""
-    return Situation(system_of(model, modes))
+    return PhaseEquations(system_of(model, modes))
 
 
 def exact_numbers(values: Mapping[Node, float]) -> dict[Node, Scalar]:
@@ -263,18 +263,18 @@ def exact_numbers(values: Mapping[Node, float]) -> dict[Node, Scalar]:
     return {node: Fraction(value) for node, value in values.items() if value == value}
 
 
-def start_of(situation: Situation, *, at_rest: bool) -> dict[Node, Scalar]:
+def start_of(phase: PhaseEquations, *, at_rest: bool) -> dict[Node, Scalar]:
     """The start as exact scalars of the parameters: t, coordinates that are not sought by the ties, and speeds.
 
     Args:
         at_rest: all speeds are 0, whatever the model says.
     """
-    scope, model = situation.system.scope, situation.model
-    sought = set(fixed_by_position(situation.system))
+    scope, model = phase.system.scope, phase.model
+    sought = set(fixed_by_position(phase.system))
     start: dict[Node, Scalar] = {scope.symbols.t: 0}
     for q in scope.symbols.q:
         if q not in sought:
             start[q] = start_value(scope, model.coordinates[q.name])
     start = with_unit_quaternions(scope, start)
-    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(situation.system)
+    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(phase.system)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))

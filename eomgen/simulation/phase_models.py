@@ -1,4 +1,4 @@
-"""Model -> Stages: the stage of every configuration of its contacts, derived and compiled once."""
+"""Model -> PhaseModels: the phase of every configuration of its contacts, derived and compiled once."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
-from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces
+from eomgen.simulation.configuration import Configuration, bounds_of, on_pieces
+from eomgen.simulation.contact_events import ContactEvents, sliding_velocity
 from eomgen.simulation.impact import Loose
-from eomgen.simulation.stage import Stage, Values
-from eomgen.simulation.watching import Watch, sliding_velocity
+from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression.graph import Scalar
 
 OPEN = Mode(closed=False)
@@ -53,8 +53,8 @@ class Slides:
         return compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
 
 
-class Stages:
-    """The stages of a model.
+class PhaseModels:
+    """The phases of a model.
 
     Args:
         model: whose contacts change.
@@ -65,17 +65,17 @@ class Stages:
 
     def __init__(self, model: Model, p: np.ndarray, target: str | None, rates: Rates | None = None) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
-        self._made: dict[Configuration, Stage] = {}
+        self._made: dict[Configuration, PhaseModel] = {}
         self._slides: dict[Configuration, Slides] = {}
 
-    def of(self, configuration: Configuration) -> Stage:
-        """The stage of a configuration.
+    def of(self, configuration: Configuration) -> PhaseModel:
+        """The phase of a configuration.
 
         Raises:
             DerivationError: a contact ends and nothing can leave it.
         """
         if configuration not in self._made:
-            self._made[configuration] = self._stage(configuration)
+            self._made[configuration] = self._phase(configuration)
         return self._made[configuration]
 
     def slides(self, configuration: Configuration) -> Slides:
@@ -100,14 +100,14 @@ class Stages:
         """The contacts that can end."""
         return tuple(contact.name for contact in contacts_of(self.model) if contact.unilateral)
 
-    def _stage(self, configuration: Configuration) -> Stage:
+    def _phase(self, configuration: Configuration) -> PhaseModel:
         model = on_pieces(self.model, configuration.pieces)
         system = self._system(model, configuration)
         assembly = recursive.assemble(system)
         assembly = with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
-        watch = Watch(configuration, contacts_of(model), lengths, system)
-        return Stage(watch, assembly, self.p, self.target)
+        watch = ContactEvents(configuration, contacts_of(model), lengths, system)
+        return PhaseModel(watch, assembly, self.p, self.target)
 
     def _system(self, model: Model, configuration: Configuration) -> System:
         """The system of a configuration.

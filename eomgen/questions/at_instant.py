@@ -12,34 +12,34 @@ from eomgen.mechanics.equilibria.loads_at_rest import holding_of
 from eomgen.mechanics.equilibria.search import all_equilibria
 from eomgen.mechanics.equilibria.static_equations import static_equations
 from eomgen.model.values import numeric_parameters
-from eomgen.situation import Situation
+from eomgen.questions.in_phase import PhaseEquations
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.transplant import transplanted
 
 
 @dataclass(frozen=True)
-class Moment:
+class StateAtInstant:
     """One instant of a motion.
 
     Args:
-        situation: the equations of the phase.
+        phase: the equations of the phase.
         exact: t, q and u as scalars of the parameters, those that are known so.
         numbers: t, q and u as numbers; {} where parameters are missing.
         method: how it was found.
     """
 
-    situation: Situation
+    phase: PhaseEquations
     exact: Mapping[Node, Scalar]
     numbers: Mapping[Node, float]
     method: str
 
 
-def carried(moment: Moment, situation: Situation) -> dict[Node, Scalar]:
+def carried(moment: StateAtInstant, phase: PhaseEquations) -> dict[Node, Scalar]:
     """The exact end of a phase as the start of the next; a displacement that did not exist is 0. {}: not exact."""
-    symbols = situation.system.symbols
+    symbols = phase.system.symbols
     known = {node.name: x for node, x in moment.exact.items()}
-    old = {x.name for x in (*moment.situation.system.symbols.q, *moment.situation.system.symbols.u)}
+    old = {x.name for x in (*moment.phase.system.symbols.q, *moment.phase.system.symbols.u)}
     wanted = [symbols.t, *symbols.q, *symbols.u]
     if any(node.name not in known and (node.name in old or node is symbols.t) for node in wanted):
         known = _with_rates(moment, known)
@@ -50,30 +50,30 @@ def carried(moment: Moment, situation: Situation) -> dict[Node, Scalar]:
     return dict(zip(wanted, values, strict=True))
 
 
-def _with_rates(moment: Moment, known: dict[str, Scalar]) -> dict[str, Scalar]:
+def _with_rates(moment: StateAtInstant, known: dict[str, Scalar]) -> dict[str, Scalar]:
     """The rates of coordinates that were dependent, too."""
-    scope = moment.situation.system.scope
+    scope = moment.phase.system.scope
     rates = substituted(scope.rates, dict(moment.exact))
     return {f"{q.name}'": rate for q, rate in zip(scope.symbols.q, rates, strict=True)} | known
 
 
-def placed(situation: Situation, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
+def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
     """What is known of a state, and the coordinates that the ties then fix, where they have a closed form.
 
     Args:
         numbers: the same state in numbers, by which one of several places is chosen; {}: nothing is added.
     """
-    system = situation.system
+    system = phase.system
     unknown = [q for q in system.symbols.q if q not in known]
     gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
     if not unknown or not gaps or not numbers or len(gaps) < len(unknown) == len(system.symbols.q):
         return dict(known)  # nothing to begin with
-    located = Located({**parameters_of(situation), **numbers}, situation.positive)
+    located = Located({**parameters_of(phase), **numbers}, phase.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
     return {**known, **places_of(equations, unknown, located)}
 
 
-def resting(system: System, guess: Mapping[str, float] | None = None) -> Moment:
+def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAtInstant:
     """The place at which all forces balance, the nearest to the start; with unknowns in the loads, the start itself.
 
     Args:
@@ -97,21 +97,23 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> Moment:
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}
     numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
-    return Moment(Situation(system), exact, numbers, f"balance of all forces at rest{held}")
+    return StateAtInstant(PhaseEquations(system), exact, numbers, f"balance of all forces at rest{held}")
 
 
-def _held(system: System) -> Moment:
+def _held(system: System) -> StateAtInstant:
     """The start, held by the unknowns of the loads."""
     holding = holding_of(system)
     system = holding.statics.system
-    return Moment(Situation(system), {**holding.place, **holding.unknowns, **_still(system)}, {}, "virtual work")
+    return StateAtInstant(
+        PhaseEquations(system), {**holding.place, **holding.unknowns, **_still(system)}, {}, "virtual work"
+    )
 
 
 def _still(system: System) -> dict[Node, Scalar]:
     return {system.symbols.t: 0, **dict.fromkeys(system.symbols.u, 0)}
 
 
-def parameters_of(situation: Situation) -> dict[Node, float]:
+def parameters_of(phase: PhaseEquations) -> dict[Node, float]:
     """The values of the parameters."""
-    values = numeric_parameters(situation.model)
-    return {situation.system.symbols.parameters[name]: float(x) for name, x in values.items()}
+    values = numeric_parameters(phase.model)
+    return {phase.system.symbols.parameters[name]: float(x) for name, x in values.items()}

@@ -30,7 +30,7 @@ class Phase:
         ended_by: what ended it, in words.
         rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
             that of the other, in the state after.
-        stage: its equations, contacts and reactions, where contacts are that change; else None.
+        model: its equations, contacts and reactions, where contacts are that change; else None.
         first, last: every column at its beginning and at its end, where contacts are that change; else empty.
     """
 
@@ -38,7 +38,7 @@ class Phase:
     end: float
     ended_by: str
     rows: tuple[int, int] = (0, 0)
-    stage: Any = field(default=None, repr=False, compare=False)
+    model: Any = field(default=None, repr=False, compare=False)
     first: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
     last: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
 

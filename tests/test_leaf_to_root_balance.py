@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eomgen.simulation.peeling import solved, steps_of
+from eomgen.simulation.leaf_to_root_balance import solved, steps_of
 
 
 def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Generator) -> tuple[np.ndarray, list]:

@@ -18,10 +18,10 @@ from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.bodies.contact_modes import Mode
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
-from eomgen.simulation.contacts import Configuration, on_pieces
-from eomgen.simulation.stage import Stage, Values, smallest_speed
-from eomgen.simulation.stages import OPEN, Stages
-from eomgen.simulation.watching import stopped_below
+from eomgen.simulation.configuration import Configuration, on_pieces
+from eomgen.simulation.contact_events import stopped_below
+from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
+from eomgen.simulation.phase_models import OPEN, PhaseModels
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_TRIED = 2000  # configurations at one instant
@@ -29,7 +29,7 @@ STICKS = Mode(sense=0)
 
 
 def settled(
-    stages: Stages,
+    phase_models: PhaseModels,
     t: float,
     values: Values,
     *,
@@ -48,20 +48,20 @@ def settled(
     Raises:
         Indeterminate: something moves, and the balance does not tell how the contacts share what holds.
     """
-    contacts = contacts_of(on_pieces(stages.model, pieces))
-    sliding = _sliding(stages, contacts, t, values, pieces=pieces, apart=apart)
+    contacts = contacts_of(on_pieces(phase_models.model, pieces))
+    sliding = _sliding(phase_models, contacts, t, values, pieces=pieces, apart=apart)
     last: Configuration | None = None
     refused: list[DerivationError] = []
     for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
         tried = Configuration(Table(modes), Table(pieces))
-        stage = _made(stages, tried, refused)
-        if stage is None or not agrees(stage, t, values, sliding=sliding, apart=apart):
+        phase = _made(phase_models, tried, refused)
+        if phase is None or not agrees(phase, t, values, sliding=sliding, apart=apart):
             continue
-        standing = _standing(stage, t, values, sliding=sliding, apart=apart)
+        standing = _standing(phase, t, values, sliding=sliding, apart=apart)
         if standing and (undetermined := _indeterminate(refused)) is not None:
             held = {c.name: _closed(c) for c in contacts if c.name in standing}
             tried = Configuration(Table({**modes, **held}), Table(pieces))
-            if not stages.of(tried).rests(t, values):
+            if not phase_models.of(tried).rests(t, values):
                 raise undetermined
         if tried not in ended:
             return tried
@@ -75,16 +75,16 @@ def _closed(contact: Contact) -> Mode:
     return STICKS if contact.mu is not None else Mode()
 
 
-def _made(stages: Stages, tried: Configuration, refused: list[DerivationError]) -> Stage | None:
-    """The stage of a configuration; where there is none, or its forces are not determined, why is noted."""
+def _made(phase_models: PhaseModels, tried: Configuration, refused: list[DerivationError]) -> PhaseModel | None:
+    """The phase of a configuration; where there is none, or its forces are not determined, why is noted."""
     try:
-        stage = stages.of(tried)
+        phase = phase_models.of(tried)
     except DerivationError as error:  # nothing can leave a contact that is open in it, or hold one that sticks
         refused.append(error)
         return None
-    if stage.watch.undetermined is not None:
-        refused.append(stage.watch.undetermined)
-    return stage if stage.watch.undetermined is None else None
+    if phase.watch.undetermined is not None:
+        refused.append(phase.watch.undetermined)
+    return phase if phase.watch.undetermined is None else None
 
 
 def _indeterminate(refused: list[DerivationError]) -> Indeterminate | None:
@@ -92,7 +92,7 @@ def _indeterminate(refused: list[DerivationError]) -> Indeterminate | None:
 
 
 def _sliding(
-    stages: Stages,
+    phase_models: PhaseModels,
     contacts: tuple[Contact, ...],
     t: float,
     values: Values,
@@ -104,7 +104,7 @@ def _sliding(
     if all(contact.mu is None for contact in contacts):
         return {}
     closed = Configuration(Table({c.name: OPEN if c.name in apart else Mode() for c in contacts}), Table(pieces))
-    found, still = stages.slides(closed).at(t, values), smallest_speed(values)
+    found, still = phase_models.slides(closed).at(t, values), smallest_speed(values)
     least = {c.name: max(still, 2 * stopped_below(c)) for c in contacts}
     return {name: 0 if abs(v) <= least[name] else 1 if v > 0 else -1 for name, v in found.items()}
 
@@ -137,13 +137,13 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[M
     return [*modes, OPEN] if contact.unilateral else modes
 
 
-def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
+def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
     """Whether forces and accelerations are such as the configuration says; an N without one value denies nothing."""
-    x = stage.state(values)
-    found = stage.look(t, x)
-    forces, accelerations = stage.sizes(t, x)
-    asked = [contact for contact in stage.contacts if contact.name not in apart]
-    signs = [_signs(stage.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
+    x = phase.state(values)
+    found = phase.look(t, x)
+    forces, accelerations = phase.sizes(t, x)
+    asked = [contact for contact in phase.contacts if contact.name not in apart]
+    signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
     return not any(
         force < -COMPUTED * forces or acceleration < -COMPUTED * accelerations
         for pairs in signs
@@ -152,14 +152,14 @@ def agrees(stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int]
 
 
 def _standing(
-    stage: Stage, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]
+    phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]
 ) -> tuple[str, ...]:
     """The contacts that are to begin sliding or to part, and do not: one way of many in which all of them hold."""
-    x = stage.state(values)
-    found, (_, size) = stage.look(t, x), stage.sizes(t, x)
+    x = phase.state(values)
+    found, (_, size) = phase.look(t, x), phase.sizes(t, x)
     accelerations = {}
-    for contact in stage.contacts:
-        mode, name = stage.watch.mode(contact), contact.name
+    for contact in phase.contacts:
+        mode, name = phase.watch.mode(contact), contact.name
         if mode.closed and mode.sense and not sliding[name]:
             accelerations[name] = found[name, "slide'"]
         elif not mode.closed and name not in apart:

@@ -1,4 +1,4 @@
-"""Projection, tolerance -> Hold: which states of a run are put back onto the ties, and how well they hold there."""
+"""Projection, tolerance -> DriftCorrection: which states of a run are put back onto the ties, how well they hold."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOST = 100.0  # absolute tolerances of a step by which a tie that cannot be clos
 
 
 @dataclass
-class Hold:
+class DriftCorrection:
     """Keeps the states of one run on the ties and the norms of quaternions at 1.
 
     Args:

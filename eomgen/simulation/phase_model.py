@@ -1,4 +1,4 @@
-"""Model, configuration of its contacts -> Stage: the equations of one phase, as functions of numbers."""
+"""Model, configuration of its contacts -> PhaseModel: the equations of one phase, as functions of numbers."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from eomgen.mechanics.equations.wellposed import is_conservative, refuse_massles
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
-from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.configuration import Configuration
+from eomgen.simulation.constraint_rank import Nearness
+from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopped_below
 from eomgen.simulation.measures import nearness_of
-from eomgen.simulation.nearness import Nearness
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import Slope
-from eomgen.simulation.watching import Bound, Watch, stopped_below
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
@@ -35,7 +35,7 @@ Values = Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Stage:
+class PhaseModel:
     """The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose.
 
     Args:
@@ -45,7 +45,7 @@ class Stage:
         target: of the emitted code.
     """
 
-    watch: Watch
+    watch: ContactEvents
     assembly: Assembly
     p: np.ndarray
     target: str | None
@@ -63,7 +63,7 @@ class Stage:
         return self.watch.contacts
 
     @property
-    def bounds(self) -> tuple[Bound, ...]:
+    def bounds(self) -> tuple[EventFunction, ...]:
         return self.watch.bounds
 
     @property
@@ -101,7 +101,7 @@ class Stage:
         return is_conservative(self.system, self.assembly)
 
     def state(self, values: Values) -> np.ndarray:
-        """x of the stage; a displacement that did not exist before is 0."""
+        """x of the phase; a displacement that did not exist before is 0."""
         names = (*self.coordinates, *self.speeds, *map(slack_name, self.loose))
         return np.array([values.get(name, 0.0) for name in names])
 
@@ -189,7 +189,7 @@ class Stage:
         found = [next(ways) if bound.kind == "piece" else self._left(bound, signals) for bound in self.bounds]
         return np.column_stack(found) if found else np.zeros((len(t), 0))
 
-    def _left(self, bound: Bound, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
+    def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
         """What is left of a bound of a contact."""
         name = bound.owner
         mode = self.configuration.modes[name]

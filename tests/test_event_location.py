@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from eomgen.simulation.events import Events
+from eomgen.simulation.event_location import Events
+from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import METHODS
-from eomgen.simulation.stepping import Run, Stepping, march
 
 G = 9.81
 

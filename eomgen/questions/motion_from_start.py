@@ -1,4 +1,4 @@
-"""Model, condition -> Moment: the state at which a motion first meets a condition, exactly where it can be.
+"""Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exactly where it can be.
 
 A motion may pass through several phases: contacts end, rub, stick, a path goes over from one piece to the next. Each
 phase is followed in numbers; the instants between are then sought in closed form, and taken where both agree.
@@ -15,7 +15,6 @@ import numpy as np
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, MissingValues, RunFailed
-from eomgen.instants import Instant, reached
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import system_of
@@ -24,13 +23,14 @@ from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.fields import Equation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
-from eomgen.moments import Moment, carried, parameters_of, placed
-from eomgen.simulation.contacts import by_the_law, has_phases
-from eomgen.simulation.course import Course, Standing, at_start, course_of
+from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
+from eomgen.questions.first_instant import Instant, reached
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
+from eomgen.simulation.configuration import by_the_law, has_phases
 from eomgen.simulation.history import Passage, history
-from eomgen.simulation.stage import Stage
-from eomgen.simulation.stepping import Stepping
-from eomgen.situation import Situation, situation_of, start_of
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
+from eomgen.simulation.phase_model import PhaseModel
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -41,7 +41,7 @@ FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=4000)
 
 
 @dataclass(frozen=True)
-class Journey:
+class MotionFromStart:
     """The motion of a model from its start.
 
     Args:
@@ -65,7 +65,7 @@ class Journey:
             return None
 
     @cached_property
-    def _first(self) -> Standing:
+    def _first(self) -> PhaseStart:
         """Where the phases begin."""
         assert self.course is not None
         return at_start(self.course, 0.0, None, self._start_rates)
@@ -79,13 +79,13 @@ class Journey:
         return {f"{q}'": 0.0 for q in free} if self.at_rest else None
 
     @cached_property
-    def situation(self) -> Situation:
+    def phase(self) -> PhaseEquations:
         """The first phase: contacts as they are at the start; bodies without coordinates rest on theirs."""
         if not self.model.coordinates:
-            return situation_of(self.model, modes_at_rest(self.model))
+            return phase_equations_of(self.model, modes_at_rest(self.model))
         if self.course is None:
-            return situation_of(self.model)
-        return Situation(self.course.stages.of(by_the_law(self.model, self._first.configuration)).system)
+            return phase_equations_of(self.model)
+        return PhaseEquations(self.course.phase_models.of(by_the_law(self.model, self._first.configuration)).system)
 
     @property
     def failure(self) -> str:
@@ -95,7 +95,7 @@ class Journey:
     @cached_property
     def numbers(self) -> dict[Node, float]:
         """t, q and u at the start; {} where parameters are missing."""
-        symbols, found = self.situation.system.symbols, self._consistent
+        symbols, found = self.phase.system.symbols, self._consistent
         if found is None:
             return {}
         return {symbols.t: 0.0} | {node: found.values[node.name] for node in (*symbols.q, *symbols.u)}
@@ -103,7 +103,7 @@ class Journey:
     @cached_property
     def _consistent(self) -> Start | None:
         """The start at which the ties hold; None where parameters are missing."""
-        system = self.situation.system
+        system = self.phase.system
         try:
             numeric_parameters(self.model)
             return start_of_motion(system, start={u.name: 0.0 for u in system.symbols.u} if self.at_rest else {})
@@ -113,16 +113,16 @@ class Journey:
     @cached_property
     def start(self) -> dict[Node, Scalar]:
         """t, q and u at the start as scalars of the parameters; {} where a coordinate has no closed form there."""
-        symbols, found = self.situation.system.symbols, self._consistent
+        symbols, found = self.phase.system.symbols, self._consistent
         moved = {change.name for change in found.changes} if found is not None else set()
-        exact = start_of(self.situation, at_rest=self.at_rest)
+        exact = start_of(self.phase, at_rest=self.at_rest)
         exact = {x: value for x, value in exact.items() if x.name not in moved}
-        known = placed(self.situation, exact, self.numbers)
+        known = placed(self.phase, exact, self.numbers)
         return known if all(x in known for x in (*symbols.q, *symbols.u)) else {}
 
     # -- on the way ------------------------------------------------------------------------------
 
-    def until(self, condition: Equation, side: str | None = None) -> Moment:
+    def until(self, condition: Equation, side: str | None = None) -> StateAtInstant:
         """The first time after the start at which the condition holds.
 
         Args:
@@ -142,15 +142,15 @@ class Journey:
         return found
 
     @cached_property
-    def _moments(self) -> dict[tuple[str, str], Moment | EomgenError]:
+    def _moments(self) -> dict[tuple[str, str], StateAtInstant | EomgenError]:
         """Those that were sought already, and why some are never reached."""
         return {}
 
-    def _until(self, condition: Equation, side: str | None) -> Moment:
+    def _until(self, condition: Equation, side: str | None) -> StateAtInstant:
         if self._is_start(condition):
-            return Moment(self.situation, self.start, self.numbers, "at the start")
-        if self.course is None or self._starts_in_balance(self.situation):
-            return self._within(self.situation, condition, self.start, self.numbers)
+            return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
+        if self.course is None or self._starts_in_balance(self.phase):
+            return self._within(self.phase, condition, self.start, self.numbers)
         return self._through(self._passages(condition), side)
 
     def _is_start(self, condition: Equation) -> bool:
@@ -159,8 +159,8 @@ class Journey:
         Raises:
             RunFailed: nothing that moves stands in the condition.
         """
-        symbols = self.situation.system.symbols
-        scalar = _difference(self.situation, condition)
+        symbols = self.phase.system.symbols
+        scalar = _difference(self.phase, condition)
         if depends_on(scalar, (*symbols.q, *symbols.u)):
             return False
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
@@ -171,43 +171,42 @@ class Journey:
         return holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
     def _within(
-        self, situation: Situation, condition: Equation, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
-    ) -> Moment:
+        self, phase: PhaseEquations, condition: Equation, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
+    ) -> StateAtInstant:
         """In one phase."""
-        instant = _reached(situation, _difference(situation, condition), start, numbers)
-        moment = Moment(situation, placed(situation, instant.exact, instant.numbers), instant.numbers, instant.method)
+        instant = _reached(phase, _difference(phase, condition), start, numbers)
+        moment = StateAtInstant(phase, placed(phase, instant.exact, instant.numbers), instant.numbers, instant.method)
         if self.course is not None:
             self._refuse_ended(moment)
         return moment
 
-    def _starts_in_balance(self, situation: Situation) -> bool:
+    def _starts_in_balance(self, phase: PhaseEquations) -> bool:
         """Whether time does not lead away from the start."""
-        symbols = situation.system.symbols
-        stage = self._stage_of_first
-        if any(self.numbers[u] != 0 for u in symbols.u) or _is_moved_by_time(stage, situation):
+        symbols = phase.system.symbols
+        first = self._numeric_first
+        if any(self.numbers[u] != 0 for u in symbols.u) or _is_moved_by_time(first, phase):
             return False
-        x = stage.state({node.name: value for node, value in self.numbers.items()})
+        x = first.state({node.name: value for node, value in self.numbers.items()})
         with np.errstate(all="ignore"):
-            rates = stage.rate(0.0, x)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
+            rates = first.rate(0.0, x)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
         return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < COMPUTED
 
     @property
-    def _stage_of_first(self) -> Stage:
+    def _numeric_first(self) -> PhaseModel:
         assert self.course is not None
-        return self.course.stages.of(self._first.configuration)
+        return self.course.phase_models.of(self._first.configuration)
 
-    def _refuse_ended(self, moment: Moment) -> None:
+    def _refuse_ended(self, moment: StateAtInstant) -> None:
         """Refuse an instant that a motion from an unstable rest would reach with contacts that have ended before.
 
         Raises:
             RunFailed: a contact is named.
         """
-        stage = self._stage_of_first
-        values = {**parameters_of(moment.situation), **moment.numbers}
-        for bound in stage.bounds:
+        values = {**parameters_of(moment.phase), **moment.numbers}
+        for bound in self._numeric_first.bounds:
             if bound.value is None or bound.kind not in ("ends", "turns", "closes"):
                 continue
-            scalar = moment.situation.eliminated(bound.value)
+            scalar = moment.phase.eliminated(bound.value)
             there = evaluate((scalar,), values, FLOAT)[0]
             size = abs(evaluate((scalar,), {**values, **self.numbers}, FLOAT)[0])
             if math.isfinite(there) and there < -CARRIED * max(1.0, size):
@@ -223,8 +222,8 @@ class Journey:
         """
         p = parameter_vector(self.model)
 
-        def until(stage: Stage) -> Scalar:
-            return _difference(Situation(stage.system), condition)
+        def until(phase: PhaseModel) -> Scalar:
+            return _difference(PhaseEquations(phase.system), condition)
 
         for horizon in HORIZONS:
             found = history(self.model, p, self._start_rates, until=until, time=horizon, how=FINE)
@@ -234,41 +233,41 @@ class Journey:
                 raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].message}")
         raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
 
-    def _through(self, passages: tuple[Passage, ...], side: str | None) -> Moment:
+    def _through(self, passages: tuple[Passage, ...], side: str | None) -> StateAtInstant:
         """The end of the last phase, every end before it sought in closed form."""
-        moment = Moment(self.situation, self.start, {}, "")
+        moment = StateAtInstant(self.phase, self.start, {}, "")
         for k, passage in enumerate(passages):
-            situation = Situation(passage.stage.system)
-            exact = {} if k and _jumps(passages[k - 1].end, passage.start) else carried(moment, situation)
-            moment = _end_of(situation, passage, exact)
+            phase = PhaseEquations(passage.phase.system)
+            exact = {} if k and _jumps(passages[k - 1].end, passage.start) else carried(moment, phase)
+            moment = _end_of(phase, passage, exact)
         after = passages[-1].after
         if side != "after" or after is None:
             return moment
-        stage, values = after
-        situation = Situation(stage.system)
-        exact = {} if _jumps(passages[-1].end, values) else carried(moment, situation)
-        return Moment(situation, exact, _numbers(situation, passages[-1].t_1, values), moment.method)
+        following, values = after
+        phase = PhaseEquations(following.system)
+        exact = {} if _jumps(passages[-1].end, values) else carried(moment, phase)
+        return StateAtInstant(phase, exact, _numbers(phase, passages[-1].t_1, values), moment.method)
 
 
-def _end_of(situation: Situation, passage: Passage, start: Mapping[Node, Scalar]) -> Moment:
+def _end_of(phase: PhaseEquations, passage: Passage, start: Mapping[Node, Scalar]) -> StateAtInstant:
     """The end of a phase: in numbers as it was run, exact where that agrees."""
-    numbers = _numbers(situation, passage.t_1, passage.end)
-    by_time = Moment(situation, {}, numbers, "integration in time")
+    numbers = _numbers(phase, passage.t_1, passage.end)
+    by_time = StateAtInstant(phase, {}, numbers, "integration in time")
     if not start or passage.value is None:
         return by_time
-    begin = _numbers(situation, passage.t_0, passage.start)
+    begin = _numbers(phase, passage.t_0, passage.start)
     try:
-        instant = _reached(situation, situation.eliminated(passage.value), start, begin)
+        instant = _reached(phase, phase.eliminated(passage.value), start, begin)
     except EomgenError:
         return by_time
-    located = Located({**parameters_of(situation), **numbers}, situation.positive)
+    located = Located({**parameters_of(phase), **numbers}, phase.positive)
     exact = {node: x for node, x in instant.exact.items() if located.agrees(x, node)}
-    return Moment(situation, placed(situation, exact, numbers), numbers, instant.method)
+    return StateAtInstant(phase, placed(phase, exact, numbers), numbers, instant.method)
 
 
-def _numbers(situation: Situation, t: float, values: Mapping[str, float]) -> dict[Node, float]:
+def _numbers(phase: PhaseEquations, t: float, values: Mapping[str, float]) -> dict[Node, float]:
     """A state by the symbols of a phase; a displacement that does not exist yet is 0."""
-    symbols = situation.system.symbols
+    symbols = phase.system.symbols
     return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
 
 
@@ -278,20 +277,20 @@ def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
     return any(abs(end[name] - start[name]) > CARRIED * (1 + abs(end[name])) for name in common)
 
 
-def _is_moved_by_time(stage: Stage, situation: Situation) -> bool:
+def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
     """Whether given motions, or forces that change with time, can end a rest."""
-    symbols, coordinates = situation.system.symbols, situation.model.coordinates
+    symbols, coordinates = phase.system.symbols, phase.model.coordinates
     moving = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
-    bounds = (situation.eliminated(bound.value) for bound in stage.bounds if bound.value is not None)
-    return any(depends_on(scalar, moving) for scalar in (*situation.accelerations, *bounds))
+    bounds = (phase.eliminated(bound.value) for bound in first.bounds if bound.value is not None)
+    return any(depends_on(scalar, moving) for scalar in (*phase.accelerations, *bounds))
 
 
-def _difference(situation: Situation, condition: Equation) -> Scalar:
+def _difference(phase: PhaseEquations, condition: Equation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
-    return situation.of_state(condition.left) - situation.of_state(condition.right)
+    return phase.of_state(condition.left) - phase.of_state(condition.right)
 
 
 def _reached(
-    situation: Situation, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
+    phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> Instant:
-    return reached(situation.system, situation.assembly, situation.accelerations, condition, start, numbers)
+    return reached(phase.system, phase.assembly, phase.accelerations, condition, start, numbers)

@@ -47,7 +47,7 @@ class Crossing:
 
 
 @dataclass
-class Watch:
+class EventSearch:
     """Follows the functions of `events` from step to step.
 
     Args:

@@ -10,13 +10,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.codegen.spheres import Places
-from eomgen.simulation.events import Crossing, Events, Watch
-from eomgen.simulation.holding import Hold
-from eomgen.simulation.knots import step
+from eomgen.simulation.breakpoints import step
+from eomgen.simulation.constraint_drift import DriftCorrection
+from eomgen.simulation.event_location import Crossing, Events, EventSearch
 from eomgen.simulation.projection import Projection
+from eomgen.simulation.result import Status
 from eomgen.simulation.solvers import NotFinite, Rate, Slope, put, solver_of
-from eomgen.simulation.track import Track
-from eomgen.simulation.trajectory import Status
+from eomgen.simulation.step_states import StepStates
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_RTOL, RUN
 
 MOST_STEPS = 10_000_000
@@ -56,9 +56,10 @@ class Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         return replace(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
 
-    def hold(self, spheres: Sequence[Places], projection: Projection | None) -> Hold:
+    def hold(self, spheres: Sequence[Places], projection: Projection | None) -> DriftCorrection:
         """What keeps the states of one run where they belong; the norms of quaternions always."""
-        return Hold(spheres, projection if self.stabilization == "projection" else None, self.atol, self.every)
+        kept = projection if self.stabilization == "projection" else None
+        return DriftCorrection(spheres, kept, self.atol, self.every)
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class Run:
     steps: int
     evaluations: int
     crossing: Crossing | None = None
-    tracks: tuple[Track, ...] = ()
+    tracks: tuple[StepStates, ...] = ()
     carried: tuple[tuple[float, float], ...] = ()
 
 
@@ -97,7 +98,7 @@ class Lookout(Protocol):
 class _Watches:
     """Both kinds of what ends a run."""
 
-    watch: Watch | None
+    watch: EventSearch | None
     lookout: Lookout | None
 
     def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Dense) -> Crossing | None:
@@ -112,10 +113,10 @@ class _Rows:
     """The rows of a run as they come: at the instants asked for, or (None) at the integrator's own steps."""
 
     instants: np.ndarray | None
-    hold: Hold
+    hold: DriftCorrection
     t: list[np.ndarray]
     x: list[np.ndarray]
-    track: Track
+    track: StepStates
 
     def add(self, span: tuple[float, float], x_new: np.ndarray, dense: Dense) -> None:
         """The instants of a step, its beginning left out, or its end; x_new is the state there."""
@@ -169,9 +170,9 @@ def march(
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
-    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], Track([start], [x0]))
+    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]))
     solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
-    watch = Watch(events, start, x0) if events is not None else None
+    watch = EventSearch(events, start, x0) if events is not None else None
     status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how)
     t, x = (float(solver.t), solver.y) if crossing is None else (crossing.t, crossing.x)
     if status != "finished":
