@@ -28,13 +28,13 @@ from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 if TYPE_CHECKING:
     from eomgen.report.statements import Derivation
 
 FEW = 200  # operations of a matrix that a person reads
-WORK = 2_000  # products of terms for one of its entries
 
 
 @dataclass(frozen=True)
@@ -226,7 +226,7 @@ def _matrix(rows: tuple[tuple[Any, ...], ...], columns: int) -> Any:
 
 def _written(entries: Sequence[Any]) -> list[Any]:
     """Each multiplied out where that is shorter."""
-    return [min(x, y, key=text_size) for x, y in zip(readable_all(entries, WORK), entries, strict=True)]
+    return [min(x, y, key=text_size) for x, y in zip(readable_all(entries, Work.ENTRY), entries, strict=True)]
 
 
 def _column(entries: tuple[Any, ...]) -> Any:

@@ -53,3 +53,33 @@ def test_every_tolerance_is_used():
 @pytest.mark.parametrize("planted", ["x = 1e-9", "def f(tol=5e-16): pass", "g(rcond=0.0001)", "c = 'if (x < 1e-12)'"])
 def test_a_planted_tolerance_is_seen(planted):
     assert small_numbers(planted) == [1]
+
+
+BUDGETED = set(
+    "normal_form equal readable readable_all collected_in common_factor cancelled simplest legible "
+    "gathered with_squares rooted roots readable_over expanded Expansion reactions_of solution_of_balance".split()
+)
+
+
+def own_budgets(source: str) -> list[int]:
+    """Lines where a budget of work is a number of the module: a literal, or a constant that is no level of Work."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in BUDGETED):
+            continue
+        given = [*node.args[1:], *(k.value for k in node.keywords if k.arg in ("limit", "work"))]
+        numbers = [x for x in given if isinstance(x, ast.Constant) and type(x.value) is int and x.value >= 100]
+        names = [x for x in given if isinstance(x, ast.Name) and x.id in ("WORK", "LIMIT")]
+        found += [x.lineno for x in (*numbers, *names)]
+    return found
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
+def test_no_module_holds_a_budget_of_its_own(path):
+    """Products of terms come in the levels of eomgen/symbolic/numeric/work.py."""
+    assert own_budgets(path.read_text()) == []
+
+
+@pytest.mark.parametrize("planted", ["readable(x, 2000)", "reactions_of(s, work=300)", "cancelled(x, WORK)"])
+def test_a_planted_budget_is_seen(planted):
+    assert own_budgets(planted) == [1]

@@ -41,9 +41,9 @@ from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import linear
 
-WORK = 50_000  # products of terms for making one formula readable
 LONG = 400  # characters from which a formula is no easier to read than it came
 State = Mapping[Node, Scalar]
 
@@ -137,7 +137,7 @@ class PhaseEquations:
         """A scalar in its most readable form; as it came where multiplying out made it longer still."""
         known = self._legible
         if scalar not in known:
-            found = legible(scalar, WORK, self.positive, LONG)
+            found = legible(scalar, Work.ANSWER, self.positive, LONG)
             known |= {scalar: found, found: found}
         return known[scalar]
 
@@ -243,7 +243,7 @@ class PhaseEquations:
         entries = substituted([x for row in rows for x in row.values()], state)
         needed = substituted(right, state)
         if readable:
-            entries, needed = (readable_all(x, WORK, self.positive) for x in (entries, needed))
+            entries, needed = (readable_all(x, Work.ANSWER, self.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
         solution = linear.solved(rows, needed, len(right), values_at_a_state(self.system, entries))

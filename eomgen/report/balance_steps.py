@@ -20,7 +20,6 @@ from eomgen.symbolic.print.layout import terms
 from eomgen.symbolic.print.text import text_size
 
 BOOK = 12_000  # characters of the equations of all bodies together
-WORK = 2000  # products of terms for dividing a coefficient by the factor of friction
 
 INERTIA = Law(
     "F_in = -m*a, M_in = -d/dt(I*omega)",

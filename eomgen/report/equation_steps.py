@@ -13,7 +13,6 @@ from eomgen.report.reading import (
     LARGEST_DIVISOR,
     LONGEST,
     NAMED_PART,
-    WORK,
     Reader,
     Shortened,
     conditions_in,
@@ -28,6 +27,7 @@ from eomgen.symbolic.exact.normal_form import cancelled, common_factor, readable
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.decimals import number_text
 from eomgen.symbolic.print.layout import factors, products_of
 from eomgen.symbolic.print.text import text_size
@@ -230,14 +230,14 @@ def _quotient(reader: Reader, graph: Graph, above: Scalar, below: Scalar) -> Sca
     """above / below in its shorter form: as one quotient without common factors, or as a sum."""
     if conditions_in(above):
         return readable_value(reader, graph.div(above, below))
-    one = cancelled(graph.div(above, below), WORK)
+    one = cancelled(graph.div(above, below), Work.ENTRY)
     several = reader.shown(one) if reader.roots else one
     return one if isinstance(several, Omitted) or length_in_print(one) <= length_in_print(several) else several
 
 
 def _in_whole_numbers(left: Scalar, right: Scalar) -> tuple[Scalar, Scalar]:
     """Both sides multiplied so that no fractions are left in them, where that number is small."""
-    number, _ = common_factor((left, right), WORK)
+    number, _ = common_factor((left, right), Work.ENTRY)
     if number.denominator > LARGEST_DIVISOR:
         return left, right
     return number.denominator * left, number.denominator * right
@@ -246,8 +246,10 @@ def _in_whole_numbers(left: Scalar, right: Scalar) -> tuple[Scalar, Scalar]:
 def _by_cramer(sides: Sequence[tuple[Scalar, Scalar]], a: Sequence[Node]) -> tuple[Scalar, list[Scalar]]:
     """(determinant, numerators) of left = right, which is linear in a."""
     M = [[_coefficient(left, x) for x in a] for left, _ in sides]
-    rest = [readable(right - _without(left, a), WORK) for left, right in sides]
-    return readable(_determinant(M), WORK), [readable(_determinant(_replaced(M, k, rest)), WORK) for k in range(len(a))]
+    rest = [readable(right - _without(left, a), Work.ENTRY) for left, right in sides]
+    return readable(_determinant(M), Work.ENTRY), [
+        readable(_determinant(_replaced(M, k, rest)), Work.ENTRY) for k in range(len(a))
+    ]
 
 
 def _coefficient(x: Scalar, a: Node) -> Scalar:

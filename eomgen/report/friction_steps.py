@@ -14,13 +14,14 @@ from eomgen.mechanics.equations.assembly import Assembly, Row
 from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
-from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, decided, length_in_print, readable_value
+from eomgen.report.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.report.statements import Formula, Omitted, Prose, Step
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 LONGEST = 240  # characters of an acceleration in print
@@ -55,7 +56,7 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
     senses = _senses(letters, system)
     forces: list[Scalar] = [0] * len(system.symbols.u)
     shown = {symbol: function(x.op, readable_value(reader, x.args[0])) for x, symbol in senses.items()}
-    definitions = [(symbol, simplest(x, WORK, readings.positive)) for symbol, x in shown.items()]
+    definitions = [(symbol, simplest(x, Work.ENTRY, readings.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
     for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]

@@ -19,12 +19,12 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 PAGE = 6000  # characters of all reactions in print
 CLEARER = 1.5  # times as long as without accelerations: then the form with them is left out
 SHORT = 240  # characters of a reaction in which no acceleration is left
-WORK = 2000  # products of terms for one of them
 VERB = Code("eomgen reactions MODEL")
 
 
@@ -119,7 +119,7 @@ def along_the_motion(system: System, reader: Reader, assembly: Assembly, letters
     if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:
         return ()
     known, u = rates, tuple(rates)
-    squares = [(u * u, simplest(x * x, WORK, positive)) for u, x in rates.items()]
+    squares = [(u * u, simplest(x * x, Work.ENTRY, positive)) for u, x in rates.items()]
     formulas: list[Statement] = []
     rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
     for j, symbol in enumerate(letters.symbols):

@@ -17,10 +17,11 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.report.reading import TRIED, WORK, Reader, conditions_in, length_in_print, readable_value
+from eomgen.report.reading import TRIED, Reader, conditions_in, length_in_print, readable_value
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 LONGEST = 3000  # characters of accelerations that are put into reactions
@@ -75,7 +76,7 @@ class Readings:
     def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
         """The shortest of the values after a replacement; None where all of them are long."""
         short = [
-            simplest(y, WORK, self.positive) if not conditions_in(y) else y
+            simplest(y, Work.ENTRY, self.positive) if not conditions_in(y) else y
             for x in values
             if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED
         ]

@@ -14,10 +14,10 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import SUMS, factors
 from eomgen.symbolic.print.text import named_parts, text_size, to_text
 
-WORK = 2000  # products of terms that are multiplied out for one formula
 LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
 TRIED = 20_000  # characters: what is longer by far will not become short
@@ -90,13 +90,13 @@ class Reader:
         """
         held = [symbol for symbol in order((x,)) if symbol in self.roots]
         try:
-            if len(normal_form(x, WORK).terms) > WAVES:
+            if len(normal_form(x, Work.ENTRY).terms) > WAVES:
                 return None
-            short = readable_over(x, held, WORK)
+            short = readable_over(x, held, Work.ENTRY)
         except TooLarge:
             return None
         if self.gathers and not held:
-            short = min(short, gathered(x, WORK), with_squares(x, WORK), key=length_in_print)
+            short = min(short, gathered(x, Work.ENTRY), with_squares(x, Work.ENTRY), key=length_in_print)
         left_alone = held or holds_roots(x)
         return x if left_alone and length_in_print(x) < length_in_print(short) else short
 
@@ -106,7 +106,7 @@ class Reader:
 
     def with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """The scalars as they are, but with a symbol for each root of a sum."""
-        over = rooted(scalars, WORK)
+        over = rooted(scalars, Work.ENTRY)
         self.roots |= dict(over.roots)
         return over.expressions
 
@@ -131,7 +131,7 @@ class Reader:
         if holds_roots(left, right) or (is_zero(left) and is_zero(right)):
             return left, right, 1
         graph = next(x.graph for x in (left, right) if type(x) is Node)
-        number, product = common_factor((left, right), WORK, tuple(self.roots))
+        number, product = common_factor((left, right), Work.ENTRY, tuple(self.roots))
         small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR
         found: list[tuple[Scalar, Scalar, Scalar]] = []
         for divisor in (number * product, product) if small else (product,):
@@ -209,7 +209,7 @@ def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = (
     shown = reader.shown(value)
     if type(value) is not Node or text_size(value) > DIVIDED:
         return value if isinstance(shown, Omitted) else shown
-    one = simplest(value, WORK, positive)
+    one = simplest(value, Work.ENTRY, positive)
     return one if isinstance(shown, Omitted) or length_in_print(one) < length_in_print(shown) else shown
 
 

@@ -14,10 +14,11 @@ from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
-from eomgen.symbolic.exact.normal_form import LIMIT, readable_all
+from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
 from eomgen.symbolic.solve.scaling import solved
 
@@ -30,7 +31,7 @@ class Indeterminate(DerivationError):
 
 
 def solution_of_balance(
-    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1, work: int = LIMIT
+    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1, work: int = Work.ANSWER
 ) -> Solution:
     """The reactions, and unknowns of the loads, that balance all bodies.
 

@@ -14,8 +14,8 @@ from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.work import Work
 
-WORK = 20_000  # products of terms for one equation
 Row = dict[int, Scalar]
 
 
@@ -43,12 +43,12 @@ def _turn(link: Link, three: Sequence[int], rows: list[Row], needed: list[Scalar
     own = sorted({j for n in three for j in rows[n]})
     columns = {j: [rows[n].get(j, 0) for n in three] for j in own}
     turned = [
-        dict(zip(own, readable_all(tuple(inner(r, c) for c in columns.values()), WORK), strict=True))
+        dict(zip(own, readable_all(tuple(inner(r, c) for c in columns.values()), Work.VALUE), strict=True))
         for r in link.pose.R
     ]
     if _work(x for row in turned for x in row.values()) >= _work(x for c in columns.values() for x in c):
         return
-    right = readable_all(tuple(inner(r, [needed[n] for n in three]) for r in link.pose.R), WORK)
+    right = readable_all(tuple(inner(r, [needed[n] for n in three]) for r in link.pose.R), Work.VALUE)
     for n, row, value in zip(three, turned, right, strict=True):
         rows[n], needed[n] = {j: x for j, x in row.items() if not is_zero(x)}, value
 

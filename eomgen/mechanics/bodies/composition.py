@@ -11,8 +11,7 @@ from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import matrix_of, vector_of
-
-WORK = 20_000  # products of terms for making the pieces' formulas short
+from eomgen.symbolic.numeric.work import Work
 
 
 def made_of(scope: Scope, body: str) -> Composite:
@@ -26,7 +25,7 @@ def _put_together(scope: Scope, body: str) -> Composite:
     part = scope.model.bodies[body]
     composite = composite_of(part.parts or (), part.mass, scope.value)
     everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
-    flat = readable_all([x for mass in everything for x in _flat(mass)], WORK, positive_parameters(scope))
+    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, positive_parameters(scope))
     whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
     pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
     return Composite(pieces, whole)

@@ -28,8 +28,7 @@ from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, Wrench, apply, cross, dot, plus, times, transposed
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-
-READABLE = 2000  # products of terms for a length or a direction
+from eomgen.symbolic.numeric.work import Work
 
 
 @dataclass(frozen=True)
@@ -263,7 +262,7 @@ class SystemScene:
 
     def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """The scalars multiplied out, roots of squares of positive parameters taken."""
-        return readable_all(scalars, READABLE, positive_parameters(self.motion.scope))
+        return readable_all(scalars, Work.ENTRY, positive_parameters(self.motion.scope))
 
     def worth(self, scalar: Scalar) -> float | None:
         """The number that the scalar is at the start with the model's values (None: some are missing)."""

@@ -23,10 +23,10 @@ from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import has_period, roots, vanishes
 
-LIMIT = 20_000  # products of terms for making one equation readable
 PAGE = 1000  # characters of a root, and of an equation of a loop that is solved for one
 SHORT = 40  # characters of a root that is put into other equations first
 
@@ -72,7 +72,7 @@ class Located:
 
     def root(self, equation: Scalar, node: Node) -> Scalar | None:
         """The root of the equation that the node is worth there."""
-        return self.chosen(roots(equation, node, self.positive, LIMIT), node, equation)
+        return self.chosen(roots(equation, node, self.positive, Work.VALUE), node, equation)
 
 
 def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
@@ -82,7 +82,7 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
         equations: what vanishes.
         located: a state near which the unknowns lie, in numbers.
     """
-    left = [simplest(x, LIMIT, located.positive) for x in equations]
+    left = [simplest(x, Work.VALUE, located.positive) for x in equations]
     relations: dict[Node, Scalar] = {}
     found: dict[Node, Scalar] = {}
     while left:
@@ -100,7 +100,7 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
             break
     found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
     known = {node: value for node, value in found.items() if not depends_on(value, unknowns)}
-    return {node: simplest(value, LIMIT, located.positive) for node, value in known.items()}
+    return {node: simplest(value, Work.VALUE, located.positive) for node, value in known.items()}
 
 
 Step = tuple[Node, Scalar, int]
@@ -133,7 +133,7 @@ def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Locat
         for q in _held(equation, unknowns):
             if in_loop and _waves(equation, q) is not None:
                 continue
-            candidates = roots(equation, q, located.positive, LIMIT)
+            candidates = roots(equation, q, located.positive, Work.VALUE)
             root = located.chosen(candidates, q, equation)
             if root is not None and len(candidates) == 1:
                 return q, root, i
@@ -180,7 +180,7 @@ def _without_angle(first: Waves, second: Waves, located: Located) -> Scalar:
     (a1, b1, r1), (a2, b2, r2) = first, second
     below = a1 * b2 - a2 * b1
     cosine, sine = r2 * b1 - r1 * b2, r1 * a2 - r2 * a1
-    return simplest(cosine * cosine + sine * sine - below * below, LIMIT, located.positive)
+    return simplest(cosine * cosine + sine * sine - below * below, Work.VALUE, located.positive)
 
 
 def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple[int, int, Node, Waves, Waves]]:

@@ -31,10 +31,10 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import linear
 
-WORK = 5_000  # products of terms for making an integral readable
 LONGEST = 400  # characters of a form that is integrated in closed form
 
 Form = tuple[Scalar, ...]
@@ -199,16 +199,16 @@ def integral_of(ties: Ties, form: Form) -> Scalar | None:
     scope = ties.motion.scope
     y = (*scope.symbols.q, scope.symbols.t)
     positive = positive_parameters(scope)
-    entries = [simplest(x, WORK, positive) for x in form]
+    entries = [simplest(x, Work.FORMULA, positive) for x in form]
     if sum(text_size(x) for x in entries) > LONGEST:
         return None
     for factor in _factors(entries):
         try:
-            found = _potential([simplest(x * factor, WORK, positive) for x in entries], y)
+            found = _potential([simplest(x * factor, Work.FORMULA, positive) for x in entries], y)
         except (EomgenError, NoValue, ZeroDivisionError):  # no closed form
             found = None
         if found is not None:
-            return simplest(found - SystemScene(ties.motion).start(found), WORK, positive)
+            return simplest(found - SystemScene(ties.motion).start(found), Work.FORMULA, positive)
     return None
 
 
@@ -227,7 +227,7 @@ def _potential(form: Sequence[Scalar], y: Sequence[Node]) -> Scalar | None:
         rest = w - (gradient(phi, y)[k] if type(phi) is Node else 0)
         if is_zero(rest) or holds_identically(rest):
             continue
-        gained = primitive(simplest(rest, WORK), y[k])
+        gained = primitive(simplest(rest, Work.FORMULA), y[k])
         if gained is None:
             return None
         phi = phi + gained

@@ -24,11 +24,11 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import solved
 from eomgen.symbolic.solve.solving import vanishes
 
-WORK = 20_000  # products of terms for one value
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
 LONGEST = 600  # characters of these equations
 PATIENCE = 2  # places without a closed form, before equations are no more tried at others
@@ -131,10 +131,10 @@ class ClosedForms:
             right = tuple(-x for x in substituted((*statics.Q, *alone), q))
             if not all(map(_is_nothing, phi)):
                 return None
-            entries = readable_all([x for row in rows for x in row], WORK) if rows and statics.lam else ()
+            entries = readable_all([x for row in rows for x in row], Work.VALUE) if rows and statics.lam else ()
             solution = solved(
                 [{j: entries[len(statics.lam) * k + j] for j in range(len(statics.lam))} for k in range(len(rows))],
-                readable_all(right, WORK),
+                readable_all(right, Work.VALUE),
                 len(statics.lam),
                 lambda scalars: evaluate(scalars, self.values, fifty_digits()),
             )
@@ -143,9 +143,9 @@ class ClosedForms:
         if not all(map(_is_nothing, solution.left)):
             return None
         positive = positive_parameters(self.statics.system.scope)
-        lam = {statics.lam[j]: simplest(x, WORK, positive) for j, x in solution.constants.items()}
+        lam = {statics.lam[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
         single = {statics.lam[j] for j in solution.constants if solution.determined(j)}
-        place = {node: simplest(x, WORK, positive) for node, x in q.items()}
+        place = {node: simplest(x, Work.VALUE, positive) for node, x in q.items()}
         return Held(
             {**place, **{node: x for node, x in lam.items() if node in single}},
             {**dict.fromkeys(statics.lam, 0), **lam},

@@ -15,9 +15,9 @@ from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 
-WORK = 20_000  # products of terms for P
 HIGHEST = 8  # derivative of V that is looked at
 MOST_COORDINATES = 6  # of ties along which derivatives are taken
 
@@ -43,7 +43,7 @@ class _Way:
         w = self._way()
         if w is None:
             return "undecided", "the second variation of V vanishes"
-        P = readable(sum((a * b for a, b in zip(self.statics.Q, w, strict=True)), start=0), WORK)
+        P = readable(sum((a * b for a, b in zip(self.statics.Q, w, strict=True)), start=0), Work.VALUE)
         sizes: list[float] = []
         for order in range(1, HIGHEST + 1):
             value, size = self._value_and_size(P)

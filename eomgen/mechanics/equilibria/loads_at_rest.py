@@ -18,10 +18,9 @@ from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution, solved
 from eomgen.symbolic.solve.solving import vanishes
-
-WORK = 20_000  # products of terms for one value
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ def holding_of(system: System) -> Holding:
     _refuse_undetermined(statics, solution)
     positive = positive_parameters(statics.system.scope)
     found = {
-        node: simplest(solution.constants[j], WORK, positive)
+        node: simplest(solution.constants[j], Work.VALUE, positive)
         for j, node in enumerate((*statics.loaded, *statics.lam))
         if solution.determined(j)
     }
@@ -82,11 +81,11 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
                     "let it stand alone, times what is known",
                 )
     right = [-x for x in substituted(substituted(statics.forces, dict.fromkeys(sought, 0)), place)]
-    flat = iter(readable_all(substituted([x for row in slopes for x in row], place), WORK))
+    flat = iter(readable_all(substituted([x for row in slopes for x in row], place), Work.VALUE))
     rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
     values = values_of_parameters(statics.system.scope, Random(3))
     return solved(
-        rows, readable_all(right, WORK), len(sought), lambda scalars: evaluate(scalars, values, fifty_digits())
+        rows, readable_all(right, Work.VALUE), len(sought), lambda scalars: evaluate(scalars, values, fifty_digits())
     )
 
 

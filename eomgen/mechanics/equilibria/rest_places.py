@@ -19,6 +19,7 @@ from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
 from eomgen.symbolic.numeric.newton import Descent
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.solving import has_period
 
@@ -35,7 +36,6 @@ MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn fr
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
 CLUSTER = 1e-3  # distance of an undecided box from a root, at which it belongs to that root
-WORK = 20_000  # products of terms for the equation of one freedom
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class _Search:
             return statics.Q if not statics.phi else None
         if len(statics.J) == len(statics.phi) == n - 1:
             determinant = cramer.determinant((statics.Q, *statics.J))
-            return (readable(determinant, WORK), *statics.phi)
+            return (readable(determinant, Work.VALUE), *statics.phi)
         return None
 
     def _isolated(self, equations: tuple[Scalar, ...]) -> Places:

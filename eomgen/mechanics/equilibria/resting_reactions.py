@@ -12,12 +12,10 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.symbolic.exact.normal_form import LIMIT, simplest
+from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
-
-WORK = 20_000  # products of terms for one value
-ROUNDED = 300  # for one coefficient where the place is known in numbers only, and so are the reactions
+from eomgen.symbolic.numeric.work import Work
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
         DerivationError: a force acts at no place, so that reactions do not follow.
     """
     system, state = system_at_rest(place), state_of(place)
-    reactions = reactions_of(system, state, work=LIMIT if place.is_exact else ROUNDED)
+    reactions = reactions_of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
     positive = positive_parameters(system.scope)
     found = []
     for named in named_reactions(reactions.balance):
@@ -64,7 +62,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
         try:
             sum_ = reactions.combined(dict(zip(named.combination, factors, strict=True)), named.name)
             value = sum_ + given
-            found.append(RestingReaction(named, simplest(value, WORK, positive) if place.is_exact else value))
+            found.append(RestingReaction(named, simplest(value, Work.VALUE, positive) if place.is_exact else value))
         except Indeterminate:
             found.append(RestingReaction(named, None))
     return reactions, tuple(found)

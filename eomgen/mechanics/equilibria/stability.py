@@ -31,10 +31,10 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import balanced, without_noise
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE, RANK_NEARBY, ROUNDING, TINIEST
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer, linear
 from eomgen.symbolic.solve.solving import vanishes
 
-WORK = 20_000  # products of terms for one entry of K
 MOST_EXACT = 6  # freedoms of a K that is written exactly
 
 Matrix = tuple[tuple[Any, ...], ...]
@@ -204,7 +204,7 @@ class _Place:
                 ]
                 for a in range(len(along))
             ]
-            return tuple(tuple(simplest(x, WORK, positive) for x in row) for row in rows)
+            return tuple(tuple(simplest(x, Work.VALUE, positive) for x in row) for row in rows)
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
 
@@ -306,4 +306,4 @@ def _as_exact(K: np.ndarray, size: float) -> Matrix:
 
 def _minors(K: Matrix) -> tuple[Scalar, ...]:
     """det of the leading parts."""
-    return tuple(simplest(cramer.determinant([row[:n] for row in K[:n]]), WORK) for n in range(1, len(K) + 1))
+    return tuple(simplest(cramer.determinant([row[:n] for row in K[:n]]), Work.VALUE) for n in range(1, len(K) + 1))

@@ -32,10 +32,9 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import RANK
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
-
-WORK = 5_000  # products of terms for one equation
 
 Row = tuple[Scalar, ...]
 State = Mapping[Node, Scalar]
@@ -167,13 +166,13 @@ def static_equations(system: System) -> StaticEquations:
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
-    rows = [readable_all(substituted(row, given), WORK) for row in free.ties.J]
+    rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
     forces = generalized_forces(free.loads)
     _refuse_signs_of_rates(forces, free)
     Q = substituted(forces, given)
     unbalanced = substituted(powered_forces(free.loads), given)
     phi = _relations(system, given, q)
-    Q, unbalanced, phi = (readable_all(x, WORK) if x else () for x in (Q, unbalanced, phi))
+    Q, unbalanced, phi = (readable_all(x, Work.FORMULA) if x else () for x in (Q, unbalanced, phi))
     lam = free.symbols.lam
     kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
     statics = StaticEquations(

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.fields.curves import WORK, Curve, curve_of
+from eomgen.mechanics.fields.curves import Curve, curve_of
 from eomgen.mechanics.fields.field import field_of, rotation_center
 from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import Vector, vector_of
+from eomgen.symbolic.numeric.work import Work
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,9 @@ def centrodes_of(kinds: Kinds, body: str) -> Centrodes | None:
     except DerivationError:
         return None
     places = (x, y, z), in_body(system, body, (x, y, z))
-    fixed, moving = (vector_of(simplest(each, WORK, kinds.constants.positive) for each in place) for place in places)
+    fixed, moving = (
+        vector_of(simplest(each, Work.VALUE, kinds.constants.positive) for each in place) for place in places
+    )
     if depends_on(x, system.symbols.u) or len(system.symbols.u) > 1:
         return None
     curves = [curve_of(place, kinds.possible, kinds.constants) for place in (fixed, moving)]

@@ -17,8 +17,8 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, plus, times, vector_of
+from eomgen.symbolic.numeric.work import Work
 
-WORK = 20_000  # products of terms for making one formula readable
 TRIED = (Fraction(0), Fraction(1), Fraction(1, 2), Fraction(2))  # values of what a constant does not depend on
 
 
@@ -57,12 +57,12 @@ class Constants:
         """The constant as a function of the parameters; None where it has no closed form."""
         symbols = self.possible.system.symbols
         moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
-        x = simplest(x, WORK, self.positive)
+        x = simplest(x, Work.VALUE, self.positive)
         if not depends_on(x, moving):
             return x
         for state in self._states(moving):
             try:
-                found = simplest(substituted((x,), state)[0], WORK, self.positive)
+                found = simplest(substituted((x,), state)[0], Work.VALUE, self.positive)
             except DerivationError:  # a division by zero there
                 continue
             if not depends_on(found, moving):
@@ -79,7 +79,7 @@ class Constants:
         symbols = self.possible.system.symbols
         moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a)
         for state in self._states(moving):
-            x, y, z = (simplest(x, WORK, self.positive) for x in substituted(place, state))
+            x, y, z = (simplest(x, Work.VALUE, self.positive) for x in substituted(place, state))
             if not any(depends_on(each, moving) for each in (x, y, z)):
                 return (x, y, z)
         return None

@@ -21,8 +21,7 @@ from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, rela
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-
-LIMIT = 50_000  # products of terms for one value
+from eomgen.symbolic.numeric.work import Work
 
 State = dict[Node, Scalar]
 
@@ -57,7 +56,7 @@ class ClosedInstant:
         (equation,) = substituted((self.condition,), laws)
         if depends_on(equation, self._moving):
             return {}
-        instant = self.located.root(simplest(equation, LIMIT, self.located.positive), t)
+        instant = self.located.root(simplest(equation, Work.ANSWER, self.located.positive), t)
         if instant is None:
             return {}
         state = dict(zip(laws, substituted(tuple(laws.values()), {t: instant}), strict=True))
@@ -124,7 +123,7 @@ class ClosedInstant:
         for node, x in state.items():
             if not depends_on(x, (*self._moving, self.system.symbols.t)):
                 try:
-                    x = simplest(x, LIMIT, self.located.positive)
+                    x = simplest(x, Work.ANSWER, self.located.positive)
                 except DerivationError:  # a division by 0 at this place
                     continue
                 if self.located.agrees(x, node):

@@ -19,7 +19,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.first_integrals.linear_motion import Constants, Line, particular
-from eomgen.mechanics.first_integrals.speeds_from_momenta import LONGEST, Relations, at_start
+from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, at_start
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
@@ -28,6 +28,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
 
@@ -72,7 +73,7 @@ class FreeSpeed:
         return positive_parameters(self.system.scope)
 
     def _simple(self, x: Scalar) -> Scalar:
-        return simplest(x, LONGEST, self._positive)
+        return simplest(x, Work.VALUE, self._positive)
 
     # -- in which sense ---------------------------------------------------------------------------
 
@@ -126,7 +127,7 @@ class FreeSpeed:
         F = self._in_sense(F)
         if depends_on(F, (symbols.t, *symbols.inputs.values())):
             return None
-        F = simplest(F, LONGEST)
+        F = simplest(F, Work.VALUE)
         F0, F2 = substituted((F, over(derivative(derivative(F, s), s), 2)), {s: 0})
         others = tuple(x for x in symbols.q if x is not q)
         if depends_on(F0, others) or depends_on(F2, others) or not vanishes(F - F0 - F2 * s * s):
@@ -159,7 +160,7 @@ def _of_first_order(f: Scalar, k: Scalar, q: Node) -> tuple[Scalar, Scalar] | No
         return None
     growth = exponential_of(power)
     if not is_zero(k) and not depends_on(k, (q,)):
-        constants = Constants(q, lambda x: None, lambda x: simplest(x, LONGEST))
+        constants = Constants(q, lambda x: None, lambda x: simplest(x, Work.VALUE))
         second = particular(Line(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
         return None if second is None else (growth, derivative(second, q))
     gained = primitive(over(f, growth), q)

@@ -21,8 +21,7 @@ from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import dot
-
-WORK = 5_000  # products of terms for finding that a rate of momentum is a function of time
+from eomgen.symbolic.numeric.work import Work
 
 
 @dataclass(frozen=True)
@@ -117,5 +116,5 @@ def _of_time_alone(rate: Scalar, others: Sequence[Node]) -> Scalar | None:
         return rate
     if holds_identically(rate):
         return 0
-    rate = readable(rate, WORK)
+    rate = readable(rate, Work.FORMULA)
     return None if depends_on(rate, others) else rate

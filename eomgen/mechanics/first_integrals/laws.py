@@ -24,10 +24,10 @@ from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import vanishes
 
-WORK = 20_000  # products of terms for one law
 SEEN = 1e-3  # relative: a change that rounding does not make
 
 
@@ -63,7 +63,9 @@ class _Laws:
         rates = dict(zip(symbols.q, self._replaced(self.system.scope.rates, own, begin), strict=True))
         laws: dict[Node, Scalar] = {}
         while new := self._by_rate(rates, laws) or self._by_line(speeds, laws) or self._by_pair(speeds, laws):
-            laws |= {node: min(law, simplest(law, WORK, self.positive), key=text_size) for node, law in new.items()}
+            laws |= {
+                node: min(law, simplest(law, Work.VALUE, self.positive), key=text_size) for node, law in new.items()
+            }
             speeds = {u: a for u, a in speeds.items() if u not in laws}
             rates = {q: rate for q, rate in rates.items() if q not in laws}
         later = {symbols.t: symbols.t - self.start.get(symbols.t, 0)}
@@ -119,11 +121,11 @@ class _Laws:
         A, B = derivative(a, q), derivative(a, u)
         if self._vary([[A], [B], [a, -A * q, -B * u]]):
             return None
-        a = simplest(a, WORK, self.positive)
+        a = simplest(a, Work.VALUE, self.positive)
         A, B = derivative(a, q), derivative(a, u)
         if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in (A, B)):
             return None
-        f = simplest(a - A * q - B * u, WORK, self.positive)
+        f = simplest(a - A * q - B * u, Work.VALUE, self.positive)
         return None if depends_on(f, self._moving) else Line(A, B, f)
 
     def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> Pair | None:
@@ -132,10 +134,10 @@ class _Laws:
         rests = [[x, *(-k * y for k, y in zip(row, (*q, *u), strict=True))] for x, row in zip(a, slopes, strict=True)]
         if self._vary([*([k] for row in slopes for k in row), *rests]):
             return None
-        a = tuple(simplest(x, WORK, self.positive) for x in a)
+        a = tuple(simplest(x, Work.VALUE, self.positive) for x in a)
         A, B = ([[derivative(x, y) for y in of] for x in a] for of in (q, u))
         rest = [x - sum(derivative(x, y) * y for y in (*q, *u)) for x in a]
-        b = [simplest(x, WORK, self.positive) for x in rest]
+        b = [simplest(x, Work.VALUE, self.positive) for x in rest]
         constants = (*A[0], *A[1], *B[0], *B[1], *b)
         return None if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants) else Pair(A, B, b)
 
@@ -166,7 +168,7 @@ class _Laws:
 
     @property
     def _constants(self) -> Constants:
-        return Constants(self.system.symbols.t, self._sign, lambda x: simplest(x, WORK, self.positive))
+        return Constants(self.system.symbols.t, self._sign, lambda x: simplest(x, Work.VALUE, self.positive))
 
     def _sign(self, x: Scalar) -> int | None:
         """The sign of a constant: of its value, or the one that all of its terms have."""

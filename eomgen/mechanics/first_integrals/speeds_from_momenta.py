@@ -16,9 +16,9 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, substitu
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import linear
 
-LONGEST = 20_000  # products of terms for making a speed readable
 MOST_SPEEDS = 12  # of a system whose speeds are sought from its integrals
 
 
@@ -70,13 +70,13 @@ def relations_of(
     if solution is None or len(solution.free) > 1:
         return None
     positive = positive_parameters(system.scope)
-    constants = {symbols.u[j]: simplest(x, LONGEST, positive) for j, x in solution.constants.items()}
+    constants = {symbols.u[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
     if not solution.free:
         return Relations(None, dict.fromkeys(symbols.u, 0), constants)
     (free,) = solution.free
     speed = symbols.u[free]
     shares: dict[Node, Scalar] = {speed: 1}
-    shares |= {symbols.u[j]: simplest(-x.get(free, 0), LONGEST, positive) for j, x in solution.shares.items()}
+    shares |= {symbols.u[j]: simplest(-x.get(free, 0), Work.VALUE, positive) for j, x in solution.shares.items()}
     return Relations(speed, {u: shares[u] for u in symbols.u}, {speed: 0, **constants})
 
 

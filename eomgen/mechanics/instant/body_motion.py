@@ -24,9 +24,9 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
-WORK = 10_000  # products of terms for making one formula readable
 LARGE = 8000  # characters of a formula that is not made readable
 
 
@@ -45,7 +45,7 @@ class Readable:
     def scalar(self, x: Scalar) -> Scalar:
         """A scalar at the state; what is very long stays as it is."""
         (found,) = substituted((x,), self.state)
-        return found if text_size(found) > LARGE else simplest(found, WORK, self.positive)
+        return found if text_size(found) > LARGE else simplest(found, Work.VALUE, self.positive)
 
     def vector(self, x: Vector) -> Vector:
         return vector_of(map(self.scalar, x))

@@ -23,9 +23,9 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import solved
 
-WORK = 50_000  # products of terms for one entry
 UNSAID = ""  # what nobody wrote, as the norm of a quaternion
 
 Values = Mapping[Node, Any]
@@ -54,7 +54,7 @@ def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bo
     rates, right = (symbols.a, ties.gamma) if accelerations else (symbols.u, ties.sigma)
     width = len(rates)
     placed = substituted((*(x for row in ties.J for x in row), *right), state)
-    flat = readable_all(placed, WORK, positive_parameters(system.scope))
+    flat = readable_all(placed, Work.ANSWER, positive_parameters(system.scope))
     lines = []
     for k, row in enumerate(ties.closing):
         entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
@@ -69,7 +69,7 @@ def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: 
     for four in scope.quaternions:
         gap = sum((e * scope.names[e.name + "'"] for e in four), start=0)
         gap = scope.with_accelerations((gap,))[0] if accelerations else gap
-        (placed,) = readable_all(substituted((gap,), state), WORK, positive_parameters(scope))
+        (placed,) = readable_all(substituted((gap,), state), Work.ANSWER, positive_parameters(scope))
         yield linear_line(UNSAID, placed, rates, "")
 
 

@@ -21,9 +21,9 @@ from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, dot, vector_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
-WORK = 50_000  # products of terms for one value
 SHORT = 400  # characters of all values of a state that a reader can take
 LARGE = 4000  # characters of a value that is not made readable any more
 State = Mapping[Node, Scalar]
@@ -130,7 +130,7 @@ class KinematicState:
         """A scalar as a person writes it; as it is where it is very long."""
         known = self._written
         if x not in known:
-            known[x] = x if text_size(x) > LARGE else simplest(x, WORK, self._positive)
+            known[x] = x if text_size(x) > LARGE else simplest(x, Work.ANSWER, self._positive)
         return known[x]
 
     @cached_property

@@ -21,8 +21,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, vector_of
-
-WORK = 50_000  # products of terms for one coordinate of a centre
+from eomgen.symbolic.numeric.work import Work
 
 FIXED = "0"
 """How the ground is called among the bodies."""
@@ -120,7 +119,7 @@ class Mechanism:
         return self.worth.vanish(scalars)
 
     def _one(self, x: Scalar) -> Scalar:
-        return simplest(x, WORK, positive_parameters(self.system.scope))
+        return simplest(x, Work.ANSWER, positive_parameters(self.system.scope))
 
     def _simple(self, v: Vector) -> Vector:
         return vector_of(map(self._one, v))

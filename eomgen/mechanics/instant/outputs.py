@@ -42,8 +42,8 @@ from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
+from eomgen.symbolic.numeric.work import Work
 
-WORK = 20_000  # products of terms for making a component readable
 _ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
 _AXES = {"x": 0, "y": 1, "z": 2}
 COMPONENTS = {kind + axis: (n, i) for kind, n in _ORDERS.items() for axis, i in _AXES.items()}
@@ -163,7 +163,7 @@ class Quantities:
             return vectors
         positive = positive_parameters(self.system.scope)
         values = substituted([x for vector in vectors for x in vector], self.at)
-        flat = iter([simplest(x, WORK, positive) for x in values])
+        flat = iter([simplest(x, Work.VALUE, positive) for x in values])
         return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
 
     def _field(self, body: str) -> Field:
@@ -201,7 +201,7 @@ class Quantities:
             raise DerivationError(what, mend="name two points of one body")
         first, last = self._here(*map(self.system.motion.position, places))
         positive = positive_parameters(self.system.scope)
-        return least_speed(self._field(body), first, last, lambda x: simplest(x, WORK, positive))
+        return least_speed(self._field(body), first, last, lambda x: simplest(x, Work.VALUE, positive))
 
     def of_body(self, order: int, body: str, frame: str = GROUND) -> Vector:
         """Angular velocity (order 1) or acceleration (2) of a body, ground axes or those of `frame` [rad, s]."""

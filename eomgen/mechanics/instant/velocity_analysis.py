@@ -39,9 +39,9 @@ from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
-WORK = 50_000  # products of terms for one value
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas
 LONG = 400  # characters from which a value is no easier to read than it came
 
@@ -178,7 +178,7 @@ class Snapshot:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it came where multiplying out made it longer still."""
-        return legible(x, WORK, positive_parameters(self.system.scope), LONG)
+        return legible(x, Work.ANSWER, positive_parameters(self.system.scope), LONG)
 
     def refuse_impossible(self) -> None:
         """Refuse velocities that redundant ties allow to first order, as at a change point, and no motion has.

@@ -27,10 +27,10 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import roots, vanishes
 
-WORK = 4_000  # products of terms for making one formula short
 TERMS = 60  # of a sum that is made short; a longer one nobody reads
 LONGEST = 3_000  # characters of a tensor whose characteristic polynomial may have factors
 HALF = Fraction(1, 2)
@@ -293,9 +293,9 @@ def _ascending(tensor: _Tensor) -> list[int] | None:
 
 def short_form(x: Scalar, positive: Collection[Node]) -> Scalar:
     """x in readable form, the magnitudes of constants by their sign; a long sum as it is."""
-    found = simplest(x, WORK, positive, TERMS)
+    found = simplest(x, Work.FORMULA, positive, TERMS)
     signed = _with_signs(found)
-    return found if signed is found else simplest(signed, WORK, positive, TERMS)
+    return found if signed is found else simplest(signed, Work.FORMULA, positive, TERMS)
 
 
 def _with_signs(x: Scalar) -> Scalar:

@@ -23,11 +23,11 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import at_rest
 from eomgen.mechanics.reactions.unheld import refuse_unheld
 from eomgen.model.driven import driving_ties
-from eomgen.symbolic.exact.normal_form import LIMIT
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
 
 
@@ -266,7 +266,7 @@ class Reactions:
 
 
 def reactions_of(
-    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = LIMIT
+    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = Work.ANSWER
 ) -> Reactions:
     """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
 

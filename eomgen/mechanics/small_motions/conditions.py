@@ -6,13 +6,14 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.mechanics.small_motions.polynomial import LIMIT, Polynomial, factors_of
+from eomgen.mechanics.small_motions.polynomial import Polynomial, factors_of
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.terms import TooLarge, content
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 
 MOST_CONDITIONS = 6  # degree of a polynomial whose Hurwitz determinants are written
@@ -72,12 +73,12 @@ def _without_number(x: Scalar, positive: Collection[Node]) -> Scalar:
     """A positive multiple of x, its coefficients whole numbers without a common factor."""
     if type(x) is not Node:
         return x
-    expansion = Expansion(x.graph, LIMIT, positive)
+    expansion = Expansion(x.graph, Work.ANSWER, positive)
     try:
         terms = expansion.of(x)
     except TooLarge:
         return x
-    return simplest(over(x, content(terms)) if terms else 0, LIMIT, positive)
+    return simplest(over(x, content(terms)) if terms else 0, Work.ANSWER, positive)
 
 
 def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node]) -> Iterator[Polynomial]:

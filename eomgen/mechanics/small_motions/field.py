@@ -15,9 +15,8 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
-
-WORK = 20_000  # products of terms for one entry
 
 Entry = Any  # an exact scalar, or a float
 Matrix = list[list[Entry]]
@@ -86,7 +85,7 @@ class Exact:
         if type(x) is not Node or x.op == "symbol":
             return x
         if x not in self.known:
-            found = simplest(x, WORK, self.positive)
+            found = simplest(x, Work.VALUE, self.positive)
             self.known[x] = self.known[found] = 0 if is_zero(found) or vanishes(found) else found
         return self.known[x]
 

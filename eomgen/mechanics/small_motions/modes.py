@@ -12,7 +12,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
-from eomgen.mechanics.small_motions.field import WORK, Entry
+from eomgen.mechanics.small_motions.field import Entry
 from eomgen.mechanics.small_motions.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.small_motions.polynomial import (
     Polynomial,
@@ -26,6 +26,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
@@ -203,7 +204,7 @@ class Modes:
 
     def tidy(self, x: Entry) -> Entry:
         """An entry in its shortest form."""
-        return x if isinstance(x, float) else simplest(x, WORK, self.positive)
+        return x if isinstance(x, float) else simplest(x, Work.VALUE, self.positive)
 
 
 def _parted(A: list[list[Entry]]) -> tuple[list[list[Entry]], list[list[Entry]]]:

@@ -20,12 +20,12 @@ from eomgen.symbolic.exact.terms import Terms, TooLarge, plus
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.circular_equations import wave_free
 from eomgen.symbolic.solve.solving import coefficients
 
 MOST = 6  # rows of a determinant that is written out
-LIMIT = 50_000  # products of terms
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Polynomial:
 
     def negative(self, positive: Collection[Node]) -> Polynomial:
         """-p(s), of exact coefficients."""
-        return Polynomial(tuple(simplest(-c, LIMIT, positive) for c in self.coefficients))
+        return Polynomial(tuple(simplest(-c, Work.ANSWER, positive) for c in self.coefficients))
 
 
 def graph_of(equations: LinearEquations) -> Graph:
@@ -95,12 +95,12 @@ def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node]) -> Poly
     """A polynomial in s by its coefficients; None where it is too much work."""
     if x is None:
         return None
-    expansion = Expansion(s.graph, LIMIT, positive)
+    expansion = Expansion(s.graph, Work.ANSWER, positive)
     expansion.of(s)
     try:
         parts = coefficients(expansion.of(x), s)
         powers = range(max(parts, default=0) + 1)
-        found = [simplest(expansion.atoms.node(parts.get(n, {})), LIMIT, positive) for n in powers]
+        found = [simplest(expansion.atoms.node(parts.get(n, {})), Work.ANSWER, positive) for n in powers]
     except TooLarge:
         return None
     return Polynomial(tuple(found))
@@ -119,7 +119,7 @@ def closed_frequencies(polynomial: Polynomial, s: Node, positive: Collection[Nod
     found: list[Scalar] = []
     try:
         for w in _frequencies(polynomial.at(s), s, positive):
-            w = simplest(w, LIMIT, positive)
+            w = simplest(w, Work.ANSWER, positive)
             if w not in found:
                 found.append(w)
     except DerivationError:  # too large
@@ -145,7 +145,7 @@ class Factors:
 
     def written(self, a: Scalar) -> Scalar:
         """In the symbols of the model."""
-        return simplest(substituted((a,), self.fresh)[0], LIMIT, self.positive)
+        return simplest(substituted((a,), self.fresh)[0], Work.ANSWER, self.positive)
 
 
 def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> Factors:
@@ -154,7 +154,7 @@ def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> Factors:
     Raises:
         TooLarge: it is too much work.
     """
-    expansion = Expansion(s.graph, LIMIT, positive)
+    expansion = Expansion(s.graph, Work.ANSWER, positive)
     expansion.of(s)
     f, _ = expansion.cleared(expansion.of(x))
     f, fresh = wave_free(expansion, f)
@@ -188,7 +188,7 @@ def _squares(expansion: Expansion, c: dict[int, Terms], positive: Collection[Nod
     whole = square_root(discriminant) if discriminant else {}
     if whole is None and _single_roots(expansion, c):
         return ()
-    root = sqrt(simplest(node(discriminant), LIMIT, positive)) if whole is None else node(whole)
+    root = sqrt(simplest(node(discriminant), Work.ANSWER, positive)) if whole is None else node(whole)
     return tuple(over(node(middle) + sign * root, 2 * node(c[4])) for sign in (-1, 1))
 
 

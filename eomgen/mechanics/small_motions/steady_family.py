@@ -32,10 +32,10 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BEST
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import vanishes
 
-WORK = 20_000  # products of terms for one condition
 MOST_OPERATIONS = 600  # of the equations of motion that are written as conditions
 MOST_OF_TIES = 250  # of the rows by which speeds are taken out
 MOST_FOLLOWING = 4  # dependent coordinates and speeds
@@ -151,7 +151,7 @@ class _Writing:
             return self._all
         left = substituted(self._all, dict.fromkeys(self._zeros, 0))
         positive = positive_parameters(self.first.system.scope)
-        return tuple(simplest(x, WORK, positive) for x in left if not is_zero(x) and not vanishes(x))
+        return tuple(simplest(x, Work.VALUE, positive) for x in left if not is_zero(x) and not vanishes(x))
 
     @cached_property
     def _all(self) -> tuple[Scalar, ...]:
@@ -191,7 +191,7 @@ class _Writing:
         at = start | dict(zip(found, substituted(tuple(found.values()), start), strict=True))
         whole = {**at, **dict(zip(self._fixed, substituted(tuple(self._fixed.values()), at), strict=True))}
         positive = positive_parameters(self.first.system.scope)
-        state = {x: simplest(whole[x], WORK, positive) for x in (*symbols.q, *symbols.u) if x in whole}
+        state = {x: simplest(whole[x], Work.VALUE, positive) for x in (*symbols.q, *symbols.u) if x in whole}
         return state if all(self._located.agrees(value, x) for x, value in state.items()) else {}
 
     def _with_others(self, family: Family) -> Family:

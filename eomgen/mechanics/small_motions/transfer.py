@@ -8,13 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.small_motions.polynomial import (
-    LIMIT,
-    Polynomial,
-    laplace_variable,
-    pencil_of,
-    polynomial_in,
-)
+from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.quotient import reduced
@@ -23,6 +17,7 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ITERATED
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 
 
@@ -69,7 +64,7 @@ def _shortened(
     while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):
         a, b = a[1:], b[1:]
     plain = Polynomial(tuple(a)), Polynomial(tuple(b))
-    expansion = Expansion(s.graph, LIMIT, positive)
+    expansion = Expansion(s.graph, Work.ANSWER, positive)
     expansion.of(s)
     try:
         parts = reduced(expansion, expansion.of(over(plain[0].at(s), plain[1].at(s))))

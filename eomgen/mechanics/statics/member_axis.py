@@ -24,9 +24,8 @@ from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
-
-WORK = 20_000  # products of terms for one length
 
 
 @dataclass(frozen=True)
@@ -49,11 +48,11 @@ class Sizes:
         """A scalar multiplied out, what is known of the coordinates put in."""
         if type(x) is not Node:
             return x
-        return readable(substituted((x,), self.at)[0] if self.at else x, WORK, self.positive)
+        return readable(substituted((x,), self.at)[0] if self.at else x, Work.VALUE, self.positive)
 
     def shortest(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it."""
-        return simplest(x, WORK, self.positive)
+        return simplest(x, Work.VALUE, self.positive)
 
     def sign(self, x: Scalar) -> int:
         """1, 0 or -1.
@@ -228,7 +227,7 @@ def _legs(corners: Sequence[Vector], sizes: Sizes) -> tuple[Leg, ...]:
     legs: list[Leg] = []
     x: Scalar = 0
     for a, b in pairwise(corners):
-        r = readable_all(minus(b, a), WORK, sizes.positive)
+        r = readable_all(minus(b, a), Work.VALUE, sizes.positive)
         length = sizes.simple(sqrt(sizes.simple(dot(vector_of(r), vector_of(r)))))
         along = vector_of(sizes.simple(over(component, length)) for component in r)
         legs.append(Leg(a, along, length, x))

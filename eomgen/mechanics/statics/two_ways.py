@@ -31,8 +31,8 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.work import Work
 
-WORK = 50_000  # products of terms for one value
 UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}
 """By the exponents of m, kg, s."""
 
@@ -60,7 +60,7 @@ class StaticReaction:
     @cached_property
     def balanced(self) -> Scalar | None:
         """Its value by the balance of the bodies, as a person writes it."""
-        return None if self.solved is None else simplest(self.solved, WORK, self.positive)
+        return None if self.solved is None else simplest(self.solved, Work.ANSWER, self.positive)
 
     @cached_property
     def agree(self) -> bool:

@@ -32,10 +32,9 @@ from eomgen.symbolic.expression.derivative import derivative, substituted, tange
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
 from eomgen.symbolic.solve.scaling import solved
-
-WORK = 50_000  # products of terms for one velocity
 
 Column = tuple[int, int]
 """(index of the body, direction in DIRECTIONS): one velocity."""
@@ -183,7 +182,7 @@ class Structure:
         return Plan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
 
     def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return readable_all(tuple(scalars), WORK, self.positive)
+        return readable_all(tuple(scalars), Work.ANSWER, self.positive)
 
     @cached_property
     def positive(self) -> frozenset[Node]:
@@ -266,7 +265,7 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
 def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) -> tuple[dict[int, Scalar], ...]:
     """The rows at the configuration, zeros left out."""
     entries = substituted(tuple(x for row in rows for x in row.values()), state)
-    flat = iter(readable_all(entries, WORK, positive_parameters(system.scope)))
+    flat = iter(readable_all(entries, Work.ANSWER, positive_parameters(system.scope)))
     placed = [{k: next(flat) for k in row} for row in rows]
     return tuple({k: x for k, x in row.items() if not is_zero(x)} for row in placed)
 

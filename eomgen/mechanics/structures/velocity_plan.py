@@ -25,8 +25,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, vector_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.work import Work
 
-WORK = 20_000  # products of terms for one velocity
 SIXTH = Fraction(1, 6)
 
 
@@ -63,7 +63,7 @@ class Plan:
         """k times as fast."""
         if k == 1:
             return self
-        flat = readable_all([k * x for six in self.velocities for x in six], WORK, self._positive)
+        flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self._positive)
         return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
 
     def plus(self, other: Plan, k: Scalar = 1) -> Plan:
@@ -175,7 +175,7 @@ class Plan:
         if type(x) is not Node:
             return x
         if x not in self._written:
-            self._written[x] = simplest(x, WORK, self._positive)
+            self._written[x] = simplest(x, Work.VALUE, self._positive)
         return self._written[x]
 
     def _simple(self, vector: Vector) -> Vector:

@@ -23,9 +23,10 @@ from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, times, transposed
 from eomgen.symbolic.numeric.tolerances import DEGENERATE
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
-LONGEST, WORK = 400, 500  # characters and products of terms of a cosine that is multiplied out
+LONGEST = 400  # characters of a cosine that is multiplied out
 
 
 @dataclass(frozen=True)
@@ -183,7 +184,7 @@ def complement(scene: Scene, x: Scalar) -> Scalar:
 
 def _short(x: Scalar) -> Scalar:
     """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
-    return readable(x, WORK) if type(x) is Node and text_size(x) <= LONGEST else x
+    return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
 def _other_wave(scene: Scene, x: Scalar) -> Scalar | None:

@@ -16,11 +16,11 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
 
 AXES = "xyz"
-WORK = 5000  # products of terms for making one formula readable
 VELOCITIES = Law(
     "v = v_O + omega x r, a = a_O + epsilon x r + omega x (omega x r)",
     r"v = v_{O} + \omega \times r, \quad a = a_{O} + \varepsilon \times r + \omega \times (\omega \times r)",
@@ -206,8 +206,8 @@ def equation_of(curve: Curve, positive: frozenset[Node]) -> tuple[Piece, ...]:
         (x, y, _), (dx, dy, _) = curve.at, curve.along
         if is_zero(dx):
             return ("straight line x = ", _formula(x))
-        slope = simplest(over(dy, dx), WORK, positive)
-        offset = simplest(y - x * slope, WORK, positive)
+        slope = simplest(over(dy, dx), Work.FORMULA, positive)
+        offset = simplest(y - x * slope, Work.FORMULA, positive)
         if is_zero(slope):
             return ("straight line y = ", _formula(offset))
         return ("straight line of slope ", _formula(slope), " through (0, ", _formula(offset), ")")

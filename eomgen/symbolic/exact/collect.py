@@ -25,16 +25,15 @@ from eomgen.symbolic.exact.terms import (
 )
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.work import Work
 
-LIMIT = 2_000  # products of terms
 
-
-def gathered(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+def gathered(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
     """x with the parameters' sums in parentheses before what moves; x itself where that takes too much work."""
     return _rewritten(x, limit, positive, _by_what_moves)
 
 
-def with_squares(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+def with_squares(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
     """x with the parts that are squares of sums, of one product of parameters each, as squares."""
     return _rewritten(x, limit, positive, _by_parameters)
 

@@ -20,14 +20,11 @@ from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.expression.traversal import order, united
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
 from eomgen.symbolic.print.text import text_size
 
-LIMIT = 50_000
-CONSTANT = 1_000  # products of terms for a constant
-
 __all__ = [
-    "LIMIT",
     "NormalForm",
     "TooLarge",
     "cancelled",
@@ -59,7 +56,7 @@ class NormalForm:
         return not self.terms
 
 
-def normal_form(x: Scalar, limit: int = LIMIT) -> NormalForm:
+def normal_form(x: Scalar, limit: int = Work.ANSWER) -> NormalForm:
     """The normal form of x.
 
     Raises:
@@ -69,7 +66,7 @@ def normal_form(x: Scalar, limit: int = LIMIT) -> NormalForm:
     return NormalForm(expansion.graph, tuple(sorted(terms.items())))
 
 
-def equal(a: Scalar, b: Scalar, limit: int = LIMIT) -> bool:
+def equal(a: Scalar, b: Scalar, limit: int = Work.ANSWER) -> bool:
     """Whether a and b are the same function.
 
     Decided by the normal form for rational functions of sines, cosines and symbols. Where roots or other functions are
@@ -96,7 +93,7 @@ def _has_relations(expansion: Expansion) -> bool:
     return pi in nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
 
 
-def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+def readable(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = ()) -> Scalar:
     """x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2).
 
     Accelerations come first, then rates, then the rest, each in the order of declaration. x itself where that takes
@@ -108,7 +105,9 @@ def readable(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> 
     return readable_all((x,), limit, positive)[0]
 
 
-def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collection[Node] = ()) -> tuple[Scalar, ...]:
+def readable_all(
+    outputs: Sequence[Scalar], limit: int = Work.ANSWER, positive: Collection[Node] = ()
+) -> tuple[Scalar, ...]:
     """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
     graph, outputs = united(outputs)
     expansion = Expansion(graph, limit, positive)
@@ -123,7 +122,7 @@ def readable_all(outputs: Sequence[Scalar], limit: int = LIMIT, positive: Collec
     return tuple(written)
 
 
-def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = LIMIT) -> dict[Node | None, Scalar]:
+def collected_in(x: Scalar, symbols: Sequence[Node], limit: int = Work.ANSWER) -> dict[Node | None, Scalar]:
     """x = sum of coefficient * symbol + rest, as {symbol: coefficient, None: rest}, readable; zeros are left out.
 
     Raises:
@@ -166,7 +165,9 @@ def _not_linear(symbols: Sequence[Node]) -> DerivationError:
     return DerivationError(f"the expression is not linear in {', '.join(symbol.name for symbol in symbols)}")
 
 
-def common_factor(outputs: Sequence[Scalar], limit: int = LIMIT, kept: Sequence[Node] = ()) -> tuple[Number, Scalar]:
+def common_factor(
+    outputs: Sequence[Scalar], limit: int = Work.ANSWER, kept: Sequence[Node] = ()
+) -> tuple[Number, Scalar]:
     """(number, product): the rational number and the powers of parameters and coordinates that every term holds.
 
     M*R^2*theta'' + M*g*R*sin(theta) -> M*R. Negative powers too, so that dividing by them leaves no fractions.
@@ -197,7 +198,7 @@ def _is_still(expansion: Expansion, atom: int) -> bool:
     return node.op == "symbol" and not is_rate(node)
 
 
-def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) -> Scalar:
+def cancelled(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = ()) -> Scalar:
     """x as one readable quotient without common factors; x itself where that takes too much work.
 
     Args:
@@ -211,7 +212,7 @@ def cancelled(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = ()) ->
         return x
 
 
-def simplest(x: Scalar, limit: int = LIMIT, positive: Collection[Node] = (), most: int | None = None) -> Scalar:
+def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (), most: int | None = None) -> Scalar:
     """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside.
 
     Args:
@@ -237,7 +238,7 @@ def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) ->
             constant.add(x)
     carried = {x for x in scalars if type(x) is Node and x in constant}
     carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
-    return {x: simplest(x, CONSTANT) for x in carried if x.args}
+    return {x: simplest(x, Work.PART) for x in carried if x.args}
 
 
 def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Scalar:

@@ -7,14 +7,13 @@ from collections.abc import Collection
 from eomgen.symbolic.exact.expansion import expanded
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.graph import Node, Scalar
-
-LIMIT = 20_000
+from eomgen.symbolic.numeric.work import Work
 
 
 def sign_of_terms(x: Scalar, positive: Collection[Node]) -> int | None:
     """1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown."""
     try:
-        expansion, (terms,) = expanded((x,), LIMIT, positive)
+        expansion, (terms,) = expanded((x,), Work.VALUE, positive)
     except TooLarge:
         return None
     if not terms:

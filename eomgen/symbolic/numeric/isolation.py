@@ -25,7 +25,7 @@ from eomgen.symbolic.numeric.intervals import INTERVALS, interval
 from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
 
 MOST_BOXES = 60_000  # examined in all
-WORK = 30_000_000  # operations in all, of long equations
+MOST_STATEMENTS = 30_000_000  # operations in all, of long equations
 TOGETHER = 4096  # boxes of one evaluation
 HALF = 0.4837  # where a box is halved: roots at round numbers do not lie on borders
 JUMPS = frozenset(("sign", "select", "less", "less_equal"))
@@ -73,7 +73,7 @@ class _Boxes:
         slopes = tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
         roots, undecided = [np.zeros((0, len(low)))], [np.zeros((0, len(low)))]
         lows, highs, seen = low[None, :], high[None, :], 0
-        most = min(MOST_BOXES, WORK // len(order((*self.equations, *slopes))))
+        most = min(MOST_BOXES, MOST_STATEMENTS // len(order((*self.equations, *slopes))))
         while len(lows) and seen < most:
             seen += len(lows[:TOGETHER])
             a, b, rest_a, rest_b = lows[:TOGETHER], highs[:TOGETHER], lows[TOGETHER:], highs[TOGETHER:]

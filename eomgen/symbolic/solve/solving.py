@@ -27,15 +27,17 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
+from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.circular_equations import vanishing_angles, wave_free
 
-LIMIT = 50_000  # products of terms
 MOST_SQUARINGS = 2  # and signs of magnitudes
 TRIES = 8  # random states at which a root is tried
 INVERSE = {"log": "exp", "atan": "tan", "asin": "sin", "acos": "cos"}
 
 
-def roots(equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = LIMIT) -> tuple[Scalar, ...]:
+def roots(
+    equation: Scalar, unknown: Node, positive: Collection[Node] = (), limit: int = Work.ANSWER
+) -> tuple[Scalar, ...]:
     """The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn.
 
     Args:
