@@ -23,6 +23,8 @@ JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
 
 
+NO_CERTIFY = click.option("--no-certify", is_flag=True, help="Make no certificate.")
+
 FOLLOW = click.option(
     "--follow",
     multiple=True,
@@ -226,7 +228,10 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
     "it.  [default: see [linearize]]",
 )
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
-def linearize(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+@NO_CERTIFY
+def linearize(
+    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
+) -> int:
     """Give small motions about rest or a steady motion.
 
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
@@ -234,7 +239,7 @@ def linearize(model: str, wants_json: bool, output: str | None, format_: str | N
     """
     from eomgen.verbs.linearize import linearize as found
 
-    return _write(found, model, wants_json, output, format_, **options)
+    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
 @main.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.model.parts import Model
 from eomgen.report.linearize.result import linearize as found_in
-from eomgen.verbs.outcome import Outcome, told
+from eomgen.verbs.outcome import Outcome, proven, told
 
 
 def linearize(
@@ -14,6 +14,7 @@ def linearize(
     plot: str | None = None,
     about: str | None = None,
     coordinates: tuple[str, ...] = (),
+    certify: bool = True,
 ) -> Outcome:
     """M, C, K, modes, stability.
 
@@ -22,5 +23,7 @@ def linearize(
         plot: a picture's file.
         about: "equilibrium", "start" or "steady".
         coordinates: only these.
+        certify: whether it is proven.
     """
-    return told(found_in(model, about, coordinates), format=format, plot=plot)
+    found = found_in(model, about, coordinates)
+    return proven(told(found, format=format, plot=plot), found.certify() if certify else None, format)

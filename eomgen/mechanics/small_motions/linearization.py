@@ -56,6 +56,7 @@ class SmallMotions:
         exact: the same as scalars of the parameters; None where the reference is not known so, or it is too much work.
         whole: those in floats of every coordinate and speed, of which `numbers` are a part.
         left_out: coordinates on which nothing depends, and which have no speed of their own.
+        first: the equations of motion from which they come.
     """
 
     reference: Reference
@@ -63,6 +64,7 @@ class SmallMotions:
     exact: LinearEquations | None
     whole: LinearEquations
     left_out: tuple[Node, ...]
+    first: FirstOrder
 
     @property
     def is_second_order(self) -> bool:
@@ -144,7 +146,7 @@ def _about(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> Sm
     if exact is None:
         _refuse_unvalued(reference)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
-    return SmallMotions(reference, numbers, exact, raw, left)
+    return SmallMotions(reference, numbers, exact, raw, left, first)
 
 
 def _refuse_unvalued(reference: Reference) -> None:

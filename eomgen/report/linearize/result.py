@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.certificate import certify
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.small_motions.family import Family
@@ -21,6 +22,8 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
 from eomgen.mechanics.statics.reaction_outputs import name_of
 from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate
+from eomgen.proof.small_motions import small_motion_checks
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.linearize.picture import modes_picture
@@ -130,6 +133,11 @@ class Linearization(Shown):
         """
         if not self.valued:
             raise DerivationError("numbers of small motions need values of all parameters", "parameters")
+
+    def certify(self) -> Certificate:
+        """Check the equations of motion, and the small motions against differences of these."""
+        first = self.small.first
+        return certify(first.system, first.assembly) + small_motion_checks(self.modes)
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 
