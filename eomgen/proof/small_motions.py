@@ -23,7 +23,7 @@ import numpy as np
 from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.mechanics.small_motions.turns import NAME
+from eomgen.mechanics.small_motions.spin_axes import NAME
 from eomgen.model.quaternions import quaternions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.nearby import Going, Nearby, State
