@@ -14,15 +14,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.assembly import Assembly
-from eomgen.mechanics.system import System
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import follows
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import MET_AT_50, ZERO_AT_50
 
-PIVOT = 1e-25  # of the largest entry of balanced rows, below which what elimination leaves of them is nothing
-CLOSED = 1e-40  # of a coordinate: so close Newton's method brings the ties, against 1
 STEPS = 12  # of Newton's method with the slope of the start; from doubles two or three are taken
 
 State = Mapping[Node, Any]
@@ -41,7 +40,7 @@ def solved(rows: Sequence[Sequence[Any]]) -> Numbers | None:
     while columns and left:
         i, k = max(((i, k) for i in range(len(left)) for k in columns), key=lambda at: abs(left[at[0]][at[1]]))
         row = left.pop(i)
-        if abs(row[k]) < PIVOT:
+        if abs(row[k]) < ZERO_AT_50:
             return None
         columns.remove(k)
         chosen.append((k, row))
@@ -184,7 +183,7 @@ class Nearby:
             if step is None:
                 raise NoValue("the ties do not determine the dependent coordinates")
             state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
-            if all(abs(d) < CLOSED * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
+            if all(abs(d) < MET_AT_50 * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
                 return state
         raise NoValue("the ties do not close beside the state")
 

@@ -29,12 +29,9 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, DIFFERENCE_AT_50, SLOW, TINIEST
 
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
-EXACT = 1e-20  # of a difference of 50 digits with that step, against the terms of its row
-FLOATS = 1e-9  # of entries in doubles, against the terms of their row
-COARSE = 1e-6  # of answers by matrices in doubles
-SLOW = 1e-4  # of a rate of something of the order of 1: the tolerance of this part of it is rounding in any case
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
 BY_DIFFERENCES = "differences at 50 digits"
 
@@ -227,7 +224,7 @@ def _reference(differences: Differences) -> Check:
     wrong = [
         f"{u.name} changes by {float(origin.a[u]):.3g}"
         for u, most in zip(small.numbers.speeds, usual, strict=True)
-        if abs(origin.a[u]) > FLOATS * max(most, 1e-300) and abs(origin.a[u]) > FLOATS * most
+        if abs(origin.a[u]) > COMPUTED * max(most, TINIEST) and abs(origin.a[u]) > COMPUTED * most
     ]
     name = "the equations of motion hold at the reference, without acceleration"
     return checked(name, "; ".join(wrong), "50 digits")
@@ -239,7 +236,7 @@ def _matrices(differences: Differences) -> Iterator[Check]:
     if differences.is_part:
         yield _of_part(differences)
         return
-    exact, tolerance = _entries(small), EXACT if small.exact is not None else FLOATS
+    exact, tolerance = _entries(small), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
     wrong: dict[str, str] = {"motion": "", "state": "", "mass": ""}
     for _ in range(DIRECTIONS):
         beside = differences.along(_random((*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs), rng))
@@ -266,7 +263,7 @@ def _of_part(differences: Differences) -> Check:
         pencil = sum((s**k * np.array(A, dtype=float) for k, A in enumerate((e.K, e.C, e.M))))
         answer = np.linalg.inv(pencil)
         away = abs(answer - whole(s)[np.ix_(asked, asked)]).max() / abs(answer).max()
-        wrong = wrong or ("" if away <= COARSE else f"their answers differ by {away:.2g}")
+        wrong = wrong or ("" if away <= CARRIED else f"their answers differ by {away:.2g}")
     return checked("the coordinates that are asked move as they do in the whole", wrong, "differences, floating point")
 
 
@@ -305,7 +302,7 @@ def _in_state_form(small: SmallMotions, at: Beside) -> str:
     names = [x.name for x in (*small.numbers.coordinates, *small.numbers.speeds)]
     rows = zip(names, small.state_matrix, small.input_matrix, (*at.q1, *a), strict=True)
     for name, row, push, rate in rows:
-        if wrong := _left([-rate, *_terms(row, (*at.q, *u)), *_terms(push, at.w)], FLOATS):
+        if wrong := _left([-rate, *_terms(row, (*at.q, *u)), *_terms(push, at.w)], COMPUTED):
             return f"the row of {name}: {wrong}"
     return ""
 

@@ -17,6 +17,7 @@ ROOT = 8.9e-16  # the same relative to the root: four units in the last place, t
 OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
 ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
 TINIEST = 1e-300  # instead of 0 in a divisor
+SLOW = 1e-4  # [of a unit, a second] a rate of this part of 1 is compared as 1 is: smaller ones are mostly rounding
 
 # What is left of 0 in numbers of 50 digits.
 ZERO_AT_50 = 1e-25  # [1] of what would be of the order of 1: half of the digits are left for what cancels
