@@ -32,7 +32,9 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
         checks.append(identities.closing_rows(system, assembly))
     if system.elimination is not None:
         checks.append(trials.eliminated_rows(system))
-    checks.append(trials.friction(system, assembly) if rubs(system) else trials.free_bodies(system, assembly))
+    checks.append(trials.free_bodies(system, assembly))
+    if rubs(system):
+        checks.append(trials.friction(system, assembly))
     checks += trials.balance(system, assembly)
     if rhs is not None:
         checks.append(trials.code(system, assembly, rhs))

@@ -25,6 +25,7 @@ CERTAIN_AT_50 = 1e-30  # [1] above it the sign of a constant is known; a step of
 CLOSED_AT_50 = 1e-28  # [m or rad] a gap that Newton's method has closed
 ELIMINATED_AT_50 = 1e-20  # of an entry against the largest of its row, after an elimination
 DIFFERENCE_AT_50 = 1e-18  # of a central difference with a step of 1e-15; scaled equations at a root
+REFINED_AT_50 = 1e-20  # of accelerations: their last correction, after which they are right beyond doubles
 COEFFICIENT_AT_50 = 1e-36  # of a coefficient of a polynomial, made free of units
 MET_AT_50 = 1e-40  # of scaled equations: what is left is the rounding of their evaluation
 SQUARED_AT_50 = 1e-60  # of an entry of the diagonal of M: a sum of squares that cancel

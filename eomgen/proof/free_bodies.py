@@ -1,0 +1,245 @@
+"""System, state -> what its free bodies ask for at any accelerations, in numbers: Newton and Euler for every body.
+
+    outward:   w = E w_p + s,   wd = E wd_p + s' + E w_p x s,
+               acc = E (acc_p + wd_p x r + w_p x (w_p x r) + 2 w_p x r' + r'')
+    inward:    F = inertia - applied - W lam,   carried to the parent
+    r_k        = C_k . F + rotors - what acts at no place:   M a + c - Q - J^T lam
+
+s is the spin of a body against its parent and r its place there; their rates along a motion with the accelerations a
+are differences of numbers. No B, no energy, no derivative of a twist is used, and no equation is solved: r is compared
+at accelerations and multipliers that are as free as the coordinates. Dependent coordinates are free bodies' coordinates
+here, and every tie that closes them pushes with a lam of its own, which must do no work: so the elimination is checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.loads import body_wrench, weights
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import joint_forces, placeless_forces
+from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Matrix,
+    Vector,
+    Wrench,
+    apply,
+    cross,
+    matrix_of,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+
+State = dict[Node, Any]
+PARTS = 18  # numbers of a joint: E^T, r, r', s
+STEP = Fraction(1, 10**15)  # of differences: with 50 digits their error is below 1e-28
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What the motion asks for.
+
+    Args:
+        forces: M a + c - Q - J^T lam, one a speed.
+        sizes: of each the sum of the sizes of its terms.
+        rates: d/dt (J u + sigma) of every closing row, by (tie, number).
+    """
+
+    forces: list[Any]
+    sizes: list[Any]
+    rates: dict[tuple[str, int], Any]
+
+
+def demand_of(system: System, state: State) -> Demand:
+    """What the free bodies ask for at a state: values of all symbols, accelerations and multipliers included.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    if system.free is None:
+        return _demand(system, state)
+    free, u = system.free, system.scope.symbols.u
+    found = _demand(free, _with_free_motion(system, free, state))
+    shares = tuple(system.scope.graph.symbol(f"(r{k})") for k in range(len(found.forces)))
+    rows = pullback(free_rates(system, free), shares, u)
+    forces = evaluate(rows, state | dict(zip(shares, found.forces, strict=True)), fifty_digits())
+    return Demand(forces, [max(found.sizes, default=0)] * len(u), found.rates)
+
+
+def _with_free_motion(system: System, free: System, state: State) -> State:
+    """The state of the free system: its speeds and accelerations, and a lam of every row that determines a rate."""
+    speeds, a = _Bodies(system, state).along_motion(free_rates(system, free))
+    symbols = free.scope.symbols
+    motion = dict(zip(symbols.u, speeds, strict=True)) | dict(zip(symbols.a, a, strict=True))
+    pushing = {(row.tie, row.number) for row in system.ties.rows if row.eliminates}
+    rows = zip(free.ties.closing, free.symbols.lam, strict=True)
+    lam = {x: fifty_digits().number(int((row.tie, row.number) in pushing)) for row, x in rows}
+    return lam | state | motion
+
+
+def _demand(system: System, state: State) -> Demand:
+    """The same where every tie that closes has its multiplier."""
+    u, closing = system.scope.symbols.u, system.ties.closing
+    bodies = _Bodies(system, state)
+    direct = [x + y for x, y in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
+    rotors = armature_bias(system.motion, len(u))
+    forces = bodies.at(tuple(y - x for x, y in zip(direct, rotors, strict=True)))
+    sizes = [abs(x) for x in forces]
+    for k, x in (*bodies.along_joints(), *bodies.of_rotors(), *bodies.of_equations()):
+        forces[k], sizes[k] = forces[k] + x, sizes[k] + abs(x)
+    _, rates = bodies.along_motion(tuple(row.velocity for row in closing))
+    return Demand(forces, sizes, {(r.tie, r.number): x for r, x in zip(closing, rates, strict=True)})
+
+
+@dataclass(frozen=True)
+class _Bodies:
+    """The free bodies of a system at a state."""
+
+    system: System
+    state: State
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        return self.system.motion.links
+
+    def at(self, scalars: Sequence[Scalar]) -> list[Any]:
+        return evaluate(tuple(scalars), self.state, fifty_digits())
+
+    def along_motion(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any]]:
+        """(values, rates along the motion with the accelerations of the state), these by differences."""
+        late, early = (evaluate(scalars, place, fifty_digits()) for place in self._beside)
+        width = 2 * fifty_digits().number(STEP)
+        return self.at(scalars), [(x - y) / width for x, y in zip(late, early, strict=True)]
+
+    @cached_property
+    def _beside(self) -> tuple[State, State]:
+        """The states a step later and earlier."""
+        symbols, state = self.system.scope.symbols, self.state
+        path = dict(zip(symbols.q, self.at(self.system.scope.rates), strict=True))
+        path |= {u: state[a] for u, a in zip(symbols.u, symbols.a, strict=True)} | {symbols.t: 1}
+        h = fifty_digits().number(STEP)
+        later, earlier = ({x: state[x] + sign * h * rate for x, rate in path.items()} for sign in (1, -1))
+        return state | later, state | earlier
+
+    @cached_property
+    def _joints(self) -> list[tuple[Scalar, ...]]:
+        """Of every joint E^T by rows, r and r' in the parent's axes, s in the body's."""
+        found = []
+        for link in self.links:
+            r = link.local.point(times(-1, link.point))
+            spin = ZERO
+            for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
+                spin = plus(spin, times(rate, w))
+            rows = (x for row in link.local.R for x in row)
+            found.append((*rows, *r, *self.system.scope.time_derivative(r), *spin))
+        return found
+
+    @cached_property
+    def _moving(self) -> tuple[list[list[Any]], list[list[Any]]]:
+        """(values, rates) of every joint."""
+        values, rates = self.along_motion([x for joint in self._joints for x in joint])
+        return _in_parts(values, PARTS), _in_parts(rates, PARTS)
+
+    @cached_property
+    def _motions(self) -> list[tuple[Vector, Vector, Vector]]:
+        """(w, wd, acceleration of its origin) of every body in its axes, outward from the ground."""
+        found: list[tuple[Vector, Vector, Vector]] = []
+        for link, own, rate in zip(self.links, *self._moving, strict=True):
+            E = transposed(_turn(own))
+            r, velocity, s = (vector_of(own[k : k + 3]) for k in (9, 12, 15))
+            w_p, wd_p, acc_p = found[link.parent] if link.parent >= 0 else (ZERO, ZERO, ZERO)
+            carried = apply(E, w_p)
+            acc = plus(acc_p, plus(cross(wd_p, r), cross(w_p, plus(cross(w_p, r), times(2, velocity)))))
+            wd = plus(plus(apply(E, wd_p), vector_of(rate[15:18])), cross(carried, s))
+            found.append((plus(carried, s), wd, apply(E, plus(acc, vector_of(rate[12:15])))))
+        return found
+
+    @property
+    def _inertia(self) -> list[Wrench]:
+        """What the motion of every body takes, about its origin in its axes."""
+        masses = [mass_properties(self.system.scope, link.name) for link in self.links]
+        flat = [x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row))]
+        return [_taken(mass, *motion) for mass, motion in zip(_in_parts(self.at(flat), 13), self._motions, strict=True)]
+
+    @property
+    def _applied(self) -> list[Wrench]:
+        """Loads, weights and the pushes of closing rows on every body, about its origin in its axes."""
+        ties, loads = self.system.ties, self.system.loads
+        found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
+        pushes = [(*pair, 1) for pair in found if pair is not None]
+        rows = zip(ties.closing, self.system.symbols.lam, strict=True)
+        pushes += [(body, wrench, self.state[lam]) for row, lam in rows for body, wrench in row.wrenches]
+        values = _in_parts(self.at([x for _, wrench, _ in pushes for x in (*wrench.tau, *wrench.f)]), 6)
+        total = {link.name: Wrench(ZERO, ZERO) for link in self.links}
+        for (body, _, lam), x in zip(pushes, values, strict=True):
+            push = Wrench(times(lam, vector_of(x[:3])), times(lam, vector_of(x[3:])))
+            total[body] = total[body].plus(push)
+        return list(total.values())
+
+    @property
+    def _through_joints(self) -> list[Wrench]:
+        """What every body needs through its joint, about its origin in its axes; leaves pass theirs on."""
+        found = [
+            Wrench(minus(taken.tau, given.tau), minus(taken.f, given.f))
+            for taken, given in zip(self._inertia, self._applied, strict=True)
+        ]
+        for i in reversed(range(len(found))):
+            parent, own = self.links[i].parent, self._moving[0][i]
+            if parent >= 0:
+                carried = found[i].turned(_turn(own)).moved(vector_of(own[9:12]))
+                found[parent] = found[parent].plus(carried)
+        return found
+
+    def along_joints(self) -> Iterator[tuple[int, Any]]:
+        """(speed, what a joint gives along it): the columns of s and r' by each speed, on the joint's wrench."""
+        place = {symbol: k for k, symbol in enumerate(self.system.scope.symbols.u)}
+        speeds = [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._joints]
+        columns = [gradient(y, own) for joint, own in zip(self._joints, speeds, strict=True) for y in joint[12:]]
+        values = iter(self.at([x for column in columns for x in column]))
+        for own, joint, wrench in zip(speeds, self._moving[0], self._through_joints, strict=True):
+            for y in (*apply(_turn(joint), wrench.f), *wrench.tau):
+                for symbol in own:
+                    yield place[symbol], next(values) * y
+
+    def of_rotors(self) -> Iterator[tuple[int, Any]]:
+        """Rotors behind gears: armature D_k D_l a_l."""
+        found, a = armature_mass(self.system.motion), self.system.scope.symbols.a
+        values = self.at([value for _, _, value in found])
+        return ((i, value * self.state[a[j]]) for (i, j, _), value in zip(found, values, strict=True))
+
+    def of_equations(self) -> Iterator[tuple[int, Any]]:
+        """-lam of every row along what no twist sees: the slide of points in their bodies, ties of coordinates."""
+        closing, u = self.system.ties.closing, self.system.scope.symbols.u
+        slopes = _in_parts(self.at([x for row in closing for x in gradient(row.direct, u)]), len(u) or 1)
+        for lam, slope in zip(self.system.symbols.lam, slopes, strict=False):
+            yield from ((k, -x * self.state[lam]) for k, x in enumerate(slope))
+
+
+def _taken(mass: Sequence[Any], w: Vector, wd: Vector, acc: Vector) -> Wrench:
+    """Moment I wd + w x I w + c x f and force f = m (acc + wd x c + w x (w x c))."""
+    m, c, I = mass[0], vector_of(mass[1:4]), matrix_of((mass[4:7], mass[7:10], mass[10:13]))
+    f = times(m, plus(acc, plus(cross(wd, c), cross(w, cross(w, c)))))
+    return Wrench(plus(plus(apply(I, wd), cross(w, apply(I, w))), cross(c, f)), f)
+
+
+def _turn(joint: Sequence[Any]) -> Matrix:
+    """From the child's axes to the parent's."""
+    return matrix_of((joint[0:3], joint[3:6], joint[6:9]))
+
+
+def _in_parts(values: Sequence[Any], length: int) -> list[list[Any]]:
+    return [list(values[k : k + length]) for k in range(0, len(values), length)]
