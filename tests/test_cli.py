@@ -26,7 +26,7 @@ ROOT = Path(__file__).parent.parent
 MODELS = ROOT / "models"
 PENDULUM = str(MODELS / "double_pendulum.toml")
 PARALLELOGRAM = str(MODELS / "parallelogram_reactions.toml")
-TRUSS = str(ROOT / "tests" / "truss.toml")
+TRUSS = str(ROOT / "tests" / "helpers" / "truss.toml")
 BOLT_CUTTER = str(ROOT / "models" / "bolt_cutter.toml")
 SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = (MODELS / "seeds" / "ch22_p3.toml").read_text() + 'omega3 = "frequency(3)"\n'  # it has two

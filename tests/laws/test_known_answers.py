@@ -6,11 +6,11 @@ import math
 import runpy
 from functools import cache
 
+import answers_of_chapters_9_10
+import answers_of_chapters_11_13_21
+import answers_of_turning_bodies
 import numpy as np
 import pytest
-import seed_answers_c
-import seed_answers_d
-import seed_answers_e
 import sympy
 from known_answers import CLASSICS, MODELS, OUTPUTS, SEEDS
 from newton_euler import inverse_dynamics, read_arm
@@ -106,7 +106,7 @@ def test_every_seed_has_its_known_answer():
     """models/seeds/ holds the systems of the tables and no others; what moves has its equations too."""
     files = {path.stem for path in (MODELS / "seeds").glob("*.toml")}
     assert set(SEEDS) == set(OUTPUTS)
-    others = (seed_answers_c.ANSWERS, seed_answers_d.ANSWERS, seed_answers_e.ANSWERS)
+    others = (answers_of_chapters_9_10.ANSWERS, answers_of_chapters_11_13_21.ANSWERS, answers_of_turning_bodies.ANSWERS)
     assert files == set(SEEDS).union(*others)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from float_loops import bricard
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
@@ -15,7 +16,6 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.running import run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.projection import projection_of
-from tests.float_loops import bricard
 
 MODELS = Path(__file__).parents[2] / "models"
 G = 9.81

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from float_loops import Chain, Closing, Link, bricard
 from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
-from tests.float_loops import Chain, Closing, Link, bricard
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")
 MODELS = Path(__file__).parents[2] / "models"

@@ -9,7 +9,7 @@ from typing import Any
 import mpmath
 import pytest
 from mpmath import asin, atan2, cos, mpf, pi, sin, sqrt
-from seed_oracle_c import DIGITS, length, motion, rate, slowest, turned
+from oracle_of_chapters_9_10 import DIGITS, length, motion, rate, slowest, turned
 
 import eomgen
 

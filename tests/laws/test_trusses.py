@@ -15,7 +15,7 @@ from float_statics import Structure
 
 import eomgen
 
-TRIANGLE = Path(__file__).parents[1] / "truss.toml"
+TRIANGLE = Path(__file__).parents[1] / "helpers" / "truss.toml"
 
 Nodes = dict[str, tuple[float, ...]]
 

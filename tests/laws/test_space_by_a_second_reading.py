@@ -6,10 +6,10 @@ from random import Random
 
 import numpy as np
 import pytest
+from model_by_hand import ByHand, mp
 
 import eomgen
 from eomgen.errors import DerivationError, ModelError
-from tests.model_by_hand import ByHand, mp
 
 HEAD = 'eomgen = 1\nname = "unseen"\nspace = "space"\n'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, 0, -9.81]\n'

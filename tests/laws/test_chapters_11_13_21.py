@@ -10,9 +10,9 @@ from random import Random
 from typing import Any
 
 import pytest
+from answers_of_chapters_11_13_21 import ANSWERS, AS_PRINTED
 from derivations import MODELS
-from seed_answers_d import ANSWERS, AS_PRINTED
-from seed_oracle_d import ORACLES
+from oracle_of_chapters_11_13_21 import ORACLES
 
 import eomgen
 from eomgen.symbolic.expression.expressions import as_expression, parse

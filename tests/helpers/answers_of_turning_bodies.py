@@ -1,7 +1,7 @@
 """The bodies of the notes that turn in space: what `solve` must answer, as text of the model file's grammar, by hand.
 
 Euler's equations have the right signs here (the notes print all gyroscopic terms with the wrong one). What is asked
-later than the start has no text: tests/seed_oracle_e.py integrates it.
+later than the start has no text: tests/oracle_of_turning_bodies.py integrates it.
 """
 
 from __future__ import annotations

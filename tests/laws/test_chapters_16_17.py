@@ -9,11 +9,11 @@ from functools import cache
 from random import Random
 from typing import Any
 
+import oracle_of_chapters_16_17
 import pytest
-import seed_oracle_a
 import sympy
+from answers_of_chapters_16_17 import ANSWERS, NUMBERS_ONLY, OTHER_NUMBERS
 from derivations import MODELS
-from seed_answers_a import ANSWERS, NUMBERS_ONLY, OTHER_NUMBERS
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
@@ -46,7 +46,7 @@ def answers(system: str, other: bool = False) -> dict[str, Any]:
 
 @cache
 def derived_by_hand(system: str) -> dict[str, Any]:
-    return seed_oracle_a.ORACLES[system]()
+    return oracle_of_chapters_16_17.ORACLES[system]()
 
 
 def numbers_of(system: str, other: bool = False) -> dict[str, float]:

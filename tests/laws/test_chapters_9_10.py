@@ -9,9 +9,9 @@ from typing import Any
 
 import mpmath
 import pytest
+from answers_of_chapters_9_10 import ANSWERS, BOOK_SURDS, PRINTED, UNITS
 from derivations import MODELS
-from seed_answers_c import ANSWERS, BOOK_SURDS, PRINTED, UNITS
-from seed_oracle_c import DIGITS, ORACLES, OTHER, STATEMENT
+from oracle_of_chapters_9_10 import DIGITS, ORACLES, OTHER, STATEMENT
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values

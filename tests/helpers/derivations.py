@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.expressions import Call, Reference, parse
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 
-MODELS = Path(__file__).parent.parent / "models"
+MODELS = Path(__file__).parent.parent.parent / "models"
 PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])
 LARGE = (
     "arm7",

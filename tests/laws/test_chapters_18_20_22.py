@@ -9,11 +9,11 @@ from random import Random
 from typing import Any
 
 import mpmath
+import oracle_of_chapters_18_20_22 as oracle
 import pytest
-import seed_oracle_b as oracle
+from alternatives_of_chapters_18_20_22 import ALTERNATIVES, CLOSURES, HEAD
+from answers_of_chapters_18_20_22 import ANSWERS, LINEARIZED
 from derivations import MODELS
-from seed_alternatives_b import ALTERNATIVES, CLOSURES, HEAD
-from seed_answers_b import ANSWERS, LINEARIZED
 
 import eomgen
 from eomgen.model.values import start_values

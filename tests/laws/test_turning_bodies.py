@@ -9,9 +9,9 @@ from random import Random
 from typing import Any
 
 import pytest
+from answers_of_turning_bodies import ANSWERS, UNITS
 from derivations import MODELS
-from seed_answers_e import ANSWERS, UNITS
-from seed_oracle_e import ORACLES
+from oracle_of_turning_bodies import ORACLES
 
 import eomgen
 from eomgen.symbolic.expression.expressions import as_expression, parse
