@@ -1,8 +1,8 @@
 """Chapters 9 and 10 and the turntable: what `eomgen solve` must answer, as text of the model file's grammar, in SI.
 
 The answers of the solved exercises are the book's, its errata mended, those of the unsolved ones by hand; all are
-derived once more, from positions alone, in oracle_of_chapters_9_10.py, and the tests compare. PRINTED holds the book's decimals,
-in the book's units.
+derived once more, from positions alone, in oracle_of_chapters_9_10.py, and the tests compare. PRINTED holds the book's
+decimals, in the book's units.
 """
 
 from __future__ import annotations
