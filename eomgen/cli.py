@@ -33,6 +33,9 @@ FOLLOW = click.option(
 )
 
 
+NO_CERTIFY = click.option("--no-certify", is_flag=True, help="Make no certificate.")
+
+
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
     from eomgen.verbs.follow import following
@@ -117,7 +120,7 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
     help="Form of the result.  [default: by the ending of -o, else text]",
 )
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
-@click.option("--no-certify", is_flag=True, help="Make no certificate.")
+@NO_CERTIFY
 def derive(
     model: str, wants_json: bool, output: str | None, method: str, format_: str | None, full: bool, no_certify: bool
 ) -> int:
@@ -279,6 +282,7 @@ def linearize(
 @FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
+@NO_CERTIFY
 def simulate(
     model: str,
     wants_json: bool,
@@ -290,6 +294,7 @@ def simulate(
     project_every: int | None,
     baumgarte: tuple[float, float] | None,
     follow: tuple[str, ...],
+    no_certify: bool,
     **options: Any,
 ) -> int:
     """Integrate the motion from the start values.
@@ -307,7 +312,7 @@ def simulate(
     rates = baumgarte or RATES
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as declared:
-        outcome = simulated(_followed(declared, follow), output=output, **options)
+        outcome = simulated(_followed(declared, follow), output=output, certify=not no_certify, **options)
     if output and not wants_json:
         click.echo(outcome.text, err=True, nl=False)
         return deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)

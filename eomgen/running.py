@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from eomgen.certificate import certify
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.equations import Equations
@@ -21,6 +22,8 @@ from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.model.parts import Model
+from eomgen.proof import motion
+from eomgen.proof.check import Certificate
 from eomgen.simulation.breakpoints import knots_of
 from eomgen.simulation.conditions import Condition, condition_of
 from eomgen.simulation.configuration import has_phases
@@ -32,7 +35,7 @@ from eomgen.simulation.joined import thinned
 from eomgen.simulation.measures import independence_of, measure, nearness_of
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import with_reactions
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation.result import Phase, Trajectory
 from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import IMPLICIT
@@ -42,6 +45,42 @@ from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, COMPUTED, FINEST_RUN
 CHOOSE = "declare other speeds"
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
+
+
+@dataclass(frozen=True)
+class RunProof:
+    """What a run is proven by: a trajectory -> its certificate.
+
+    Args:
+        equations: as they ran, of a model whose contacts do not change.
+        rhs: the code that ran these.
+        how: the tolerances of the run.
+    """
+
+    equations: Equations
+    p: np.ndarray
+    rhs: RightHandSide
+    how: Stepping
+
+    def __call__(self, found: Trajectory) -> Certificate:
+        """The proof of the equations, then that of the run."""
+        certificate = certify(self.equations.system, self.equations.graph)
+        legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
+        return certificate + motion.checks(legs, motion.Promise(self.how.rtol, self.how.atol, found.steps))
+
+    def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
+        """The states that a phase went through, none of them after the run was cut."""
+        if phase.track is None or not len(found.t):
+            return
+        phased, equations = phase.model, self.equations
+        system, assembly, rhs = (equations.system, equations.graph, self.rhs)
+        if phased is not None:
+            system, assembly, rhs = phased.system, phased.assembly, phased.rhs
+        t, x = phase.track
+        here = t <= max(found.t[-1], phase.start)
+        inner = np.ascontiguousarray(x[here, : len(rhs.coordinates) + len(rhs.speeds)])
+        pulled = self.how.stabilization == "baumgarte"
+        yield motion.Leg(system, assembly, self.p, rhs, t[here], inner, found.passages, pulled)
 
 
 def run(
@@ -69,6 +108,7 @@ def run(
         UsageError: what is asked makes no sense.
     """
     how, samples = how or Stepping(), SAMPLES if samples is None else samples
+    asked = how
     p = parameter_vector(equations.model, parameters)
     condition = None if until is None else condition_of(equations.model, until)
     check(0.0, time, how)
@@ -96,6 +136,8 @@ def run(
         rhs, found = _one_phase(equations, time, x0, p, how=how, target=target, samples=samples, condition=condition)
         found = replace(found, assembled=begun.words)
     found = with_reactions(_told(found, until), lambda: equations.reactions, rhs, p)
+    ran = pulling(equations, how.rates) if how.stabilization == "baumgarte" else equations
+    found = replace(found, proof=RunProof(ran, p, rhs, asked))
     return thinned(found, samples) if has_phases(equations.model) else found
 
 

@@ -98,16 +98,27 @@ def energy(system: System, assembly: Assembly) -> Check:
     rates follow from ties that move by themselves, what `_carried_power` says comes in addition.
     """
     scope, symbols = system.scope, assembly.symbols
-    momenta = gradient(assembly.T, symbols.u)
-    H = sum((p * u for p, u in zip(momenta, symbols.u, strict=True)), start=assembly.V - assembly.T)
-    powered = total([powered_forces(system.loads), assembly.friction or (0,) * len(symbols.u)], len(symbols.u))
-    power: Scalar = tangent((assembly.V - assembly.T,), _own_motion(scope))[0]
+    power = given_power(system, assembly)
     for k, u in enumerate(symbols.u):
         inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
-        power = power + u * (inertia - assembly.Q[k] + powered[k])
+        power = power + u * (inertia - assembly.Q[k])
+    H = energy_function(assembly)
     left = scope.with_accelerations((H,))[0]
-    power = power + _carried_power(system)
     return _compared("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
+
+
+def energy_function(assembly: Assembly) -> Scalar:
+    """H = u . dT/du - T + V, which is T + V where nothing moves by itself."""
+    momenta = gradient(assembly.T, assembly.symbols.u)
+    return sum((p * u for p, u in zip(momenta, assembly.symbols.u, strict=True)), start=assembly.V - assembly.T)
+
+
+def given_power(system: System, assembly: Assembly) -> Scalar:
+    """dH/dt but for the ties' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
+    speeds = assembly.symbols.u
+    powered = total([powered_forces(system.loads), assembly.friction or (0,) * len(speeds)], len(speeds))
+    power = tangent((assembly.V - assembly.T,), _own_motion(system.scope))[0] + _carried_power(system)
+    return sum((u * Q for u, Q in zip(speeds, powered, strict=True)), start=power)
 
 
 def _carried_power(system: System) -> Scalar:

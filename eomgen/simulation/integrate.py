@@ -80,7 +80,8 @@ def integrate(
     flow = Flow(f, how, rhs.spheres, projection, slope)
     run, passages = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
-    gap, gap_rate = _open(*measured(run.t, run.x, run.tracks), projection, gaps)
+    track = measured(run.t, run.x, run.tracks)
+    gap, gap_rate = _open(*track, projection, gaps)
     return Trajectory(
         t=run.t,
         x=run.x,
@@ -90,7 +91,7 @@ def integrate(
         drift=drift,
         gap=gap,
         gap_rate=gap_rate,
-        phases=(Phase(start, run.end, run.message, (0, len(run.t))),),
+        phases=(Phase(start, run.end, run.message, (0, len(run.t)), track=track),),
         status=run.status,
         message=run.message,
         steps=run.steps,

@@ -36,7 +36,7 @@ def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(
-            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.phase)
+            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.phase, _measured(s))
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,

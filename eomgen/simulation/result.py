@@ -14,7 +14,7 @@ from typing import IO, Any, Literal
 
 import numpy as np
 
-from eomgen.errors import RunFailed
+from eomgen.errors import RunFailed, UsageError
 
 Status = Literal[
     "finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact", "singular"
@@ -31,6 +31,7 @@ class Phase:
         rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
             that of the other, in the state after.
         model: its equations, contacts and reactions, where contacts are that change; else None.
+        track: (instants, states) of the phase: those asked for and the integrator's steps, in order.
         first, last: every column at its beginning and at its end, where contacts are that change; else empty.
     """
 
@@ -39,6 +40,7 @@ class Phase:
     ended_by: str
     rows: tuple[int, int] = (0, 0)
     model: Any = field(default=None, repr=False, compare=False)
+    track: tuple[np.ndarray, np.ndarray] | None = field(default=None, repr=False, compare=False)
     first: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
     last: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
 
@@ -64,6 +66,7 @@ class Trajectory:
         remark: what is missing among them, and why; or "".
         passages: the start and the end of each passage through a singular position (a change point, a dead centre).
         assembled: what was changed of the start values so that the ties hold there, and of which; or "".
+        proof: the run -> its certificate; None where nobody knows its equations.
     """
 
     t: np.ndarray
@@ -84,6 +87,17 @@ class Trajectory:
     gap_rate: float | None = None
     passages: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
+    proof: Callable[[Trajectory], Any] | None = None
+
+    def certify(self) -> Any:
+        """The Certificate of the run: its equations, the code that ran, its steps, energy, ties and reactions.
+
+        Raises:
+            UsageError: it was integrated without the equations of a model.
+        """
+        if self.proof is None:
+            raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
+        return self.proof(self)
 
     @property
     def ok(self) -> bool:

@@ -19,7 +19,7 @@ from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.verbs.given import assignments, nearest
-from eomgen.verbs.outcome import Outcome, prepared
+from eomgen.verbs.outcome import Outcome, prepared, proven
 
 MOST_TOLD = 20  # phases in the text
 
@@ -36,6 +36,7 @@ def simulate(
     until: str | None,
     output: str | None,
     plot: str | None,
+    certify: bool = True,
 ) -> Outcome:
     """The motion from the start; trajectory and picture are written where they are asked for."""
     parameters = _parameters(model, given)
@@ -62,7 +63,8 @@ def simulate(
     told = f"The start was {run.assembled}." if run.assembled else ""
     notes = tuple(note for note in (told, run.remark if run.reactions else "") if note)
     payload = _run_payload(model, run, files) | _first_instant(equations, run, parameters)
-    return Outcome(_run_text(model, run), payload, "" if run.ok else run.message, notes)
+    outcome = Outcome(_run_text(model, run), payload, "" if run.ok else run.message, notes)
+    return proven(outcome, run.certify() if certify else None)
 
 
 def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:

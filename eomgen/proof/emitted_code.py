@@ -1,0 +1,205 @@
+"""Emitted code, states -> checks: what is computed is put back into the equations that it was made from.
+
+    q' = N u + nu,    M a - J^T lam = forcing,    J a = -gamma
+
+The coefficients are the symbols' with 50 digits; a is the code's, lam by least squares. So nothing is shared with the
+code but the equations: neither the elimination, nor the order of its statements, nor its language or compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.constraints.closure import number as precise
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
+
+WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
+HOW = "equations with 50 digits, the code's accelerations put in"
+
+
+Code = Callable[["Instant"], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A state at which code is tried: t, (q, u), and inputs that are given in place of the model's own."""
+
+    t: float
+    x: np.ndarray
+    inputs: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The equations of one phase, and values of its parameters.
+
+    Args:
+        system, assembly: the equations.
+        p: the parameters, in the model's order.
+    """
+
+    system: System
+    assembly: Assembly
+    p: Sequence[float] | np.ndarray
+
+    def values(self, at: Instant) -> dict[Node, Any]:
+        """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
+        symbols = self.assembly.symbols
+        nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
+        numbers = (at.t, *at.x, *self.p)
+        found = {node: precise(float(value)) for node, value in zip(nodes, numbers, strict=True)}
+        inputs = symbols.inputs
+        if at.inputs is not None:
+            return found | {node: precise(float(x)) for node, x in zip(inputs.values(), at.inputs, strict=True)}
+        own = evaluate(tuple(self.system.inputs[name] for name in inputs), found, fifty_digits())
+        return found | dict(zip(inputs.values(), own, strict=True))
+
+    @property
+    def scalars(self) -> tuple[Scalar, ...]:
+        """What stands in the equations: rates, M, J, forcing, gamma, row after row."""
+        assembly = self.assembly
+        matrices = (x for row in (*assembly.M, *assembly.J) for x in row)
+        return (*self.system.scope.rates, *matrices, *assembly.forcing, *assembly.gamma)
+
+    def numbers(self, at: Instant) -> Numbers:
+        """The coefficients at a state.
+
+        Raises:
+            NoValue: some have none there.
+        """
+        found = np.array([float(x) for x in evaluate(self.scalars, self.values(at), fifty_digits())])
+        n, k = len(self.assembly.M), len(self.assembly.J)
+        rates, M, J, forcing, gamma = np.split(found, np.cumsum([len(self.system.scope.rates), n * n, k * n, n]))
+        return Numbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The coefficients of the equations at one state."""
+
+    rates: np.ndarray
+    M: np.ndarray
+    J: np.ndarray
+    forcing: np.ndarray
+    gamma: np.ndarray
+
+    def left(self, dx: np.ndarray) -> tuple[float, str]:
+        """(what dx leaves of the equations, against the largest of their terms; in which); nan where it is none."""
+        rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
+        sizes = 1 + np.max(np.abs(self.rates), initial=0.0)
+        parts = {"q' = N u + nu": np.max(np.abs(rates - self.rates), initial=0.0) / sizes}
+        parts["M a = forcing + J^T lam"] = self._of_forces(a)
+        rows = np.abs(self.J @ a + self.gamma)
+        terms = 1 + np.abs(self.J) @ np.abs(a) + np.abs(self.gamma)
+        parts["J a + gamma = 0"] = float(np.max(rows / terms, initial=0.0))
+        worst = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
+        return float(parts[worst]), worst
+
+    def _of_forces(self, a: np.ndarray) -> float:
+        """Of M a - J^T lam = forcing, its rows weighted by 1/sqrt(M_kk), with the lam that leaves least."""
+        weights = np.diag(self.M)
+        weights = 1 / np.sqrt(np.where(weights > 0, weights, np.max(weights, initial=0.0) or 1.0))
+        needed = weights * (self.M @ a - self.forcing)
+        terms = weights * (np.abs(self.M) @ np.abs(a) + np.abs(self.forcing))
+        if not np.all(np.isfinite(needed)):
+            return float("nan")
+        if len(self.J):
+            J = of_one_length(self.J * weights)
+            lam = np.linalg.lstsq(J.T, needed, rcond=COMPUTED)[0]
+            needed, terms = needed - J.T @ lam, terms + np.abs(J.T) @ np.abs(lam)
+        return float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
+
+
+def right_hand_side(motion: Motion, code: Code, at: Iterable[Instant], name: str) -> Check:
+    """The code's accelerations fulfil the equations at states; one next to a singular position says nothing."""
+
+    def wrong(instant: Instant) -> str | None:
+        numbers = motion.numbers(instant)
+        left, where = numbers.left(code(instant))
+        if left <= COMPUTED:
+            return ""
+        if not _sure(code, instant):
+            return None
+        return f"{where} is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
+
+    return along(name, HOW, at, wrong, cost=len(order(motion.scalars)))
+
+
+def _sure(code: Code, instant: Instant) -> bool:
+    """Whether the code's numbers hardly change where the state does by a part in 1e12, or are nowhere there."""
+    here, *beside = (code(each) for each in (instant, *_beside(instant)))
+    if not np.all(np.isfinite(here)):
+        return not any(np.all(np.isfinite(each)) for each in beside)
+    change = max(float(np.max(np.abs(each - here), initial=0.0)) for each in beside)
+    return bool(change <= COMPUTED * (1 + np.max(np.abs(here), initial=0.0)))
+
+
+def _beside(instant: Instant) -> tuple[Instant, ...]:
+    """The state, each of its numbers a part in 1e12 larger or smaller by turns."""
+    turns = np.where(np.arange(len(instant.x)) % 2, -SOLVED, SOLVED)
+    return tuple(Instant(instant.t, instant.x * (1 + sign * turns), instant.inputs) for sign in (1, -1))
+
+
+def values(
+    name: str,
+    motion: Motion,
+    scalars: Mapping[str, Scalar],
+    code: Code,
+    at: Iterable[Instant],
+    further: Callable[[Instant], Mapping[Node, float]] = lambda _: {},
+) -> Check:
+    """Code against the symbols with 50 digits, entry by entry, relative to the largest.
+
+    Args:
+        scalars: what it computes, by name, in the order of its results.
+        further: values of symbols that the states do not have: accelerations.
+    """
+
+    def wrong(instant: Instant) -> str | None:
+        known = motion.values(instant) | {node: precise(float(x)) for node, x in further(instant).items()}
+        right = np.array([float(x) for x in evaluate(tuple(scalars.values()), known, fifty_digits())])
+        found = np.asarray(code(instant), dtype=float)
+        apart = np.abs(found - right) / (1 + np.max(np.abs(right), initial=0.0))
+        if np.all(apart <= COMPUTED):
+            return ""
+        if not _sure(code, instant):
+            return None
+        k = int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))
+        return f"{list(scalars)[k]} is {found[k]:.12g} for {right[k]:.12g} at t = {instant.t:.6g} s"
+
+    return along(name, "symbols with 50 digits", at, wrong, cost=len(order(tuple(scalars.values()))))
+
+
+def along(name: str, how: str, at: Iterable[Instant], wrong: Callable[[Instant], str | None], *, cost: int) -> Check:
+    """A check at states, as many as the work allows.
+
+    Args:
+        wrong: what is wrong at a state, or ""; None where the state says nothing.
+        cost: graph nodes that one state takes.
+    """
+    count, work = 0, 0
+    for instant in at:
+        if work and work + cost > WORK:
+            break
+        work += cost
+        try:
+            found = wrong(instant)
+        except (NoValue, ZeroDivisionError):
+            continue
+        if found:
+            return checked(name, found, how)
+        count += found is not None
+    if not count:
+        return unchecked(name, "at none of the states have the equations sure values", how)
+    return Check(name, "holds", how, f"at {count} state{'s' * (count > 1)}")

@@ -1,0 +1,252 @@
+"""A run -> checks: the code that ran, its steps, the energy, the ties and the norms, all at states that it visited."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.proof import emitted_code
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.emitted_code import Instant, Motion
+from eomgen.proof.power import Energies, followed
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+
+PER_STEP = 10  # tolerances of the run that one step may cost
+SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
+VISITED = 5  # states of a phase at which the code is tried
+PLACES = 40  # steps that are taken again
+PARTS = (1, 2, 4)  # of a step, until its work is sure
+EXPLICIT = "the run's right-hand side, order 8"
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One phase of a run.
+
+    Args:
+        system, assembly, p: its equations, and the parameters' values.
+        code: the right-hand side that ran.
+        t, x: n instants in order, those asked for and the integrator's steps, and the states there.
+        carried: starts and ends of passages, in which nothing was integrated.
+        pulled: whether its ties were pulled together by Baumgarte's rows.
+    """
+
+    system: System
+    assembly: Assembly
+    p: np.ndarray
+    code: RightHandSide
+    t: np.ndarray
+    x: np.ndarray
+    carried: tuple[tuple[float, float], ...] = ()
+    pulled: bool = False
+
+    @cached_property
+    def energies(self) -> Energies:
+        return Energies(self.system, self.assembly, self.p, self.pulled)
+
+    @cached_property
+    def TVH(self) -> np.ndarray:
+        """(T, V, H) along the leg, 3 x n [J]."""
+        with np.errstate(all="ignore"):
+            return self.energies.along(self.t, self.x)
+
+    def rates(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        return self.code.many(t, x, self.p)
+
+    @cached_property
+    def integrated(self) -> np.ndarray:
+        """Which of the stretches between neighbours the integrator went through."""
+        found = np.diff(self.t) > 0
+        for start, end in self.carried:
+            found &= (self.t[1:] <= start) | (self.t[:-1] >= end)
+        return found
+
+
+@dataclass(frozen=True)
+class Promise:
+    """What a run promises: 10 (rtol size + atol) a step.
+
+    Args:
+        rtol, atol: tolerances of the run.
+        steps: how many it took.
+    """
+
+    rtol: float
+    atol: float
+    steps: int
+
+    def limit(self, size: float) -> float:
+        return PER_STEP * (self.rtol * size + self.atol) * max(self.steps, 1)
+
+
+def checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
+    """Everything that a run promises."""
+    moving = [leg for leg in legs if len(leg.t) and len(leg.assembly.symbols.u)]
+    if not moving:
+        return ()
+    found = [_code(moving), _steps(moving, promise), energy(moving, promise), _impacts(moving, promise)]
+    found += [_ties(moving, promise), _norms(moving, promise)]
+    return tuple(check for check in found if check is not None)
+
+
+# -- the code that ran -----------------------------------------------------------------------------
+
+
+def _code(legs: Sequence[Leg]) -> Check:
+    """At the start, the end and between of every phase, as far as the work allows; a phase fails first."""
+    name = f"the code that ran ({legs[0].code.target}) gives the symbols' numbers"
+    made: dict[int, Leg] = {id(leg.code): leg for leg in reversed(legs)}
+    found = [_code_of(leg, name) for leg in reversed(made.values())]
+    return next((check for check in found if check.ok is False), next((c for c in found if c.ok), found[0]))
+
+
+def _code_of(leg: Leg, name: str) -> Check:
+    places = dict.fromkeys([0, *np.linspace(0, len(leg.t) - 1, VISITED)[1:].astype(int).tolist()])
+    at = [Instant(float(leg.t[i]), leg.x[i]) for i in places]
+    motion = Motion(leg.system, leg.assembly, leg.p)
+    return emitted_code.right_hand_side(motion, lambda instant: leg.code(instant.t, instant.x, leg.p), at, name)
+
+
+# -- the steps -------------------------------------------------------------------------------------
+
+
+def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
+    """From states of the run to the next, taken again in halves: |difference| <= 10 (rtol |x| + atol)."""
+    name, how = "steps taken again from states of the run end where it came", f"{EXPLICIT}, half steps"
+    size = max(float(np.max(np.abs(leg.x), initial=0.0)) for leg in legs)
+    limit, judged = PER_STEP * (promise.rtol * size + promise.atol), 0
+    for leg in legs:
+        places = np.flatnonzero(leg.integrated)
+        i = places[np.unique(np.linspace(0, len(places) - 1, PLACES).astype(int))] if len(places) else places
+        if not len(i):
+            continue
+        with np.errstate(all="ignore"):
+            there, _, unsure = followed(leg.rates, _nothing, leg.t[i], leg.x[i], leg.t[i + 1], parts=2)
+        sure = np.max(unsure, axis=1, initial=0.0) <= SURE * limit
+        apart = np.where(sure, np.max(np.abs(there - leg.x[i + 1]), axis=1, initial=0.0), 0.0)
+        judged += int(np.sum(sure))
+        k = int(np.argmax(apart))
+        if not apart[k] <= limit:
+            return checked(name, f"{apart[k]:.1e} apart at t = {leg.t[i[k] + 1]:.6g} s, limit {limit:.1e}", how)
+    if not judged:
+        return unchecked(name, "its steps are too long or too stiff for the explicit method", how)
+    return Check(name, "holds", how, f"{judged} steps")
+
+
+def _nothing(t: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return np.zeros(len(t))
+
+
+# -- energy ----------------------------------------------------------------------------------------
+
+
+def energy(legs: Sequence[Leg], promise: Promise) -> Check:
+    """|E - E(0) - integral of the power| <= 10 (rtol E_max + atol) steps, in every phase from its start.
+
+    E_max: the largest |T| + |V - V(0)| on the way. Where motions are given E is H = u . dT/du - T + V.
+    """
+    name, how = "E - E0 is the integral of the power", "T and V at the steps; power by virtual work, order 8"
+    moving = max(float(np.max(np.abs(leg.TVH[0]) + np.abs(leg.TVH[1] - leg.TVH[1][0]))) for leg in legs)
+    limit = promise.limit(moving)
+    if not np.isfinite(limit):
+        return unchecked(name, "the energy has no value at some of the states", how)
+    worst, when, unsure = 0.0, 0.0, 0.0
+    for leg in legs:
+        work, left = _work(leg, SURE * limit)
+        unsure = max(unsure, left)
+        drift = np.abs(leg.TVH[2] - leg.TVH[2][0] - work)
+        k = int(np.argmax(drift))
+        if not drift[k] <= worst:
+            worst, when = float(drift[k]), float(leg.t[k])
+    if not unsure <= SURE * limit:
+        return unchecked(name, f"the integral of the power is not sure: by {unsure:.1e} J, limit {limit:.1e} J", how)
+    told = f"|E - E0 - W| <= {worst:.1e} J at t = {when:.6g} s, limit {limit:.1e} J, energy that moves {moving:.3g} J"
+    return Check(name, "holds" if worst <= limit else "fails", how, told)
+
+
+def _work(leg: Leg, wanted: float) -> tuple[np.ndarray, float]:
+    """(the integral of the power from the start to each of the instants [J], how unsure it is)."""
+    if is_zero(leg.energies.power):
+        return np.zeros(len(leg.t)), 0.0
+    places = np.flatnonzero(leg.integrated)
+    work, unsure = np.zeros(len(leg.t) - 1), np.zeros(len(leg.t) - 1)
+    with np.errstate(all="ignore"):
+        P = leg.energies.powers(leg.t, leg.x)
+        dt = np.diff(leg.t)
+        work[:] = 0.5 * (P[1:] + P[:-1]) * dt
+        unsure[:] = np.abs(np.diff(P)) * dt
+        for parts in PARTS:
+            begin, end = leg.t[places], leg.t[places + 1]
+            _, found, doubt = followed(leg.rates, leg.energies.powers, begin, leg.x[places], end, parts)
+            work[places], unsure[places] = found, doubt[:, -1]
+            if np.sum(unsure[leg.integrated]) <= wanted:
+                break
+            places = places[~(doubt[:, -1] <= wanted / len(leg.t))]
+    return np.concatenate([[0.0], np.cumsum(work)]), float(np.sum(unsure))
+
+
+def _impacts(legs: Sequence[Leg], promise: Promise) -> Check | None:
+    """Where nothing is driven, an impact and a change of contacts give no energy."""
+    if len(legs) < 2 or any(not is_zero(x) for leg in legs for x in (*leg.assembly.nu, *leg.assembly.sigma)):
+        return None
+    name, how = "no impact gives energy", "T and V before and after"
+    ends = [(leg.TVH[0] + leg.TVH[1])[[0, -1]] for leg in legs]
+    gains = [after[0] - before[1] for before, after in pairwise(ends)]
+    k = int(np.argmax(gains))
+    moving = max(float(np.max(np.abs(leg.TVH[0]) + np.abs(leg.TVH[1] - leg.TVH[1][0]))) for leg in legs)
+    if gains[k] <= promise.limit(moving):
+        return Check(name, "holds", how, f"{len(gains)} changes of contact")
+    return checked(name, f"{gains[k]:.3g} J at t = {legs[k + 1].t[0]:.6g} s", how)
+
+
+# -- ties and norms --------------------------------------------------------------------------------
+
+
+def _ties(legs: Sequence[Leg], promise: Promise) -> Check | None:
+    """|phi| <= 10 (rtol |q| + atol) steps and |J u + sigma| <= 10 (rtol |u| + atol) steps at every state."""
+    name, how = "the ties stay closed", "gaps and their velocities at the steps, eliminated rows too"
+    judged = 0
+    for leg in legs:
+        rows = [row for row in leg.system.ties.rows if not row.identical]
+        gaps = tuple(row.gap for row in rows if row.gap is not None)
+        n = len(leg.assembly.symbols.q)
+        for scalars, part, what in (
+            (gaps, leg.x[:, :n], "open"),
+            (tuple(r.velocity for r in rows), leg.x[:, n:], "opening"),
+        ):
+            if not scalars:
+                continue
+            limit = promise.limit(float(np.max(np.abs(part), initial=0.0)))
+            found = np.max(np.abs(_function(leg, scalars)), axis=1)
+            judged, k = judged + len(scalars), int(np.argmax(found))
+            if not found[k] <= limit:
+                return checked(name, f"{what} by {found[k]:.1e} at t = {leg.t[k]:.6g} s, limit {limit:.1e}", how)
+    return checked(name, "", how) if judged else None
+
+
+def _norms(legs: Sequence[Leg], promise: Promise) -> Check | None:
+    """|e . e - 1| <= 10 (rtol + atol) steps of every quaternion."""
+    fours = [(leg, four) for leg in legs for four in leg.system.scope.quaternions]
+    if not fours:
+        return None
+    name, how = "quaternions keep their norm", "sums of squares at the steps"
+    for leg, four in fours:
+        away = np.abs(_function(leg, (sum((e * e for e in four), start=-1),)))[:, 0]
+        k = int(np.argmax(away))
+        if not away[k] <= promise.limit(1.0):
+            return checked(name, f"e . e = 1 is missed by {away[k]:.1e} at t = {leg.t[k]:.6g} s", how)
+    return checked(name, "", how)
+
+
+def _function(leg: Leg, scalars: tuple[Scalar, ...]) -> np.ndarray:
+    function = compiled(program_of(scalars, leg.assembly.symbols, inputs=leg.system.inputs), "numpy")
+    with np.errstate(all="ignore"):
+        return function.many(leg.t, leg.x, leg.p)

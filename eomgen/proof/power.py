@@ -1,0 +1,99 @@
+"""Equations, states along a motion -> what its energy does: H - H(0) against the integral of the power.
+
+    H = u . dT/du - T + V    (T + V where nothing moves by itself)
+    dH/dt = Q_nc . u + u . J^T lam + d(V - T)/dt of what moves by itself
+
+The integral is taken along the motion by an explicit method of order 8, one step from each state to the next, with the
+error that its formulas of orders 5 and 3 tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from eomgen.codegen.program import bordered, program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.mechanics.balance.friction import with_rest
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.proof.identities import energy_function, given_power
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+
+Rates = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""(t n, x n x states) -> x', n x states."""
+
+
+@dataclass(frozen=True)
+class Energies:
+    """The energies of one phase, and the power that changes them.
+
+    Args:
+        p: the parameters' values.
+        pulled: whether the ties take power by being open: Baumgarte's rows.
+    """
+
+    system: System
+    assembly: Assembly
+    p: np.ndarray
+    pulled: bool = False
+
+    @cached_property
+    def power(self) -> Scalar:
+        """dH/dt = Q_nc . u + u . J^T lam + what moves by itself."""
+        assembly = self.assembly
+        found = given_power(self.system, assembly)
+        for sigma, row, lam in zip(assembly.sigma, assembly.J, assembly.symbols.lam, strict=True):
+            if self.pulled:
+                found = found + lam * sum((x * u for x, u in zip(row, assembly.symbols.u, strict=True)), start=0)
+            elif not is_zero(sigma):
+                found = found - lam * sigma
+        return with_rest(self.system, (found,))[0]
+
+    def along(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """(T, V, H), each n [J]."""
+        return self._energies.many(t, x, self.p).T
+
+    def powers(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """dH/dt, n [W]."""
+        return self._power.many(t, x, self.p)[:, 0] if not is_zero(self.power) else np.zeros(len(t))
+
+    @cached_property
+    def _energies(self) -> RightHandSide:
+        return self._compiled((self.assembly.T, self.assembly.V, energy_function(self.assembly)))
+
+    @cached_property
+    def _power(self) -> RightHandSide:
+        return self._compiled((self.power,))
+
+    def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        symbols = self.assembly.symbols
+        solve = bordered(self.assembly) if depends_on(scalars[-1], symbols.lam) else None
+        return compiled(program_of(scalars, symbols, inputs=self.system.inputs, solve=solve), "numpy")
+
+
+def followed(
+    rates: Rates, powers: Rates, t: np.ndarray, x: np.ndarray, later: np.ndarray, parts: int = 1
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(the state at `later`, the work until then, how unsure both are), of each of n states by itself.
+
+    y = (x, W), y' = (rates, powers), by Dormand and Prince's formulas of order 8 in so many equal steps.
+    """
+    y, h = np.column_stack([x, np.zeros(len(t))]), (later - t) / parts
+    unsure = np.zeros_like(y)
+    for part in range(parts):
+        K = np.zeros((DOP853.n_stages + 1, *y.shape))
+        for i in range(DOP853.n_stages + 1):
+            last = i == DOP853.n_stages
+            weights = DOP853.B if last else DOP853.A[i, :i]
+            now = y + h[:, None] * np.tensordot(weights, K[: len(weights)], axes=1)
+            when = t + (part + (1.0 if last else DOP853.C[i])) * h
+            K[i] = np.column_stack([rates(when, now[:, :-1]), powers(when, now[:, :-1])])
+        fine, coarse = (np.abs(h[:, None] * np.tensordot(E, K, axes=1)) for E in (DOP853.E5, DOP853.E3))
+        y, unsure = now, unsure + fine * fine / np.maximum(np.hypot(fine, 0.1 * coarse), np.finfo(float).tiny)
+    return y[:, :-1], y[:, -1], unsure

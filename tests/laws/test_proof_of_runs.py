@@ -1,0 +1,170 @@
+"""A run carries its proof: each of its checks holds on the run, and sees an error that is planted for it."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.codegen import build
+from eomgen.proof import identities, motion
+
+MODELS = Path(__file__).parent.parent.parent / "models"
+needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
+
+
+def run_of(name: str, **asked):
+    return eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=1, target="numpy", **asked)
+
+
+def bent(run, phase: int, change):
+    """The run, the states of one of its phases changed: (t, x) -> x."""
+    old = run.phases[phase]
+    t, x = old.track
+    phases = list(run.phases)
+    phases[phase] = replace(old, track=(t, change(t, x.copy())))
+    return replace(run, phases=tuple(phases))
+
+
+def failing(run) -> set[str]:
+    return {check.name for check in run.certify().checks if check.status == "fails"}
+
+
+@pytest.mark.parametrize("name", ["simple_pendulum", "four_bar", "sliding_ladder", "gyrostat", "car_axis"])
+def test_a_run_keeps_its_promises(name):
+    """E - E0 is the integral of the power for pendulums, loops, contacts, quaternions and moving axes alike."""
+    certificate = run_of(name).certify()
+    assert certificate.ok, str(certificate)
+    (energy,) = (check for check in certificate.checks if check.name == ENERGY)
+    assert energy.status == "holds" and "|E - E0 - W| <= " in energy.detail
+
+
+ENERGY = "E - E0 is the integral of the power"
+STEPS = "steps taken again from states of the run end where it came"
+
+
+def test_a_run_that_loses_energy_is_seen():
+    """A speed that is a part in 1e5 too slow in the end, energy T + V of the pendulum."""
+    run = run_of("simple_pendulum")
+
+    def slower(t, x):
+        x[len(t) // 2 :, 1] *= 1 - 1e-5
+        return x
+
+    assert failing(bent(run, 0, slower)) == {ENERGY, STEPS}
+
+
+def test_a_single_wrong_row_between_the_steps_is_seen():
+    """One state of the run a millionth aside: no neighbour leads there."""
+    run = run_of("simple_pendulum", samples=31)
+
+    def aside(t, x):
+        x[20, 0] += 1e-6
+        return x
+
+    assert STEPS in failing(bent(run, 0, aside))
+
+
+def test_a_damper_that_is_forgotten_in_the_power_is_seen(monkeypatch):
+    """E - E0 = integral of Q_nc . u: without Q_nc of the damper nothing accounts for what is lost."""
+    model = eomgen.loads(DAMPED)
+    run = eomgen.simulate(model, time=1, target="numpy")
+    assert run.certify().ok
+    monkeypatch.setattr(identities, "powered_forces", lambda loads: (0,))
+    assert ENERGY in failing(run)
+
+
+DAMPED = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = 2
+k = 30
+c = 0.5
+[coordinates]
+x = { start = 0.3 }
+[points]
+O = [-1, 0]
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces]
+spring = { kind = "spring", points = ["O", "block.center"], stiffness = "k", length = 1 }
+damper = { kind = "damper", points = ["O", "block.center"], damping = "c" }
+"""
+
+
+def test_an_impact_that_gives_energy_is_seen():
+    """The ladder leaves the wall a thousandth faster than it came there."""
+
+    def faster(t, x):
+        x[:, 2:] *= 1.001
+        return x
+
+    assert "no impact gives energy" in failing(bent(run_of("sliding_ladder"), 1, faster))
+
+
+def test_a_loop_that_opens_is_seen():
+    """The dependent angle of the coupler 1e-5 aside: the eliminated rows open."""
+
+    def aside(t, x):
+        x[-1, 1] += 1e-5
+        return x
+
+    assert "the ties stay closed" in failing(bent(run_of("four_bar"), 0, aside))
+
+
+def test_a_quaternion_that_loses_its_norm_is_seen():
+    """e . e = 1"""
+    run = run_of("gyrostat")
+    (four, *_) = eomgen.derive(eomgen.load(MODELS / "gyrostat.toml")).system.scope.quaternions
+    places = [run.coordinates.index(e.name) for e in four]
+
+    def longer(t, x):
+        x[-1, places] *= 1 + 1e-5
+        return x
+
+    assert "quaternions keep their norm" in failing(bent(run, 0, longer))
+
+
+@needs_cc
+def test_a_compiler_that_bends_sine_is_seen(monkeypatch, tmp_path):
+    """C's numbers are put into the equations with 50 digits: exit 3, the result is shown and marked."""
+    script = tmp_path / "cc"
+    script.write_text(f'#!/bin/sh\nexec {build.compiler()} -Dsin=tanh "$@"\n')
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    words = ["simulate", str(MODELS / "simple_pendulum.toml"), "--target", "c", "--time", "1", "--json"]
+    found = CliRunner().invoke(main, words)
+    assert found.exit_code == 3
+    certificate = json.loads(found.stdout)["certificate"]
+    assert certificate["ok"] is False
+    assert "the code that ran (c) gives the symbols' numbers" in wrong_of(certificate)
+    assert json.loads(CliRunner().invoke(main, [*words, "--no-certify"]).stdout)["certificate"] is None
+    assert os.environ["CC"] == str(script)
+
+
+def wrong_of(certificate) -> set[str]:
+    return {check["name"] for check in certificate["checks"] if check["status"] == "fails"}
+
+
+def test_a_drift_beyond_the_tolerances_is_exit_3():
+    """Angles near 1e15 rad are 0.125 apart in doubles: energy goes with them."""
+    words = ["simulate", str(MODELS / "double_pendulum.toml"), "--target", "numpy", "--time", "0.2", "--json"]
+    found = CliRunner().invoke(main, [*words, "--start", "theta1=1e15", "--start", "theta2=0.5"])
+    assert found.exit_code == 3 and ENERGY in wrong_of(json.loads(found.stdout)["certificate"])
+
+
+def test_an_integral_that_is_not_sure_judges_nothing(monkeypatch):
+    """Where the error of the quadrature is near the limit, the energy is unchecked, not wrong."""
+    monkeypatch.setattr(motion, "SURE", 0.0)
+    run = eomgen.simulate(eomgen.loads(DAMPED), time=1, target="numpy")
+    (energy,) = (check for check in run.certify().checks if check.name == ENERGY)
+    assert energy.status == "unchecked" and "not sure" in energy.detail
