@@ -26,6 +26,7 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spin_axes import NAME
 from eomgen.model.quaternions import quaternions_of
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.modes import mode_checks
 from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -211,6 +212,7 @@ def small_motion_checks(modes: Modes) -> Iterator[Check]:
     try:
         yield _reference(differences)
         yield from _matrices(differences)
+        yield from mode_checks(modes)
     except (NoValue, ZeroDivisionError) as error:
         yield unchecked("small motions are those of the equations of motion", str(error), BY_DIFFERENCES)
 

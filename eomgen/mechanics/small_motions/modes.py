@@ -109,7 +109,7 @@ class Modes:
     @cached_property
     def frequencies(self) -> tuple[Frequency, ...]:
         """The frequencies of the oscillating modes, the lowest first."""
-        candidates = self._closed
+        candidates = self.closed
         if not self.small.reference.valued and not self._ordered(candidates):
             raise DerivationError(
                 "which motion is slower, and whether it oscillates, depends on the parameters",
@@ -119,7 +119,7 @@ class Modes:
         return tuple(Frequency(mode, self._exact(mode, candidates)) for mode in self.spectrum.oscillating)
 
     @cached_property
-    def _closed(self) -> list[tuple[float, Scalar]]:
+    def closed(self) -> list[tuple[float, Scalar]]:
         """(number at the parameters, exact frequency)"""
         if self.polynomial is None or self.small.exact is None:
             return []

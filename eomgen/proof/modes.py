@@ -1,0 +1,211 @@
+"""Modes -> checks of what is said of small motions: put back into the matrices, which are proven by themselves.
+
+(lambda^2 M + lambda C + K) v = 0,   sum lambda = tr A,   sum lambda^2 = tr A^2,   p(s) = det(s^2 M + s C + K)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.small_motions.modes import Modes
+from eomgen.mechanics.small_motions.polynomial import Polynomial
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
+
+SAMPLES = (
+    0.7 + 0.9j,
+    -0.4 + 2.3j,
+)  # s, of the geometric mean of all eigenvalues, at which functions of it are compared
+FLOATS = "floating point"
+
+
+def mode_checks(modes: Modes) -> Iterator[Check]:
+    """Of modes, eigenvalues, characteristic polynomial, closed frequencies, stability, transfer functions."""
+    proof = _Proof(modes)
+    yield checked("every mode satisfies (lambda^2 M + lambda C + K) v = 0", proof.wrong_mode, FLOATS)
+    yield checked("the eigenvalues are all there: their sums are the traces of A and A^2", proof.wrong_sums, FLOATS)
+    if modes.polynomial is not None:
+        yield checked("the characteristic polynomial is the determinant", proof.wrong_polynomial, "50 digits")
+    if proof.closed:
+        name = "frequencies in closed form are those of eigenvalues in numbers"
+        yield checked(name, proof.wrong_frequency, FLOATS)
+    yield checked("what is said of stability is so of the eigenvalues of A", proof.wrong_stability, FLOATS)
+    if modes.conditions.expressions:
+        yield proof.conditions()
+    if modes.transfers:
+        yield checked("transfer functions are (s 1 - A)^-1 B", proof.wrong_transfer, FLOATS)
+
+
+@dataclass(frozen=True)
+class _Proof:
+    """What is wrong with each, in words.
+
+    Args:
+        modes: of the small motions.
+    """
+
+    modes: Modes
+
+    @property
+    def A(self) -> np.ndarray:
+        return self.modes.small.state_matrix
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """The eigenvalues of A, found again."""
+        found: np.ndarray = np.linalg.eigvals(self.A)
+        return found
+
+    @cached_property
+    def largest(self) -> float:
+        return float(abs(self.values).max(initial=0))
+
+    @cached_property
+    def rate(self) -> float:
+        """What is usual of the eigenvalues that are not 0."""
+        sizes = abs(self.values)
+        sizes = sizes[sizes > SAME_PLACE * self.largest]
+        return float(np.exp(np.log(sizes).mean())) if len(sizes) else 1.0
+
+    # -- modes -----------------------------------------------------------------------------------------------
+
+    @cached_property
+    def wrong_mode(self) -> str:
+        """(A - lambda) x = 0 with the printed coordinates of the shape; the speeds of x as they then must be."""
+        n = len(self.modes.small.numbers.coordinates)
+        for k, mode in enumerate(self.modes.spectrum.modes, start=1):
+            v = self._coordinates(mode.shape)
+            if v is None or not abs(v).max(initial=0):
+                continue
+            pencil = self.A - mode.eigenvalue * np.eye(len(self.A))
+            scale = 1 / (abs(pencil).max(axis=1) + SLOW * self.rate)  # of each row, in its own unit
+            pencil = pencil * scale[:, None]
+            u = np.linalg.lstsq(pencil[:, n:], -pencil[:, :n] @ v, rcond=None)[0]
+            x = np.concatenate([v, u])
+            left = abs(pencil @ x)
+            if left.max() > SAME_PLACE * abs(x).max():
+                return f"mode {k}: {left.max():.2g} is left"
+        return ""
+
+    def _coordinates(self, shape: Any) -> np.ndarray | None:
+        """Of the printed coordinates; None where small turns stand in their place."""
+        labels = self.modes.small.numbers.coordinates
+        return np.array([shape[q] for q in labels]) if all(q in shape for q in labels) else None
+
+    @cached_property
+    def wrong_sums(self) -> str:
+        values = np.array(self.modes.spectrum.eigenvalues)
+        if len(values) != len(self.A):
+            return f"{len(values)} for {len(self.A)} states"
+        for k, trace in ((1, np.trace(self.A)), (2, np.trace(self.A @ self.A))):
+            size = (abs(values) ** k).sum() + (abs(self.A).max(initial=0) * SLOW) ** k
+            if abs((values**k).sum() - trace) > SAME_PLACE * size:
+                return f"the sum of lambda^{k} is {(values**k).sum():.10g}, the trace {trace:.10g}"
+        return ""
+
+    # -- in closed form --------------------------------------------------------------------------------------
+
+    @cached_property
+    def wrong_polynomial(self) -> str:
+        """p(s) against the determinant of the pencil, at numbers s."""
+        small, polynomial = self.modes.small, self.modes.polynomial
+        assert small.exact is not None and polynomial is not None
+        digits, trial, e = fifty_digits(), small.reference.trial, small.exact
+        flat = [x for A in (e.M, e.C, e.K, e.F, e.E) for row in A for x in row]
+        *values, one = evaluate((*flat, *polynomial.coefficients, 1), trial, digits)
+        entries, n, m = iter(values), len(e.speeds), len(e.coordinates)
+        M, C, K, F, E = (
+            [[next(entries) for _ in range(k)] for _ in range(rows)]
+            for rows, k in ((n, n), (n, n), (n, m), (m, m), (m, n))
+        )
+        p = Polynomial(tuple(entries))
+        for part in (7, -13):
+            s = one * self.rate * part / 10
+            upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
+            lower = [[*K[i], *(s * x + c for x, c in zip(M[i], C[i], strict=True))] for i in range(n)]
+            det, size = (
+                one.context.det(one.context.matrix(upper + lower)),
+                sum(abs(c * s**k) for k, c in enumerate(p.coefficients)),
+            )
+            if abs(det - p.at(s)) > DIFFERENCE_AT_50 * size:
+                return f"p({float(s):.6g}) = {float(p.at(s)):.10g} against {float(det):.10g}"
+        return ""
+
+    @cached_property
+    def closed(self) -> list[float]:
+        """The frequencies in closed form, in numbers."""
+        return [number for number, _ in self.modes.closed if number >= 0]
+
+    @cached_property
+    def wrong_frequency(self) -> str:
+        for w in self.closed:
+            away = abs(self.values.imag - w).min()
+            if away > SAME_PLACE * max(w, SLOW * self.largest):
+                return f"{w:.10g} rad/s is the frequency of no eigenvalue"
+        printed = [f for f in self.modes.spectrum.oscillating if f.frequency]
+        for mode in printed:
+            assert mode.frequency is not None
+            if abs(self.values.imag - mode.frequency).min() > SAME_PLACE * self.largest:
+                return f"{mode.frequency:.10g} rad/s is the frequency of no eigenvalue"
+        return ""
+
+    # -- stability -------------------------------------------------------------------------------------------
+
+    @cached_property
+    def growth(self) -> float:
+        """The largest real part, of the largest eigenvalue; those that are 0 left out."""
+        zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)
+        left = self.values[np.argsort(abs(self.values))[zeros:]]
+        return float(left.real.max(initial=-np.inf)) / self.largest if self.largest else 0.0
+
+    @cached_property
+    def wrong_stability(self) -> str:
+        said = self.modes.spectrum.stability
+        if said == "unstable":
+            return "none of them grows" if self.growth < -CARRIED else ""
+        return f"said to be {said}, and one of them grows" if said != "undecided" and self.growth > SAME_PLACE else ""
+
+    def conditions(self) -> Check:
+        """All are positive where nothing grows, and one is not where something does."""
+        name = "the conditions of stability hold where nothing grows, and only there"
+        digits, trial = fifty_digits(), self.modes.small.reference.trial
+        try:
+            values = evaluate(self.modes.conditions.expressions, trial, digits)
+        except (NoValue, ZeroDivisionError):
+            return unchecked(name, "they have no value", FLOATS)
+        wrong = ""
+        if min(values) > 0 and self.growth > SAME_PLACE:
+            wrong = "all hold, and an eigenvalue grows"
+        if min(values) < 0 and self.growth < -SAME_PLACE:
+            wrong = "one does not hold, and all eigenvalues fade"
+        return checked(name, wrong, FLOATS)
+
+    # -- inputs ----------------------------------------------------------------------------------------------
+
+    @cached_property
+    def wrong_transfer(self) -> str:
+        small, names = self.modes.small, self.modes.small.numbers
+        trial = {x: float(v) for x, v in small.reference.trial.items()}
+        for s in (self.rate * x for x in SAMPLES):
+            answers = np.linalg.solve(s * np.eye(len(self.A)) - self.A, small.input_matrix.astype(complex))
+            for f in self.modes.transfers:
+                i, j = names.coordinates.index(f.coordinate), names.inputs.index(f.input)
+                found = _value(f.above, s, trial) / _value(f.below, s, trial)
+                if abs(found - answers[i, j]) > SAME_PLACE * abs(answers[:, j]).max():
+                    return f"{f.coordinate.name}/{f.input.name}: {found:.6g} against {answers[i, j]:.6g}"
+        return ""
+
+
+def _value(polynomial: Polynomial, s: complex, trial: dict[Node, Any]) -> complex:
+    digits = {x: fifty_digits().number(1) * v for x, v in trial.items()}
+    floats = [
+        c if isinstance(c, float) else float(evaluate((c,), digits, fifty_digits())[0]) for c in polynomial.coefficients
+    ]
+    return complex(Polynomial(tuple(floats)).at(s))
