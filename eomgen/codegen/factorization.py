@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from eomgen.codegen.sparsity import mask_of, members
+from eomgen.codegen.sparsity import MatrixRow, mask_of, members
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
-Row = Sequence[Scalar]
 
-
-def solved(M: Sequence[Row], F: Row) -> tuple[Scalar, ...]:
+def solved(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
     """The accelerations a of M a = F, as expressions.
 
     M = L^T D L,  L^T z = F,  a = L^-1 D^-1 z
@@ -44,12 +42,12 @@ def solved(M: Sequence[Row], F: Row) -> tuple[Scalar, ...]:
     return tuple(a)
 
 
-def elimination_order(M: Sequence[Row]) -> list[int]:
+def elimination_order(M: Sequence[MatrixRow]) -> list[int]:
     """Pivots with the fewest partners first (in a tree: leaves), of equal ones the last: least fill."""
     return [k for k, _ in _eliminations(M)]
 
 
-def operation_count(M: Sequence[Row]) -> int:
+def operation_count(M: Sequence[MatrixRow]) -> int:
     """About how many operations `solved` takes, from the zeros of M alone.
 
     Sum over pivots with d partners: d quotients, d (d + 1) in the matrix, 4 d + 1 in the right side.
@@ -71,12 +69,12 @@ def _eliminate(rows: list[list[Any]], z: list[Any], k: int, partners: list[int])
     z[k] = over(z[k], d)
 
 
-def _partners(rows: Sequence[Row], k: int, pivots: list[int]) -> list[int]:
+def _partners(rows: Sequence[MatrixRow], k: int, pivots: list[int]) -> list[int]:
     """The columns of row k that are not zero and not yet eliminated when k is the pivot."""
     return [i for i in pivots[pivots.index(k) + 1 :] if not is_zero(rows[k][i])]
 
 
-def _eliminations(M: Sequence[Row]) -> list[tuple[int, int]]:
+def _eliminations(M: Sequence[MatrixRow]) -> list[tuple[int, int]]:
     """(pivot, number of its partners) in the order of elimination."""
     n = len(M)
     neighbours = [mask_of(i for i in range(n) if i != k and not is_zero(M[k][i])) for k in range(n)]

@@ -16,11 +16,11 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.expression.traversal import FREE, Count, order
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
-Row = tuple[Scalar, ...]
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class Solve:
         unknowns: the symbols that stand for (a, lam) in later statements, n + k.
     """
 
-    matrix: tuple[Row, ...]
-    border: tuple[Row, ...]
-    right: Row
+    matrix: tuple[ScalarRow, ...]
+    border: tuple[ScalarRow, ...]
+    right: ScalarRow
     unknowns: tuple[Node, ...]
 
     @property
@@ -54,7 +54,7 @@ class Solve:
         return "kkt" if self.border else "dense"
 
     @property
-    def entries(self) -> Row:
+    def entries(self) -> ScalarRow:
         """The lower triangle of the matrix, row after row; the border, row after row; the right side."""
         lower = [self.matrix[i][j] for i in range(len(self.matrix)) for j in range(i + 1)]
         return (*lower, *(entry for row in self.border for entry in row), *self.right)
@@ -99,11 +99,11 @@ class Program:
     """
 
     symbols: Symbols
-    defaults: Row
+    defaults: ScalarRow
     preamble: tuple[Assign, ...]
     hoisted: tuple[Assign, ...]
     statements: tuple[Statement, ...]
-    outputs: Row
+    outputs: ScalarRow
     count: Count
     accelerations: tuple[Node, ...] = ()
 
@@ -132,7 +132,7 @@ def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = No
     return program_in_motion((*kinematics(assembly), *assembly.symbols.a), assembly, inputs)
 
 
-def program_in_motion(outputs: Row, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
+def program_in_motion(outputs: ScalarRow, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
     """Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations.
 
     Args:
@@ -150,7 +150,7 @@ def program_in_motion(outputs: Row, assembly: Assembly, inputs: Mapping[str, Sca
     return min(candidates, key=lambda program: program.count.total)
 
 
-def _explicit_accelerations(assembly: Assembly) -> list[Row]:
+def _explicit_accelerations(assembly: Assembly) -> list[ScalarRow]:
     """a written out: as the formulation gives them, and by a factorization that is not too long."""
     found = [] if assembly.accelerations is None else [assembly.accelerations]
     if not assembly.friction and _is_short(assembly):
@@ -162,12 +162,12 @@ def _is_short(assembly: Assembly) -> bool:
     return factorization.operation_count(assembly.M) <= UNROLLED_AT_MOST
 
 
-def _explicit(outputs: Row, assembly: Assembly, a: Row, inputs: Mapping[str, Scalar] | None) -> Program:
+def _explicit(outputs: ScalarRow, assembly: Assembly, a: ScalarRow, inputs: Mapping[str, Scalar] | None) -> Program:
     known = dict(zip(assembly.symbols.a, a, strict=True))
     return program_of(substituted(outputs, known), assembly.symbols, inputs=inputs)
 
 
-def kinematics(assembly: Assembly) -> Row:
+def kinematics(assembly: Assembly) -> ScalarRow:
     """q' = N u + nu"""
     u = assembly.symbols.u
     rates = []
@@ -186,7 +186,7 @@ def bordered(assembly: Assembly) -> Solve:
     return _ordered(assembly.M, assembly.J, right, symbols.a + symbols.lam)
 
 
-def _ordered(M: Sequence[Row], J: Sequence[Row], right: Row, unknowns: tuple[Node, ...]) -> Solve:
+def _ordered(M: Sequence[ScalarRow], J: Sequence[ScalarRow], right: ScalarRow, unknowns: tuple[Node, ...]) -> Solve:
     """The system with the accelerations in the order in which elimination fills in least: in a tree leaves first."""
     order = factorization.elimination_order(M)
     places = [*order, *range(len(M), len(right))]
@@ -238,7 +238,7 @@ def program_of(
     )
 
 
-def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Scalar]) -> Row:
+def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Scalar]) -> ScalarRow:
     """The inputs' own expressions; an input that nothing needs may do without."""
     used = {x.name for x in needed if x.op == "symbol"}
     silent = [name for name in symbols.inputs if name in used and name not in inputs]

@@ -11,12 +11,13 @@ from contextlib import suppress
 from eomgen.codegen.factorization import solved
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import values_at_a_state
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.explicit_accelerations import by_determinants, regular_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.accelerations_at_start import FEW, by_independent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.solve import cramer, linear
 
 
@@ -59,7 +60,7 @@ def _some_massless(assembly: Assembly) -> bool:
     return any(is_zero(row[k]) for k, row in enumerate(assembly.M))
 
 
-def _weighted(assembly: Assembly, kept: Sequence[int]) -> tuple[Sequence[Row], Row]:
+def _weighted(assembly: Assembly, kept: Sequence[int]) -> tuple[Sequence[ScalarRow], ScalarRow]:
     """M + J^T J and F - J^T gamma, with the same a and lam as J a = -gamma, and regular where the ties make M so."""
     J, n = [assembly.J[i] for i in kept], range(len(assembly.M))
     gamma = [assembly.gamma[i] for i in kept]

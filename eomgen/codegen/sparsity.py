@@ -13,7 +13,7 @@ from functools import cached_property
 
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
-Row = Sequence[Scalar]
+MatrixRow = Sequence[Scalar]
 Places = tuple[tuple[int, ...], ...]
 
 
@@ -47,7 +47,7 @@ class Zeros:
         return factor + (k and border + multipliers) + once + again
 
 
-def zeros_of(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
+def zeros_of(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
     """Where the factors of M, eliminated in the order of its rows, and L^-1 J^T are not zero.
 
     Args:
@@ -57,7 +57,7 @@ def zeros_of(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
     return _filled(_later(M), _touched(J))
 
 
-def zeros_with_ties(M: Sequence[Row], J: Sequence[Row]) -> Zeros:
+def zeros_with_ties(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
     """The same of M + J^T W J with any diagonal W."""
     later, touched = _later(M), _touched(J)
     for row in touched:
@@ -80,12 +80,12 @@ def _above(mask: int, j: int) -> int:
     return mask >> (j + 1) << (j + 1)
 
 
-def _later(M: Sequence[Row]) -> list[int]:
+def _later(M: Sequence[MatrixRow]) -> list[int]:
     n = len(M)
     return [mask_of(i for i in range(j + 1, n) if not is_zero(M[j][i])) for j in range(n)]
 
 
-def _touched(J: Sequence[Row]) -> list[int]:
+def _touched(J: Sequence[MatrixRow]) -> list[int]:
     return [mask_of(i for i, x in enumerate(row) if not is_zero(x)) for row in J]
 
 

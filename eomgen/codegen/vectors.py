@@ -12,7 +12,7 @@ from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.spheres import on_spheres, spheres_of
-from eomgen.codegen.targets.base import Vector
+from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, fifty_digits
@@ -23,7 +23,9 @@ PARTIAL = 2  # states, at most, at which some result has no value
 NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there has none either
 
 
-def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1) -> tuple[Vector, ...]:
+def vectors(
+    program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1
+) -> tuple[TestVector, ...]:
     """Right answers near the start (else near 0), half of them with inputs given where there are any.
 
     Args:
@@ -33,8 +35,8 @@ def vectors(program: Program, *, x0: Any = None, p0: Any = None, count: int = 6,
     """
     rng = random.Random(seed)
     floats = compiled(program, "numpy")
-    found: list[Vector] = []
-    partial: list[Vector] = []
+    found: list[TestVector] = []
+    partial: list[TestVector] = []
     for _ in range(TRIES):
         if len(found) == count:
             break
@@ -70,7 +72,7 @@ def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
     return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.lists), strict=True))
 
 
-def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> Vector:
+def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> TestVector:
     """A state without its answer; short decimals, for the reader."""
     symbols = program.symbols
     start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
@@ -78,10 +80,10 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
-    return Vector(t, x, p, inputs if with_inputs and inputs else None, (), SOLVED, a)
+    return TestVector(t, x, p, inputs if with_inputs and inputs else None, (), SOLVED, a)
 
 
-def _vector(program: Program, floats: RightHandSide, state: Vector) -> Vector | None:
+def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestVector | None:
     """The state with its answer, or None where there is none."""
     symbols = program.symbols
     arguments = [symbols.t, *program.moving, *symbols.parameters.values()]

@@ -22,7 +22,8 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.free_bodies import demand_of
 from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of
 from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution, weighted, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -31,8 +32,6 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LEAST
 SINGULAR = 1e13  # condition number from which a mass matrix counts as singular in double precision
 REFINEMENTS = 40  # each adds the digits that the condition number leaves of 16
 TRIES = 20
-
-State = dict[Node, Any]
 
 
 def eliminated_rows(system: System) -> Check:

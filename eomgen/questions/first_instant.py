@@ -17,9 +17,10 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.closed_instant import ClosedInstant
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.locating import Locating, Numbers, State, values_of
+from eomgen.simulation.locating import Locating, values_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that have none
@@ -37,7 +38,7 @@ class Instant:
     """
 
     exact: State = field(default_factory=dict)
-    numbers: Numbers = field(default_factory=dict)
+    numbers: State = field(default_factory=dict)
     method: str = "integration in time"
 
 
@@ -79,14 +80,14 @@ class _Search:
     condition: Scalar
     start: State
 
-    def at(self, start: Numbers, values: Numbers, rhs: RightHandSide | None) -> Instant:
+    def at(self, start: State, values: State, rhs: RightHandSide | None) -> Instant:
         """The instant at the parameters' values."""
         equations = (self.system, self.assembly, self.accelerations)
         numbers, method = Locating(*equations, self.condition, self.start, start, values, rhs).located()
         exact, way = self._exact(numbers, values)
         return Instant(exact, numbers, way or method)
 
-    def with_trial_values(self, known: Numbers) -> Instant:
+    def with_trial_values(self, known: State) -> Instant:
         """The instant in closed form alone: branches are chosen at values that the parameters might have.
 
         Raises:
@@ -105,7 +106,7 @@ class _Search:
         tried = "at the values tried for parameters without one"
         raise RunFailed(f"{reason.what} ({tried})", mend="give the parameters values")
 
-    def _exact(self, numbers: Numbers, values: Numbers) -> tuple[State, str]:
+    def _exact(self, numbers: State, values: State) -> tuple[State, str]:
         """(t, q and u in closed form, by which way); the way is "" where the numbers' own is the better word."""
         symbols = self.system.symbols
         moving = {*symbols.q, *symbols.u}

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 from eomgen.codegen.solved_equations import accelerations_and_multipliers
 from eomgen.errors import MissingValues
@@ -24,7 +25,7 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.closure import number as precise
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
@@ -39,13 +40,13 @@ from eomgen.symbolic.exact.normal_form import legible, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import linear
 
 LONG = 400  # characters from which a formula is no easier to read than it came
-State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class PhaseEquations:
         return accelerations_and_multipliers(self.system, self.assembly)
 
     @property
-    def accelerations(self) -> Row:
+    def accelerations(self) -> ScalarRow:
         return tuple(self.unknowns[a] for a in self.system.symbols.a)
 
     @cached_property
@@ -178,7 +179,7 @@ class PhaseEquations:
             return False
         return math.isclose(found, float(sharp), rel_tol=COMPUTED, abs_tol=COMPUTED)
 
-    def at(self, formula: Expression, state: State) -> Scalar:
+    def at(self, formula: Expression, state: Mapping[Node, Any]) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.
 
         Args:
@@ -188,7 +189,7 @@ class PhaseEquations:
         """
         return self.simple(self._solved_at(formula, state))
 
-    def _solved_at(self, formula: Expression, state: State, *, readable: bool = True) -> Scalar:
+    def _solved_at(self, formula: Expression, state: Mapping[Node, Any], *, readable: bool = True) -> Scalar:
         """The formula at a state, the equations of motion solved anew there.
 
         Args:
@@ -207,7 +208,7 @@ class PhaseEquations:
             raise MissingValues(tuple(left))
         return scalar
 
-    def complete(self, state: State, formula: Expression | None = None, *, readable: bool = True) -> State:
+    def complete(self, state: Mapping[Node, Any], formula: Expression | None = None, *, readable: bool = True) -> State:
         """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
@@ -232,7 +233,7 @@ class PhaseEquations:
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 
-    def _unknowns_at(self, state: State, readable: bool) -> dict[Node, Scalar]:
+    def _unknowns_at(self, state: Mapping[Node, Any], readable: bool) -> dict[Node, Scalar]:
         """Accelerations and multipliers at a state: the equations solved there."""
         symbols, assembly = self.system.symbols, self.assembly
         if assembly.friction:

@@ -15,7 +15,7 @@ from math import isfinite
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.instant.kinematic_state import KinematicState, State
+from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import Equation
 from eomgen.model.part import altered, made
@@ -27,6 +27,7 @@ from eomgen.report.kinematics.result import Kinematics
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse_equation
 from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.print.text import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place

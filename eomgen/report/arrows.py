@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.report.drawing import LOAD, REACTION, Sketch
 from eomgen.report.figures import halo
-from eomgen.report.support_symbols import Place
+from eomgen.report.support_symbols import PagePoint
 
 __all__ = ["LOAD", "REACTION", "arrow", "distributed", "is_freer_outward", "moment_arc"]
 
@@ -19,7 +19,7 @@ STEEP = 0.25  # sine of the angle below which two lines run along one another
 CLEAR = 0.15  # of an arrow: nearer to a line it is on it; so much of it is at its own place
 
 
-def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "", outward: bool = False) -> None:
+def arrow(panel: Any, tip: PagePoint, vector: PagePoint, *, color: str, label: str = "", outward: bool = False) -> None:
     """An arrow whose tip is at a place; `outward`: that begins there (velocities, displacements).
 
     Args:
@@ -57,7 +57,7 @@ def arrow(panel: Any, tip: Place, vector: Place, *, color: str, label: str = "",
         )
 
 
-def is_freer_outward(lines: Iterable[np.ndarray], at: Place, vector: Place) -> bool:
+def is_freer_outward(lines: Iterable[np.ndarray], at: PagePoint, vector: PagePoint) -> bool:
     """Whether an arrow meets fewer lines where it begins at its place than where it ends there."""
     pieces = [piece for line in lines for piece in pairwise(line)]
     place, stroke = np.array(at), np.array(vector)
@@ -85,7 +85,7 @@ def _aligned(away: float, before: str, after: str) -> str:
     return "center" if abs(away) < 3 else after if away > 0 else before
 
 
-def moment_arc(panel: Any, sketch: Sketch, at: Place, sense: float, *, color: str, label: str = "") -> None:
+def moment_arc(panel: Any, sketch: Sketch, at: PagePoint, sense: float, *, color: str, label: str = "") -> None:
     """A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense."""
     r = 1.9 * sketch.symbol
     turns = np.linspace(-0.25 * math.pi, 1.25 * math.pi, 40)
@@ -115,7 +115,12 @@ def moment_arc(panel: Any, sketch: Sketch, at: Place, sense: float, *, color: st
 
 
 def distributed(
-    panel: Any, ends: tuple[Place, Place], vectors: tuple[Place, Place], *, color: str = LOAD, label: str = ""
+    panel: Any,
+    ends: tuple[PagePoint, PagePoint],
+    vectors: tuple[PagePoint, PagePoint],
+    *,
+    color: str = LOAD,
+    label: str = "",
 ) -> None:
     """A load along a line: arrows whose tips are on it, their tails joined.
 

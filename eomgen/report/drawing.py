@@ -19,7 +19,7 @@ from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.trusses import is_node
 from eomgen.report.coil import coil
 from eomgen.report.figures import halo
-from eomgen.report.support_symbols import GROUNDED, Place, clamp, hinge, pin, rail, roller, weld
+from eomgen.report.support_symbols import GROUNDED, PagePoint, clamp, hinge, pin, rail, roller, weld
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply
@@ -49,12 +49,12 @@ class Sketch:
         """What scalars are worth there."""
         return [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
 
-    def place(self, point: Vector) -> Place:
+    def place(self, point: Vector) -> PagePoint:
         """A place of the ground's axes."""
         x, y = self.numbers(point[:2])
         return x, y
 
-    def position(self, place: tuple[str | None, Vector]) -> Place:
+    def position(self, place: tuple[str | None, Vector]) -> PagePoint:
         """Where a place of a body is."""
         return self.place(self.system.motion.position(place))
 
@@ -104,7 +104,7 @@ class Sketch:
         return float(np.max(np.ptp(corners, axis=0), initial=0.0)) or 1.0 if len(corners) else 1.0
 
     @cached_property
-    def points(self) -> dict[str, Place]:
+    def points(self) -> dict[str, PagePoint]:
         """Every named point of the bodies and of the ground by its whole name; origins and mass centres left out."""
         motion, model = self.system.motion, self.system.scope.model
         found = {name: self.place(motion.scope.vector(place)) for name, place in model.points.items()}
@@ -176,13 +176,13 @@ def _is_closed(line: np.ndarray) -> bool:
     return len(line) > 3 and bool(np.allclose(line[0], line[-1]))
 
 
-def _middle(line: np.ndarray) -> Place:
+def _middle(line: np.ndarray) -> PagePoint:
     """Half-way along the longest piece of an open line, the middle of a closed one."""
     x, y = line[:-1].mean(axis=0) if _is_closed(line) else np.mean(_longest(line), axis=0)
     return float(x), float(y)
 
 
-def _beside(line: np.ndarray) -> Place:
+def _beside(line: np.ndarray) -> PagePoint:
     """From the middle to the name [points]: above an open line, or left of it; nothing for a closed one."""
     if _is_closed(line):
         return (0.0, 0.0)
@@ -260,7 +260,7 @@ def _springs(panel: Any, sketch: Sketch) -> None:
             _spring(panel, sketch, sketch.place(above.point(link.before.p)), sketch.position((link.name, link.point)))
 
 
-def _spring(panel: Any, sketch: Sketch, a: Place, b: Place) -> None:
+def _spring(panel: Any, sketch: Sketch, a: PagePoint, b: PagePoint) -> None:
     """A zigzag."""
     panel.plot(*coil(a, b, sketch.symbol / 2).T, color=GROUNDED, linewidth=1.2, zorder=1)
 

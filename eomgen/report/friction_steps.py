@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.mechanics.balance.friction import Rub
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
@@ -20,6 +20,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
@@ -43,7 +44,7 @@ class Friction:
         solved: the step of the accelerations, () where they are long.
     """
 
-    forces: Row
+    forces: ScalarRow
     definitions: tuple[tuple[Node, Scalar], ...]
     step: Step
     solved: tuple[Step, ...]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.report.energy_steps import Momenta
@@ -20,6 +20,7 @@ from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 
 MAGGI = Law(
     "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i) = sum_i N_ik*Q_i",
@@ -30,7 +31,7 @@ WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\math
 
 
 def maggi_equations(
-    system: System, free: System, reader: Reader, assembly: Assembly, momenta: Momenta, forces: Row
+    system: System, free: System, reader: Reader, assembly: Assembly, momenta: Momenta, forces: ScalarRow
 ) -> Result | None:
     """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
 
@@ -62,7 +63,7 @@ def maggi_equations(
     return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
-def _followers(system: System, free: System, N: Sequence[Row]) -> list[tuple[Node, Scalar]]:
+def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:
     """u_d = A u + b, then a_d = A a + A' u + b', in the rates of all coordinates, of each dependent one."""
     rates = dict(zip(free.symbols.u, free_rates(system, free), strict=True))
     dependent = [k for k, u in enumerate(free.symbols.u) if u not in system.symbols.u]

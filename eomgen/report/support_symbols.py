@@ -8,26 +8,26 @@ from typing import Any
 
 import numpy as np
 
-Place = tuple[float, float]
+PagePoint = tuple[float, float]
 GROUNDED = "#5a5a5a"
 
 
-def _turned(at: Place, turn: float, points: Iterable[Place]) -> np.ndarray:
+def _turned(at: PagePoint, turn: float, points: Iterable[PagePoint]) -> np.ndarray:
     c, s = math.cos(turn), math.sin(turn)
     return np.array([(at[0] + c * x - s * y, at[1] + s * x + c * y) for x, y in points])
 
 
-def hinge(panel: Any, d: float, at: Place) -> None:
+def hinge(panel: Any, d: float, at: PagePoint) -> None:
     """A small circle."""
     panel.plot(*at, marker="o", markersize=6, markerfacecolor="white", markeredgecolor=GROUNDED, zorder=5)
 
 
-def weld(panel: Any, d: float, at: Place) -> None:
+def weld(panel: Any, d: float, at: PagePoint) -> None:
     """A small square."""
     panel.plot(*at, marker="s", markersize=5, color=GROUNDED, zorder=5)
 
 
-def pin(panel: Any, d: float, at: Place) -> None:
+def pin(panel: Any, d: float, at: PagePoint) -> None:
     """A triangle on the ground under a hinge."""
     panel.fill(
         *_turned(at, 0.0, [(0, 0), (-d, -1.7 * d), (d, -1.7 * d)]).T, facecolor="white", edgecolor=GROUNDED, zorder=4
@@ -36,7 +36,7 @@ def pin(panel: Any, d: float, at: Place) -> None:
     hinge(panel, d, at)
 
 
-def roller(panel: Any, d: float, at: Place, turn: float) -> None:
+def roller(panel: Any, d: float, at: PagePoint, turn: float) -> None:
     """The same on wheels, turned by an angle."""
     panel.fill(
         *_turned(at, turn, [(0, 0), (-d, -1.4 * d), (d, -1.4 * d)]).T, facecolor="white", edgecolor=GROUNDED, zorder=4
@@ -48,19 +48,19 @@ def roller(panel: Any, d: float, at: Place, turn: float) -> None:
     hinge(panel, d, at)
 
 
-def clamp(panel: Any, d: float, at: Place) -> None:
+def clamp(panel: Any, d: float, at: PagePoint) -> None:
     """A block in the ground."""
     panel.plot(*at, marker="s", markersize=7, color=GROUNDED, zorder=5)
     _ground(panel, d, at, 0.0, -0.5 * d)
 
 
-def rail(panel: Any, d: float, at: Place, turn: float) -> None:
+def rail(panel: Any, d: float, at: PagePoint, turn: float) -> None:
     """A block on a line along which it slides."""
     panel.plot(*_turned(at, turn, [(-3 * d, 0), (3 * d, 0)]).T, color=GROUNDED, linewidth=0.9, zorder=1)
     panel.plot(*at, marker="s", markersize=7, markerfacecolor="white", markeredgecolor=GROUNDED, zorder=4)
 
 
-def _ground(panel: Any, d: float, at: Place, turn: float, below: float) -> None:
+def _ground(panel: Any, d: float, at: PagePoint, turn: float, below: float) -> None:
     """A line with hatching."""
     panel.plot(*_turned(at, turn, [(-1.7 * d, below), (1.7 * d, below)]).T, color=GROUNDED, linewidth=1.2, zorder=4)
     for k in range(6):

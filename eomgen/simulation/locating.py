@@ -34,14 +34,12 @@ from eomgen.simulation.ways import Way
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import DEGENERATE, GAP_CLOSED, SOLVED
 from eomgen.symbolic.solve.solving import roots, vanishes
 
 MEND = "give it a speed"
-
-State = dict[Node, Scalar]
-Numbers = dict[Node, float]
 
 
 @dataclass(frozen=True)
@@ -62,11 +60,11 @@ class Locating:
     accelerations: tuple[Scalar, ...]
     condition: Scalar
     exact: State
-    start: Numbers
-    values: Numbers
+    start: State
+    values: State
     given_rhs: RightHandSide | None = None
 
-    def located(self) -> tuple[Numbers, str]:
+    def located(self) -> tuple[State, str]:
         """(t, q and u at the instant, how they were found); t is nan where it is not known.
 
         Raises:
@@ -92,7 +90,7 @@ class Locating:
     def _x0(self) -> np.ndarray:
         return np.array([self.start[node] for node in self._names])
 
-    def _state(self, t: float, x: np.ndarray) -> Numbers:
+    def _state(self, t: float, x: np.ndarray) -> State:
         return {self.system.symbols.t: float(t), **dict(zip(self._names, map(float, x), strict=True))}
 
     @cached_property
@@ -116,7 +114,7 @@ class Locating:
         functions = self._functions((scalar,))
         return lambda t, x: float(functions(t, x)[0])
 
-    def _at_time(self) -> Numbers:
+    def _at_time(self) -> State:
         """The state at a time that is given by itself.
 
         Raises:
@@ -255,7 +253,7 @@ class Locating:
             sought,
         )
 
-    def _along_configurations(self) -> Numbers:
+    def _along_configurations(self) -> State:
         """The state where the condition holds on the way that one freedom leaves; the time is not known.
 
         Raises:
@@ -314,6 +312,6 @@ class Locating:
         return np.array(found)
 
 
-def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> Numbers:
+def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> State:
     """The parameters that have values, by node."""
     return {node: float(known[name]) for name, node in parameters.items() if name in known}

@@ -31,7 +31,7 @@ class Functions:
 
 
 @dataclass(frozen=True)
-class Vector:
+class TestVector:
     """A right answer: the result at (t, x, p), and a where it is an argument, by the model's own inputs or given ones.
 
     Args:
@@ -92,7 +92,7 @@ class Description:
     title: str
     origin: str
     remarks: Mapping[str, str]
-    vectors: tuple[Vector, ...] = ()
+    vectors: tuple[TestVector, ...] = ()
     role: Role = RHS
     outputs: tuple[str, ...] = ()
 

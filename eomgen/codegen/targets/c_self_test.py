@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Role, Vector
+from eomgen.codegen.targets.base import Role, TestVector
 
 _MAIN = """\
 #ifdef EOMGEN_SELFTEST
@@ -38,7 +38,7 @@ int main(void)
 """
 
 
-def self_test(program: Program, stem: str, vectors: Sequence[Vector], role: Role) -> str:
+def self_test(program: Program, stem: str, vectors: Sequence[TestVector], role: Role) -> str:
     """The main, or nothing where there are no vectors."""
     if not vectors:
         return ""
@@ -64,7 +64,7 @@ def _number(value: float) -> str:
     return "NAN" if value != value else repr(value)
 
 
-def _row(vector: Vector) -> str:
+def _row(vector: TestVector) -> str:
     arrays = (vector.x, *([vector.a] if vector.a else []), vector.p, vector.inputs or (), vector.result)
     listed = ", ".join("{" + (", ".join(map(_number, array)) or "0") + "}" for array in arrays)
     return f"{{{vector.t!r}, {listed}, {vector.tolerance!r}, {int(vector.inputs is not None)}}}"

@@ -19,13 +19,14 @@ from eomgen.mechanics.balance.balance_solution import combined, solution_of_bala
 from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, rubbing_of
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.solve import cramer, linear
 from eomgen.symbolic.solve.linear import Solution
 
@@ -45,12 +46,12 @@ class Rub:
 
     name: str
     component: int
-    along: Row
+    along: ScalarRow
     factor: Scalar
     normals: tuple[int, ...] = ()
 
     @property
-    def force(self) -> Row:
+    def force(self) -> ScalarRow:
         """Generalized force for a unit of N, or of |N|."""
         return tuple(self.factor * d for d in self.along)
 
@@ -91,7 +92,7 @@ def sizes_of(system: System) -> dict[str, Scalar]:
     return {rub.name: N for rub, N in pairs if rub.normals}
 
 
-def with_rest(system: System, scalars: Sequence[Scalar]) -> Row:
+def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
     """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line."""
     rows = [row for row in system.ties.rows if row.shares and row.friction is not None]
     speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
@@ -140,12 +141,12 @@ class _Rubbing:
     assembly: Assembly
 
     @property
-    def accelerations(self) -> Row:
+    def accelerations(self) -> ScalarRow:
         """a as a function of q, u and t."""
         return substituted(self._values[: len(self.assembly.M)], self._sizes)
 
     @property
-    def normals(self) -> Row:
+    def normals(self) -> ScalarRow:
         """N of every rub, or |N|."""
         single = iter(substituted(self._values[len(self._values) - len(self._single) :], self._sizes))
         return tuple(self._sizes[self._symbols[rub.name]] if rub.normals else next(single) for rub in self.found)
@@ -195,7 +196,7 @@ class _Rubbing:
         return regular_rows(self.system)
 
     @cached_property
-    def _values(self) -> Row:
+    def _values(self) -> ScalarRow:
         """a, lam of the rows that do not follow from others, N of every rub that has one.
 
         Raises:

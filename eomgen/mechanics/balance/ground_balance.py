@@ -13,13 +13,12 @@ from eomgen.mechanics.bodies.kinematics import Link
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.work import Work
 
-Row = dict[int, Scalar]
 
-
-def along_ground(balance: Balance, rows: list[Row], needed: list[Scalar]) -> tuple[list[Row], list[Scalar]]:
+def along_ground(balance: Balance, rows: list[SparseRow], needed: list[Scalar]) -> tuple[list[SparseRow], list[Scalar]]:
     """(coefficients, what they have to make up), force equations turned where that makes them shorter."""
     rows, needed = list(rows), list(needed)
     if balance.system.scope.model.space == "plane" or any(c.rubbing or c.rubs is not None for c in balance.components):
@@ -38,7 +37,7 @@ def _held_by_ties_alone(balance: Balance, i: int) -> bool:
     return kinds == {"tie"}
 
 
-def _turn(link: Link, three: Sequence[int], rows: list[Row], needed: list[Scalar]) -> None:
+def _turn(link: Link, three: Sequence[int], rows: list[SparseRow], needed: list[Scalar]) -> None:
     """The three equations times R, where the coefficients then take fewer operations."""
     own = sorted({j for n in three for j in rows[n]})
     columns = {j: [rows[n].get(j, 0) for n in three] for j in own}

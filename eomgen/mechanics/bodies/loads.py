@@ -17,7 +17,7 @@ from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
 from eomgen.mechanics.bodies.scope import Scope, primitive
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, Place, PointForce, SpreadLoad, UniformField
+from eomgen.model.forces.load import BodyPoint, Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -144,14 +144,14 @@ class SystemScene:
     def plane(self) -> bool:
         return self.motion.scope.model.space == "plane"
 
-    def place(self, point: str) -> Place:
+    def place(self, point: str) -> BodyPoint:
         body, r = self.motion.place(point)
         return (body, r)
 
-    def position(self, place: Place) -> Vector:
+    def position(self, place: BodyPoint) -> Vector:
         return self.motion.position(place)
 
-    def velocity(self, place: Place) -> Vector:
+    def velocity(self, place: BodyPoint) -> Vector:
         """d/dt of the position [m/s]."""
         return self.motion.scope.rate_of(self.position(place))
 
@@ -216,7 +216,7 @@ class SystemScene:
         parent = None if link.parent == GROUND else self.motion.links[link.parent].name
         return *turning[0], parent
 
-    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[Place, Scalar], ...]:
+    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[BodyPoint, Scalar], ...]:
         """(mass centre, mass) of the named bodies, or of all, that have mass."""
         names = [link.name for link in self.motion.links] if bodies is None else bodies
         rows = []
@@ -234,11 +234,11 @@ class SystemScene:
         at = with_unit_quaternions(scope, at)
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
-    def own_place(self, body: str, point: str | None) -> Place:
+    def own_place(self, body: str, point: str | None) -> BodyPoint:
         """A body's own point; None: its origin."""
         return (body, self.motion.points[body][(point or "origin").rpartition(".")[2]])
 
-    def line(self, body: str) -> tuple[Place, Place]:
+    def line(self, body: str) -> tuple[BodyPoint, BodyPoint]:
         """The two points of a body's line."""
         line = self.motion.scope.model.bodies[body].line
         assert line is not None, "checked when the model was read"

@@ -8,7 +8,7 @@ accelerations with J a + gamma = 0 must exist too,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random
 from typing import Any
@@ -19,14 +19,13 @@ from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, RANK, SHARE, SOLVED, TINIEST
 
 TRIES = 12  # places from which they are sought
 STEPS = 50
-
-State = Mapping[Node, Any]
 
 
 @dataclass(frozen=True)

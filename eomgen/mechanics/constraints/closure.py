@@ -18,13 +18,12 @@ from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
 STEPS = 60  # of the search
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
-
-State = dict[Node, Any]
 
 
 def generic_state(ties: Ties, rng: Random | None = None, *, shaken: bool = False) -> State:

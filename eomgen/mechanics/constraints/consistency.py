@@ -23,6 +23,7 @@ from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.derivative import depends_on, jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, DEGENERATE, RANK, SAME_PLACE, SOLVED
@@ -32,7 +33,6 @@ LEAP = 1.0  # of a guess [rad, m], beyond which other guesses are tried too
 SPREADS = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
 EASY = 1e3  # times farther a guess may move than a given value, for the same
 
-State = dict[Node, Any]
 Tiers = Sequence[Sequence[Node]]
 
 

@@ -16,13 +16,14 @@ from eomgen.errors import EomgenError, NotYet
 from eomgen.mechanics.bodies.contact_modes import Modes
 from eomgen.mechanics.bodies.kinematics import Link, Motion, motion_of
 from eomgen.mechanics.bodies.scope import scope_of
-from eomgen.mechanics.constraints.closure import State, generic_state
+from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.integrability import Integrability, integrability_of
 from eomgen.mechanics.constraints.ties import Ties, ties_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

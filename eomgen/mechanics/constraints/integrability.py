@@ -23,12 +23,13 @@ from eomgen.errors import EomgenError
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.bodies.scope import primitive
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.constraints.closure import State, generic_state
+from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import gradient, jacobian, tangent
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK
 from eomgen.symbolic.numeric.work import Work

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.symbols import Symbols
 
 if TYPE_CHECKING:
     from eomgen.mechanics.equations.system import System
-
-Row = tuple[Scalar, ...]
 
 
 @dataclass(frozen=True)
@@ -33,23 +32,25 @@ class Assembly:
     """
 
     symbols: Symbols
-    N: tuple[Row, ...]
-    nu: Row
-    M: tuple[Row, ...]
-    c: Row
-    Q: Row
-    forcing: Row
-    J: tuple[Row, ...]
-    sigma: Row
-    gamma: Row
+    N: tuple[ScalarRow, ...]
+    nu: ScalarRow
+    M: tuple[ScalarRow, ...]
+    c: ScalarRow
+    Q: ScalarRow
+    forcing: ScalarRow
+    J: tuple[ScalarRow, ...]
+    sigma: ScalarRow
+    gamma: ScalarRow
     phi: tuple[Scalar | None, ...]
     T: Scalar
     V: Scalar
-    accelerations: Row | None = None
-    friction: Row = ()
+    accelerations: ScalarRow | None = None
+    friction: ScalarRow = ()
 
 
-def assembled(system: System, *, M: tuple[Row, ...], c: Row, Q: Row, T: Scalar, forcing: Row | None = None) -> Assembly:
+def assembled(
+    system: System, *, M: tuple[ScalarRow, ...], c: ScalarRow, Q: ScalarRow, T: Scalar, forcing: ScalarRow | None = None
+) -> Assembly:
     """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
     scope, ties = system.scope, system.ties
     if forcing is None:

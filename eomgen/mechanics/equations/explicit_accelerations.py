@@ -9,10 +9,11 @@ from collections.abc import Sequence
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.freedom import redundant_rows
-from eomgen.mechanics.equations.assembly import Assembly, Row
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import massless_motions
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.solve import cramer
 
 MOST = 6  # unknowns that are written out for a reader
@@ -43,7 +44,7 @@ def bordered_rows(assembly: Assembly, kept: Sequence[int]) -> tuple[list[dict[in
     return rows, [*assembly.forcing, *(-assembly.gamma[m] for m in kept)]
 
 
-def _entries(row: Row) -> dict[int, Scalar]:
+def _entries(row: ScalarRow) -> dict[int, Scalar]:
     return {j: x for j, x in enumerate(row) if not is_zero(x)}
 
 
@@ -53,7 +54,7 @@ def regular_rows(system: System) -> list[int]:
     return [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
 
 
-def short_accelerations(system: System, assembly: Assembly) -> Row | None:
+def short_accelerations(system: System, assembly: Assembly) -> ScalarRow | None:
     """a as functions of q, u, t and inputs; None where they are many, or the equations are singular."""
     if assembly.friction:
         return assembly.accelerations

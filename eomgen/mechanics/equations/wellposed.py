@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -17,11 +16,10 @@ from eomgen.mechanics.equations.work import from_potential
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
-
-State = dict[Node, Any]
 
 
 def is_conservative(system: System, assembly: Assembly) -> bool:

@@ -5,20 +5,20 @@ from __future__ import annotations
 from eomgen.mechanics.bodies.inertia import spin_of
 from eomgen.mechanics.bodies.kinematics import Motion, slide_of
 from eomgen.mechanics.bodies.loads import Applied, JointEffort, Loads, in_body_axes, in_ground_axes, weights
-from eomgen.mechanics.equations.assembly import Row
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.symbolic.expression.derivative import gradient, jacobian
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, dot, vector_of
 
 
-def generalized_forces(loads: Loads) -> Row:
+def generalized_forces(loads: Loads) -> ScalarRow:
     """Q_k of everything applied: -dV/dq_k where there is a potential, else the virtual work per unit of q_k."""
     rows = [force_row(loads, force) for force in loads.applied] + [effort_row(loads.motion, e) for e in loads.efforts]
     return total(rows, len(loads.motion.scope.symbols.u))
 
 
-def powered_forces(loads: Loads) -> Row:
+def powered_forces(loads: Loads) -> ScalarRow:
     """Q_nc: the part of Q that comes from no potential, by virtual work."""
     motion = loads.motion
     rows = [force_row(loads, force) for force in loads.applied if force.potential is None]
@@ -26,7 +26,7 @@ def powered_forces(loads: Loads) -> Row:
     return total(rows, len(motion.scope.symbols.u))
 
 
-def total(rows: list[Row], size: int) -> Row:
+def total(rows: list[ScalarRow], size: int) -> ScalarRow:
     """The sum of rows, entry by entry."""
     sums: list[Scalar] = [0] * size
     for row in rows:
@@ -34,7 +34,7 @@ def total(rows: list[Row], size: int) -> Row:
     return tuple(sums)
 
 
-def force_row(loads: Loads, force: Applied) -> Row:
+def force_row(loads: Loads, force: Applied) -> ScalarRow:
     """Q of one named force."""
     if force.potential is not None:
         return from_potential(loads.motion, force.potential)
@@ -42,31 +42,31 @@ def force_row(loads: Loads, force: Applied) -> Row:
     return total([load_row(loads, load) for load in force.loads], size)
 
 
-def effort_row(motion: Motion, effort: JointEffort) -> Row:
+def effort_row(motion: Motion, effort: JointEffort) -> ScalarRow:
     """Q of a joint's drive, spring and damper: drive ds/dq - dV/dq."""
     elastic = from_potential(motion, effort.potential)
     return tuple(d + e for d, e in zip(drive_row(motion, effort), elastic, strict=True))
 
 
-def drive_row(motion: Motion, effort: JointEffort) -> Row:
+def drive_row(motion: Motion, effort: JointEffort) -> ScalarRow:
     """Q of what a joint's drive and damper do: drive ds/dq."""
     s = motion.link(effort.body).s[effort.variable]
     return tuple(effort.drive * d for d in per_speed(motion, gradient(s, motion.scope.symbols.q)))
 
 
-def from_potential(motion: Motion, V: Scalar) -> Row:
+def from_potential(motion: Motion, V: Scalar) -> ScalarRow:
     """-N^T dV/dq."""
     return tuple(-x for x in per_speed(motion, gradient(V, motion.scope.symbols.q)))
 
 
-def per_speed(motion: Motion, row: Row) -> Row:
+def per_speed(motion: Motion, row: ScalarRow) -> ScalarRow:
     """N^T applied to a row over the coordinates."""
     N = motion.scope.N
     size = len(motion.scope.symbols.u)
     return tuple(sum((N[i][k] * x for i, x in enumerate(row)), start=0) for k in range(size))
 
 
-def load_row(loads: Loads, load: Load) -> Row:
+def load_row(loads: Loads, load: Load) -> ScalarRow:
     """Q of one load by virtual work."""
     motion = loads.motion
     symbols = motion.scope.symbols
@@ -84,12 +84,12 @@ def load_row(loads: Loads, load: Load) -> Row:
     return per_speed(motion, _weighted(force, position, len(symbols.q)))
 
 
-def _weighted(force, rows, size: int) -> Row:
+def _weighted(force, rows, size: int) -> ScalarRow:
     """force . d(position)/dq_k for each k."""
     return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))
 
 
-def placeless_forces(loads: Loads) -> Row:
+def placeless_forces(loads: Loads) -> ScalarRow:
     """Q of what no twist sees: generalized forces, energies of coordinates, forces along the slide of their points."""
     size = len(loads.motion.scope.symbols.u)
     rows = [load_row(loads, load) for load in loads.generalized]
@@ -99,7 +99,7 @@ def placeless_forces(loads: Loads) -> Row:
     return total(rows, size)
 
 
-def _sliding_row(motion: Motion, force: PointForce) -> Row:
+def _sliding_row(motion: Motion, force: PointForce) -> ScalarRow:
     """Q of a force whose point moves in its body: F . d(R r')/du."""
     u = motion.scope.symbols.u
     slide = slide_of(motion, force.place)
@@ -108,7 +108,7 @@ def _sliding_row(motion: Motion, force: PointForce) -> Row:
     return _weighted(in_ground_axes(motion, force.force, force.axes), jacobian(slide, u), len(u))
 
 
-def joint_forces(loads: Loads) -> Row:
+def joint_forces(loads: Loads) -> ScalarRow:
     """Q of the joints' efforts on the joint variables: D^T effort."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)

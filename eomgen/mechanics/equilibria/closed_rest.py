@@ -18,10 +18,11 @@ from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.bodies.loads import start_value
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.equilibria.static_equations import Row, StaticEquations
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
@@ -33,8 +34,6 @@ MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those
 LONGEST = 600  # characters of these equations
 PATIENCE = 2  # places without a closed form, before equations are no more tried at others
 HALF = Fraction(1, 2)
-
-State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,9 @@ class ClosedForms:
         """How many places equations had no closed form for."""
         return {}
 
-    def _closed_ways(self, simple: Mapping[Node, Scalar]) -> Iterator[tuple[Row, tuple[Node, ...], State]]:
+    def _closed_ways(
+        self, simple: Mapping[Node, Scalar]
+    ) -> Iterator[tuple[ScalarRow, tuple[Node, ...], Mapping[Node, Scalar]]]:
         """(equations, unknowns, what is known): the ties from coordinates at simple places, or all equations."""
         statics = self.statics
         left = tuple(q for q in statics.q if q not in simple)

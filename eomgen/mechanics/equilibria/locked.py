@@ -10,7 +10,6 @@ W: the axes of the angles, D: the angles' derivatives by the coordinates, f: wha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,12 +19,11 @@ from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import ASIDE_STEP, DEGENERATE
 
 LEFT = 1e-3  # of the largest force nearby: a moment that is left
-
-State = Mapping[Node, float]
 
 
 def is_balanced(statics: StaticEquations, place: State) -> bool:

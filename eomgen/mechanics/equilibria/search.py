@@ -34,10 +34,9 @@ from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-
-State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)

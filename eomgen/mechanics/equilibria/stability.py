@@ -37,7 +37,7 @@ from eomgen.symbolic.solve.solving import vanishes
 
 MOST_EXACT = 6  # freedoms of a K that is written exactly
 
-Matrix = tuple[tuple[Any, ...], ...]
+StiffnessRows = tuple[tuple[Any, ...], ...]
 """Of scalars, or of floats where they are not known exactly."""
 
 
@@ -56,7 +56,7 @@ class Stability:
     kind: str
     why: str
     along: tuple[Node, ...] = ()
-    K: Matrix = ()
+    K: StiffnessRows = ()
     minors: tuple[Scalar, ...] = ()
 
 
@@ -115,7 +115,7 @@ class _Place:
             return Stability(INDIFFERENT, "the ties leave no freedom")
         nodes = tuple(statics.q[k] for k in along)
         K = self._exact_K(along) if self.known and len(along) <= MOST_EXACT else None
-        shown: Matrix = K if K is not None else _as_exact(self._numeric_K(J, along), self._size_of_terms)
+        shown: StiffnessRows = K if K is not None else _as_exact(self._numeric_K(J, along), self._size_of_terms)
         minors = _minors(K) if K is not None and self.values is None else ()
         if len(along) > 1 and not self._has_potential(along):
             why = "velocity ties push there" if self._is_conservative else "forces without a potential act"
@@ -170,7 +170,7 @@ class _Place:
         return rank_of_ties((self.statics.system.free or self.statics.system).ties) + self.statics.norms
 
     @cached_property
-    def _H(self) -> Matrix:
+    def _H(self) -> StiffnessRows:
         """-d(Q + J^T lam)/dq."""
         return tuple(tuple(-x for x in row) for row in jacobian(self.statics.forces, self.statics.q))
 
@@ -184,7 +184,7 @@ class _Place:
             Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=LEAST_CHANGE)[0]
         return Z.T @ self._numbers(self._H) @ Z
 
-    def _exact_K(self, along: Sequence[int]) -> Matrix | None:
+    def _exact_K(self, along: Sequence[int]) -> StiffnessRows | None:
         positive = positive_parameters(self.statics.system.scope)
         try:
             Z = self._exact_Z(along)
@@ -245,7 +245,7 @@ class _Place:
 
     # -- signs ---------------------------------------------------------------------------------------
 
-    def _by_terms(self, K: Matrix | None, minors: Sequence[Scalar]) -> tuple[str, str]:
+    def _by_terms(self, K: StiffnessRows | None, minors: Sequence[Scalar]) -> tuple[str, str]:
         """By the signs of the terms, where the parameters have no values."""
         depends = "depends on the parameters", "stable where V has a minimum there"
         if K is None:
@@ -299,11 +299,11 @@ def _drifting(neutral: int, freedoms: int) -> tuple[str, str]:
     return STABLE, "V rises in every motion that leaves the places of rest"
 
 
-def _as_exact(K: np.ndarray, size: float) -> Matrix:
+def _as_exact(K: np.ndarray, size: float) -> StiffnessRows:
     """The entries, what is rounding of their terms 0."""
     return tuple(tuple(float(x) if abs(x) > ROUNDING * size else 0.0 for x in row) for row in K)
 
 
-def _minors(K: Matrix) -> tuple[Scalar, ...]:
+def _minors(K: StiffnessRows) -> tuple[Scalar, ...]:
     """det of the leading parts."""
     return tuple(simplest(cramer.determinant([row[:n] for row in K[:n]]), Work.VALUE) for n in range(1, len(K) + 1))

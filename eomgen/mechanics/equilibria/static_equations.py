@@ -28,6 +28,7 @@ from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -35,9 +36,6 @@ from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
-
-Row = tuple[Scalar, ...]
-State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)
@@ -60,16 +58,16 @@ class StaticEquations:
     held: tuple[str, ...]
     q: tuple[Node, ...]
     given: Mapping[Node, Scalar]
-    Q: Row
-    unbalanced: Row
-    J: tuple[Row, ...]
+    Q: ScalarRow
+    unbalanced: ScalarRow
+    J: tuple[ScalarRow, ...]
     lam: tuple[Node, ...]
-    phi: Row
+    phi: ScalarRow
     norms: int = 0
-    beside: Row = ()
+    beside: ScalarRow = ()
 
     @cached_property
-    def forces(self) -> Row:
+    def forces(self) -> ScalarRow:
         """Q + J^T lam."""
         return tuple(
             sum((row[k] * lam for row, lam in zip(self.J, self.lam, strict=True)), start=force)
@@ -77,7 +75,7 @@ class StaticEquations:
         )
 
     @property
-    def equations(self) -> Row:
+    def equations(self) -> ScalarRow:
         """All that vanishes."""
         return (*self.forces, *self.beside, *self.phi)
 
@@ -141,7 +139,7 @@ class StaticEquations:
             J=tuple(tuple(row[k] for k in kept) for row in rows),
         )
 
-    def slopes(self, rows: Sequence[Row], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+    def slopes(self, rows: Sequence[ScalarRow], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
         flat = [x for row in rows for x in row]
@@ -212,7 +210,7 @@ def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
     return given | dict(zip(symbols.inputs.values(), inputs, strict=True))
 
 
-def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> Row:
+def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
     """What the ties say of positions; constants that only the start fixes are taken from it."""
     scope = system.scope
     start = {x: start_value(scope, scope.model.coordinates[x.name]) for x in scope.symbols.q}
@@ -256,7 +254,7 @@ def _refuse_dry_friction(system: System) -> None:
         )
 
 
-def _refuse_signs_of_rates(Q: Row, free: System) -> None:
+def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
     """Dry friction that is written as a force: -c*sign(x')."""
     u = free.symbols.u
     for node in order(Q):

@@ -16,10 +16,11 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import State, generic_state, number
+from eomgen.mechanics.constraints.closure import generic_state, number
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, ZERO_AT_50

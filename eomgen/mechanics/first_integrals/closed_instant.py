@@ -21,9 +21,8 @@ from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, rela
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.work import Work
-
-State = dict[Node, Scalar]
 
 
 @dataclass(frozen=True)

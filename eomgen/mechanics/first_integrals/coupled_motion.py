@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from eomgen.mechanics.first_integrals.linear_motion import Constants, waves
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.solve.solving import vanishes
 
-Matrix = Sequence[Sequence[Scalar]]
 Four = tuple[Scalar, ...]
 Waves = tuple[Scalar, Scalar, Scalar]  # E, O, G
 Part = tuple[Callable[[Four], Four], Waves]  # of f(M) x: what multiplies f or its derivative at an eigenvalue, and that
@@ -30,8 +30,8 @@ Part = tuple[Callable[[Four], Four], Waves]  # of f(M) x: what multiplies f or i
 class Pair:
     """q'' = A q + B q' + b of two coordinates; all constants."""
 
-    A: Matrix
-    B: Matrix
+    A: ScalarRows
+    B: ScalarRows
     b: Sequence[Scalar]
 
     def rate(self, x: Four) -> Four:
@@ -120,5 +120,5 @@ def _row(row: Sequence[Scalar], x: Sequence[Scalar]) -> Scalar:
     return row[0] * x[0] + row[1] * x[1]
 
 
-def _determinant(A: Matrix) -> Scalar:
+def _determinant(A: ScalarRows) -> Scalar:
     return A[0][0] * A[1][1] - A[0][1] * A[1][0]

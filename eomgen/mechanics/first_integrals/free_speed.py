@@ -18,7 +18,7 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.integrals import energy_integral
-from eomgen.mechanics.first_integrals.linear_motion import Constants, Line, particular
+from eomgen.mechanics.first_integrals.linear_motion import Constants, LinearEquation, particular
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, at_start
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -161,7 +161,7 @@ def _of_first_order(f: Scalar, k: Scalar, q: Node) -> tuple[Scalar, Scalar] | No
     growth = exponential_of(power)
     if not is_zero(k) and not depends_on(k, (q,)):
         constants = Constants(q, lambda x: None, lambda x: simplest(x, Work.VALUE))
-        second = particular(Line(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
+        second = particular(LinearEquation(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
         return None if second is None else (growth, derivative(second, q))
     gained = primitive(over(f, growth), q)
     return None if gained is None else (growth, growth * gained)

@@ -17,7 +17,7 @@ from eomgen.mechanics.bodies.scope import integral_from_zero
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.coupled_motion import Pair, pair_solution
-from eomgen.mechanics.first_integrals.linear_motion import Constants, Line, solution
+from eomgen.mechanics.first_integrals.linear_motion import Constants, LinearEquation, solution
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -116,7 +116,7 @@ class _Laws:
                 return dict(zip((*q, *two), (*law, *rates), strict=True))
         return {}
 
-    def _line(self, a: Scalar, q: Node, u: Node) -> Line | None:
+    def _line(self, a: Scalar, q: Node, u: Node) -> LinearEquation | None:
         """a as A q + B u + f(t) with constants A and B, or None."""
         A, B = derivative(a, q), derivative(a, u)
         if self._vary([[A], [B], [a, -A * q, -B * u]]):
@@ -126,7 +126,7 @@ class _Laws:
         if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in (A, B)):
             return None
         f = simplest(a - A * q - B * u, Work.VALUE, self.positive)
-        return None if depends_on(f, self._moving) else Line(A, B, f)
+        return None if depends_on(f, self._moving) else LinearEquation(A, B, f)
 
     def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> Pair | None:
         """a as A q + B u + b with constants, or None."""

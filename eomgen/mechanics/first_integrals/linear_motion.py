@@ -40,7 +40,7 @@ class Constants:
 
 
 @dataclass(frozen=True)
-class Line:
+class LinearEquation:
     """q'' = A q + B q' + f(t)."""
 
     A: Scalar
@@ -48,7 +48,7 @@ class Line:
     f: Scalar
 
 
-def solution(line: Line, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
+def solution(line: LinearEquation, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
     """q(t) with q(0) = q0, q'(0) = u0; None where no closed form is known."""
     found = particular(line, of)
     if found is None:
@@ -83,7 +83,7 @@ def waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
     return function(names[0], w * t), function(names[1], w * t), w
 
 
-def particular(line: Line, of: Constants) -> Scalar | None:
+def particular(line: LinearEquation, of: Constants) -> Scalar | None:
     """One solution of q'' = A q + B q' + f(t)."""
     try:
         if is_zero(line.A) and is_zero(line.B):

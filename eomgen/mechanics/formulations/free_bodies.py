@@ -29,13 +29,12 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
 from eomgen.symbolic.numeric.dense import independent, solution, without_rounding
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
-
-State = dict[Node, Any]
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.assembly import Assembly, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.symbolic.expression.derivative import gradient, jacobian, pullback, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 
 name = "lagrange"
 title = "Lagrange's equations"
@@ -58,7 +59,7 @@ def _reduced(system: System, free: System) -> Assembly:
     )
 
 
-def along(system: System) -> tuple[Row, Row, Row]:
+def along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """(M a, c, Q) by derivatives of the energies along one motion: O(n), no entry of M is formed."""
     if system.free is None:
         return _along(system, system.symbols.a)
@@ -73,7 +74,7 @@ def along(system: System) -> tuple[Row, Row, Row]:
     return pullback(rates, Ma, u), pullback(rates, inertia, u), pullback(rates, Q, u)
 
 
-def _along(system: System, a: Row) -> tuple[Row, Row, Row]:
+def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """The same for given accelerations of a system whose speeds are rates."""
     scope, u = system.scope, system.scope.symbols.u
     T = kinetic_energy(system.motion)
@@ -83,13 +84,13 @@ def _along(system: System, a: Row) -> tuple[Row, Row, Row]:
     return tangent(momenta, dict(zip(u, a, strict=True))), c, generalized_forces(system.loads)
 
 
-def free_rates(system: System, free: System) -> Row:
+def free_rates(system: System, free: System) -> ScalarRow:
     """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
     rates = {q.name: rate for q, rate in zip(system.scope.symbols.q, system.scope.rates, strict=True)}
     return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
 
 
-def inertia_side(motion: Motion, T: Scalar) -> tuple[tuple[Row, ...], Row]:
+def inertia_side(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     """(M, c) by derivatives of the kinetic energy."""
     scope = motion.scope
     momenta = gradient(T, scope.symbols.u)

@@ -11,11 +11,12 @@ from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import Loads, body_wrench, joint_wrenches, weights
-from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.assembly import Assembly, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import placeless_forces
 from eomgen.symbolic.expression.derivative import pullback, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, Inertia, Twist, Wrench, cross, plus
 
 name = "projection"
@@ -33,7 +34,7 @@ def assemble(system: System) -> Assembly:
     return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
 
 
-def along(system: System) -> tuple[Row, Row, Row]:
+def along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """(M a, c, Q) by the wrenches of one motion, B^T applied in one sweep: O(n), no entry of M is formed."""
     motion, a = system.motion, system.symbols.a
     u = motion.scope.symbols.u
@@ -56,12 +57,12 @@ def along(system: System) -> tuple[Row, Row, Row]:
     return tuple(Ma), c, tuple(x + y for x, y in zip(Q, placeless_forces(system.loads), strict=True))
 
 
-def _projected(twists: Row, wrenches: Iterable[Wrench], u: Sequence[Node]) -> Row:
+def _projected(twists: ScalarRow, wrenches: Iterable[Wrench], u: Sequence[Node]) -> ScalarRow:
     """sum B^T W"""
     return pullback(twists, [x for wrench in wrenches for x in (*wrench.tau, *wrench.f)], u)
 
 
-def inertia_side(motion: Motion) -> tuple[tuple[Row, ...], Row]:
+def inertia_side(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     """(M, c) from the twists of the bodies."""
     size = len(motion.scope.symbols.u)
     M: list[list[Scalar]] = [[0] * size for _ in range(size)]
@@ -95,14 +96,14 @@ def _twist(entries) -> Twist:
     return Twist(tuple(entries[:3]), tuple(entries[3:]))
 
 
-def _with_armatures(motion: Motion, M, c) -> tuple[tuple[Row, ...], Row]:
+def _with_armatures(motion: Motion, M, c) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     for i, j, value in armature_mass(motion):
         M[i][j] = M[i][j] + value
     added = armature_bias(motion, len(c))
     return tuple(tuple(row) for row in M), tuple(a + b for a, b in zip(c, added, strict=True))
 
 
-def force_side(loads: Loads) -> Row:
+def force_side(loads: Loads) -> ScalarRow:
     """Q = sum B^T W of every wrench, and what acts at no place."""
     motion = loads.motion
     Q = list(placeless_forces(loads))

@@ -8,9 +8,10 @@ from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import Loads
 from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces, mass_matrix
 from eomgen.mechanics.bodies.tree import Branch, branches_of
-from eomgen.mechanics.equations.assembly import Assembly, Row, assembled
+from eomgen.mechanics.equations.assembly import Assembly, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, joint_forces, placeless_forces
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, times
 
 name = "recursive"
@@ -36,14 +37,14 @@ def assemble(system: System) -> Assembly:
     )
 
 
-def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> Row:
+def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> ScalarRow:
     """c: what inertia takes at a = 0, armatures included."""
     size = len(motion.scope.symbols.u)
     bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
     return tuple(a + b for a, b in zip(bias, armature_bias(motion, size), strict=True))
 
 
-def forcing(loads: Loads, branches: tuple[Branch, ...]) -> Row:
+def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
     """Q - c in one sweep, weight as an upward acceleration of the ground."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)
@@ -58,7 +59,7 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> Row:
     return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
 
 
-def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[Row, ...]:
+def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[ScalarRow, ...]:
     """M by composite bodies, armatures included."""
     M = mass_matrix(branches, len(motion.scope.symbols.u))
     for i, j, value in armature_mass(motion):

@@ -25,6 +25,7 @@ from eomgen.model.own_units import in_own_unit
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import (
@@ -40,8 +41,6 @@ from eomgen.symbolic.numeric.tolerances import (
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these
 STEPS = 40
-
-State = dict[Node, Any]
 
 
 @dataclass(frozen=True)

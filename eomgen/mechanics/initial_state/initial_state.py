@@ -31,10 +31,9 @@ from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50
-
-State = dict[Node, Any]
 
 
 @dataclass(frozen=True)

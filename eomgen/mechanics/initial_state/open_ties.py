@@ -15,11 +15,10 @@ from eomgen.mechanics.initial_state.nearest_miss import nearest_miss
 from eomgen.model.own_units import in_own_unit
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP
-
-State = dict[Node, Any]
 
 
 def refuse_open_gaps(system: System, state: State) -> None:

@@ -19,11 +19,10 @@ from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 TRIES = 20
-
-State = dict[Node, Scalar]
 
 
 def at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:

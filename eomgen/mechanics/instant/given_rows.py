@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from eomgen.symbolic.exact.normal_form import collected_in, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
@@ -28,11 +28,9 @@ from eomgen.symbolic.solve.linear import solved
 
 UNSAID = ""  # what nobody wrote, as the norm of a quaternion
 
-Values = Mapping[Node, Any]
-
 
 @dataclass(frozen=True)
-class Line:
+class GivenRow:
     """One equation: sum of entries * unknowns = right.
 
     Args:
@@ -48,7 +46,7 @@ class Line:
 # -- the equations -----------------------------------------------------------------------------------
 
 
-def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[Line]:
+def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[GivenRow]:
     """J u = - sigma, or J a = - gamma, of every closing row at a state."""
     ties, symbols = system.ties, system.symbols
     rates, right = (symbols.a, ties.gamma) if accelerations else (symbols.u, ties.sigma)
@@ -59,11 +57,11 @@ def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bo
     for k, row in enumerate(ties.closing):
         entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
         kept = {node: x for node, x in entries if not is_zero(x)}
-        lines.append(Line(f"the tie '{row.tie}'", kept, -flat[len(ties.closing) * width + k]))
+        lines.append(GivenRow(f"the tie '{row.tie}'", kept, -flat[len(ties.closing) * width + k]))
     return [*_norm_lines(system, state, accelerations=accelerations), *lines]
 
 
-def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool) -> Iterator[Line]:
+def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool) -> Iterator[GivenRow]:
     """e . e' = 0, or e . e'' = - e' . e', of every quaternion; nobody wrote them, so no message names them."""
     scope, rates = system.scope, system.symbols.a if accelerations else system.symbols.u
     for four in scope.quaternions:
@@ -73,7 +71,7 @@ def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: 
         yield linear_line(UNSAID, placed, rates, "")
 
 
-def speed_lines(system: System, speeds: Mapping[str, Expression], state: Mapping[Node, Scalar]) -> list[Line]:
+def speed_lines(system: System, speeds: Mapping[str, Expression], state: Mapping[Node, Scalar]) -> list[GivenRow]:
     """The start speeds of coordinates, and of declared speeds, as equations."""
     scope, u = system.scope, system.symbols.u
     gaps = substituted([scope.names[name] - scope.value(speed) for name, speed in speeds.items()], state)
@@ -82,7 +80,7 @@ def speed_lines(system: System, speeds: Mapping[str, Expression], state: Mapping
 
 def given_lines(
     system: System, state: Mapping[Node, Scalar], equations: Sequence[Equation], rates: Sequence[Node], order: str
-) -> list[Line]:
+) -> list[GivenRow]:
     """Given equations at a state, linear in the rates and the unknowns.
 
     Args:
@@ -120,7 +118,7 @@ def _refuse_other_order(system: System, equation: Equation, gap: Scalar, order: 
         raise DerivationError(f"'{equation.text}' says nothing of {asked}", where, mend)
 
 
-def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> Line:
+def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> GivenRow:
     """gap = 0 as an equation of the unknowns.
 
     Raises:
@@ -133,7 +131,7 @@ def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) ->
             f"{text} is not linear in what it gives", where, "give components: vx(...), vy(...), omega(...)"
         ) from None
     entries = {node: x for node, x in parts.items() if node is not None}
-    return Line(text, entries, -parts.get(None, 0))
+    return GivenRow(text, entries, -parts.get(None, 0))
 
 
 def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
@@ -163,8 +161,8 @@ def _at_own_values(system: System, x: Scalar) -> float:
 
 def solution_of(
     system: System,
-    ties: Sequence[Line],
-    given: Sequence[Line],
+    ties: Sequence[GivenRow],
+    given: Sequence[GivenRow],
     unknowns: Sequence[Node],
     near: Mapping[Node, float] | None = None,
 ) -> tuple[dict[Node, Scalar], tuple[int, int]]:
@@ -198,7 +196,7 @@ def solution_of(
     return result, (_rank(matrix[: len(ties)]), rank)
 
 
-def _matrix(lines: Sequence[Line], unknowns: Sequence[Node], values: Values) -> np.ndarray:
+def _matrix(lines: Sequence[GivenRow], unknowns: Sequence[Node], values: State) -> np.ndarray:
     """[A | b], rows of unit length in A."""
     index = {node: j for j, node in enumerate(unknowns)}
     matrix = np.zeros((len(lines), len(unknowns) + 1))
@@ -217,7 +215,7 @@ def _rank(matrix: np.ndarray) -> int:
     return len(independent_rows(matrix[:, :-1], RANK))
 
 
-def _refuse_contradiction(lines: Sequence[Line], matrix: np.ndarray, ties: int) -> None:
+def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, ties: int) -> None:
     """Refuse equations of which one contradicts others.
 
     Args:

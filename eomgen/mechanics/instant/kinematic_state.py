@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,6 +19,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector, dot, vector_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
@@ -26,7 +27,6 @@ from eomgen.symbolic.print.text import text_size
 
 SHORT = 400  # characters of all values of a state that a reader can take
 LARGE = 4000  # characters of a value that is not made readable any more
-State = Mapping[Node, Scalar]
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTI
 from eomgen.mechanics.masses.inertia_about import Asked
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS, AskedReactions, name_of
-from eomgen.model.forces.load import Place
+from eomgen.model.forces.load import BodyPoint
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import derivative, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression
@@ -252,7 +252,7 @@ class Quantities:
         rate = scope.time_derivative(vector)
         return vector_of(rate if order == 1 else scope.with_accelerations(rate))
 
-    def _place(self, point: str) -> Place:
+    def _place(self, point: str) -> BodyPoint:
         return self.system.motion.place(point)
 
     def _speed(self, coordinate: str, function: str) -> tuple[System, int]:

@@ -20,7 +20,7 @@ from eomgen.mechanics.equations.system import System, free_system_of, reduced
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
 from eomgen.mechanics.initial_state.values_at_rest import at_rest
 from eomgen.mechanics.instant.given_rows import (
-    Line,
+    GivenRow,
     given_lines,
     linear_line,
     open_gaps,
@@ -39,13 +39,12 @@ from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas
 LONG = 400  # characters from which a value is no easier to read than it came
-
-State = dict[Node, Scalar]
 
 
 class Undetermined(DerivationError):
@@ -138,7 +137,7 @@ class Snapshot:
         """Places, velocities and accelerations."""
         return {**self.moving, **self.accelerations.values}
 
-    def _known(self, ties: list[Line], given: list[Line], rates: Sequence[Node], state: State) -> Known:
+    def _known(self, ties: list[GivenRow], given: list[GivenRow], rates: Sequence[Node], state: State) -> Known:
         unknowns = [x for x in self.system.symbols.unknowns.values() if x not in state]
         standing = [x for x in unknowns if any(x in line.entries for line in given)]
         solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), self._near)
@@ -192,7 +191,7 @@ class Snapshot:
             solution_of(self.system, self._bending, (), symbols.a, self._near)
 
     @cached_property
-    def _bending(self) -> list[Line]:
+    def _bending(self) -> list[GivenRow]:
         return tie_lines(self.system, self.moving, accelerations=True)
 
     # -- what is left open ---------------------------------------------------------------------------

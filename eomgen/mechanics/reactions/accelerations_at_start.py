@@ -13,12 +13,13 @@ from contextlib import suppress
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.mechanics.constraints.closure import State, generic_state
+from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import begun_state
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY

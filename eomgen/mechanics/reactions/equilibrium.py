@@ -23,10 +23,11 @@ from eomgen.mechanics.balance.unit_wrenches import PLANE_ROWS, SPACE_ROWS, Effec
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.loads import in_ground_axes, weights
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations.free_bodies import Numbers, State
+from eomgen.mechanics.formulations.free_bodies import Numbers
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, plus, times
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 

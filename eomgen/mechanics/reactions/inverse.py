@@ -21,13 +21,13 @@ from eomgen.mechanics.bodies.armature import armature_bias, armature_mass, joint
 from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.equations.assembly import Row
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.model.findings import nearest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -53,12 +53,12 @@ class Inverse:
     system: System
     names: tuple[str, ...]
     inputs: dict[str, Scalar]
-    tau: Row
-    rows: tuple[Row, ...] = ()
-    right: Row = ()
+    tau: ScalarRow
+    rows: tuple[ScalarRow, ...] = ()
+    right: ScalarRow = ()
     unknowns: tuple[Node, ...] = ()
 
-    def explicit(self) -> Row:
+    def explicit(self) -> ScalarRow:
         """tau without unknowns, these by determinants.
 
         Raises:
@@ -106,7 +106,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
     return _solved_for(Inverse(system, names, inputs, ()), columns, r)
 
 
-def residual(system: System) -> Row:
+def residual(system: System) -> ScalarRow:
     """M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground."""
     motion, loads, a = system.motion, system.loads, system.symbols.a
     branches = branches_of(motion)
@@ -124,7 +124,7 @@ def residual(system: System) -> Row:
     return tuple(f + rotor - x - y for f, rotor, x, y in direct)
 
 
-def _columns(system: System, names: Sequence[str], needed: Row) -> tuple[Row, ...]:
+def _columns(system: System, names: Sequence[str], needed: ScalarRow) -> tuple[ScalarRow, ...]:
     """The generalized forces of a unit of every actuator.
 
     Raises:
@@ -155,19 +155,19 @@ def _along(u: Node, system: System) -> str:
     return rated if rated in system.scope.model.coordinates else u.name
 
 
-def _column_of_joint(system: System, body: str) -> Row:
+def _column_of_joint(system: System, body: str) -> ScalarRow:
     row = joint_row(system.motion, body, 0)
     return tuple(row.get(k, 0) for k in range(len(system.symbols.u)))
 
 
-def _column_of_input(name: str, node: Node, needed: Row) -> Row:
+def _column_of_input(name: str, node: Node, needed: ScalarRow) -> ScalarRow:
     column = tuple(-gradient(x, (node,))[0] for x in needed)
     if any(depends_on(x, (node,)) for x in column):
         raise DerivationError(f"'{name}' does not act linearly: what it has to be is not determined", mend=NAME)
     return column
 
 
-def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence[Row]) -> None:
+def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence[ScalarRow]) -> None:
     """Every motion must be reached by an actuator, and every tau be determined.
 
     Raises:
@@ -190,7 +190,7 @@ def _numbers(entries: Sequence[Scalar], state: dict[Node, object], width: int) -
     return np.array([float(x) for x in values]).reshape(-1, width)
 
 
-def _solved_for(found: Inverse, columns: Sequence[Row], r: Row) -> Inverse:
+def _solved_for(found: Inverse, columns: Sequence[ScalarRow], r: ScalarRow) -> Inverse:
     """tau of the actuators that act along one speed alone; the equations for the others, and for lam."""
     symbols, J = found.system.symbols, found.system.ties.J
     alone = _acting_alone(columns)
@@ -207,7 +207,7 @@ def _solved_for(found: Inverse, columns: Sequence[Row], r: Row) -> Inverse:
     return replace(found, tau=values, rows=rows, right=tuple(r[k] for k in left), unknowns=unknowns)
 
 
-def _acting_alone(columns: Sequence[Row]) -> dict[int, int]:
+def _acting_alone(columns: Sequence[ScalarRow]) -> dict[int, int]:
     """{speed: the actuator that acts along it alone, with a unit of force}."""
     found: dict[int, int] = {}
     for m, column in enumerate(columns):

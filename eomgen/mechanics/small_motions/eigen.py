@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.small_motions.field import Matrix
+from eomgen.mechanics.small_motions.field import Entries
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
@@ -102,7 +102,7 @@ def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
     return np.block([[F, E], [-K, -C]]), np.block([[np.eye(n), np.zeros((n, m))], [np.zeros((m, n)), M]])
 
 
-def _without_rounding(A: Matrix, rows: int) -> np.ndarray:
+def _without_rounding(A: Entries, rows: int) -> np.ndarray:
     found = floats(A) if rows else np.zeros((0, 0))
     return dense.without_noise(found, ROUNDING)
 

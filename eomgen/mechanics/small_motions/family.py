@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from eomgen.symbolic.expression.graph import Node, Scalar
-
-State = Mapping[Node, Any]
+from eomgen.symbolic.expression.node import State
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
 Entry = Any  # an exact scalar, or a float
-Matrix = list[list[Entry]]
+Entries = list[list[Entry]]
 
 
 class Field(Protocol):
@@ -96,34 +96,34 @@ class Exact:
         return replace(self, state={**self.state, **more})
 
 
-def at(field: Field, rows: Sequence[Sequence[Scalar]]) -> Matrix:
+def at(field: Field, rows: Sequence[Sequence[Scalar]]) -> Entries:
     """A matrix of graph scalars at the state."""
     flat = iter(field.of([x for row in rows for x in row]))
     return [[next(flat) for _ in row] for row in rows]
 
 
-def product(field: Field, A: Matrix, B: Matrix) -> Matrix:
+def product(field: Field, A: Entries, B: Entries) -> Entries:
     """A B."""
     columns = list(zip(*B, strict=True))
     return [[field.tidy(inner(row, column)) for column in columns] for row in A]
 
 
-def total(field: Field, *matrices: Matrix) -> Matrix:
+def total(field: Field, *matrices: Entries) -> Entries:
     """A + B + ..."""
     rows = zip(*matrices, strict=True)
     return [[field.tidy(sum(x, start=0)) for x in zip(*row, strict=True)] for row in rows]
 
 
-def negative(A: Matrix) -> Matrix:
+def negative(A: Entries) -> Entries:
     return [[-x for x in row] for row in A]
 
 
-def turned(A: Matrix, columns: int) -> Matrix:
+def turned(A: Entries, columns: int) -> Entries:
     """A transposed; `columns` of A, where it may have no rows."""
     return [[row[j] for row in A] for j in range(columns)]
 
 
-def solved(field: Field, A: Matrix, B: Matrix) -> Matrix:
+def solved(field: Field, A: Entries, B: Entries) -> Entries:
     """X of A X = B. A has full column rank; rows beyond that follow from the others, and are not looked at."""
     rows = [[*a, *b] for a, b in zip(A, B, strict=True)]
     unknowns = len(A[0]) if A else 0

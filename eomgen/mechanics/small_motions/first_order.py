@@ -17,18 +17,17 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.small_motions.field import Matrix, Numbers, at
+from eomgen.mechanics.small_motions.field import Entries, Numbers, at
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING, SOLVED
 
 OWN = 0.2  # of what a column adds to those chosen, against the best
-
-Rows = Sequence[Sequence[Scalar]]
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ class FirstOrder:
         return velocities, tuple(inner(row, symbols.a) + bias for row, bias in zip(graph.J, graph.gamma, strict=True))
 
     @cached_property
-    def derivatives(self) -> Mapping[str, Rows]:
+    def derivatives(self) -> Mapping[str, ScalarRows]:
         """R_q, R_u, S_q, V_q, A_q, A_u, G, W by name."""
         symbols = self.system.symbols
         q, u, w = symbols.q, symbols.u, tuple(symbols.inputs.values())
@@ -159,7 +158,7 @@ def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) ->
     return Choice(q, dq, relations, u, du, ties)
 
 
-def _rows(first: FirstOrder) -> tuple[tuple[Rows, Sequence[Node]], ...]:
+def _rows(first: FirstOrder) -> tuple[tuple[ScalarRows, Sequence[Node]], ...]:
     """The rows between positions, and those between speeds, with what their columns stand for."""
     symbols = first.system.symbols
     return (first.derivatives["G"], symbols.q), (first.assembly.J, symbols.u)
@@ -179,7 +178,7 @@ def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     return np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0)
 
 
-def _floats(A: Matrix, columns: int) -> np.ndarray:
+def _floats(A: Entries, columns: int) -> np.ndarray:
     return np.array(A, dtype=float).reshape(len(A), columns)
 
 

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Field, Matrix, negative, product, solved, total, turned
+from eomgen.mechanics.small_motions.field import Entries, Field, negative, product, solved, total, turned
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.numeric.dense import without_noise
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
@@ -24,7 +24,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
 Indices = Sequence[int]
 
 
-def floats(A: Matrix) -> np.ndarray:
+def floats(A: Entries) -> np.ndarray:
     """The entries as floats, rows x columns."""
     return np.array(A, dtype=float).reshape(len(A), -1)
 
@@ -78,7 +78,7 @@ def without_rounding(e: LinearEquations) -> LinearEquations:
     return replace(e, M=_rounded(M), C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
 
 
-def _rounded(A: np.ndarray, usual: float = 0) -> Matrix:
+def _rounded(A: np.ndarray, usual: float = 0) -> Entries:
     if not A.size:
         return [[*row] for row in A.tolist()]
     sizes = abs(A)
@@ -173,7 +173,7 @@ def _drives(decided: LinearEquations, C: np.ndarray, c: Indices, o: Indices) -> 
 
 
 def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
-    def part(A: Matrix) -> Matrix:
+    def part(A: Entries) -> Entries:
         return _columns([A[i] for i in c], c)
 
     return replace(
@@ -199,7 +199,7 @@ def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices)
     by_inputs = solved(field, M_oo, [e.B[i] for i in o])
     whole = _taken(e, c)
 
-    def less(A: Matrix, *parts: tuple[Matrix, Matrix]) -> Matrix:
+    def less(A: Entries, *parts: tuple[Entries, Entries]) -> Entries:
         return total(field, A, *(negative(product(field, X, Y)) for X, Y in parts))
 
     return replace(
@@ -211,5 +211,5 @@ def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices)
     )
 
 
-def _columns(A: Matrix, columns: Indices) -> Matrix:
+def _columns(A: Entries, columns: Indices) -> Entries:
     return [[row[j] for j in columns] for row in A]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Matrix
+from eomgen.mechanics.small_motions.field import Entries
 from eomgen.mechanics.small_motions.forms import is_second_order
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.exact.expansion import Expansion
@@ -72,7 +72,7 @@ def characteristic_polynomial(equations: LinearEquations, positive: Collection[N
     return polynomial_in(_determinant(pencil_of(equations, s)), s, positive)
 
 
-def pencil_of(e: LinearEquations, s: Node) -> Matrix | None:
+def pencil_of(e: LinearEquations, s: Node) -> Entries | None:
     """The matrix whose determinant is p(s); None where it is too large."""
     n = len(e.speeds)
     if is_second_order(e):
@@ -83,11 +83,11 @@ def pencil_of(e: LinearEquations, s: Node) -> Matrix | None:
     return upper + [[*e.K[i], *(s * m + c for m, c in zip(e.M[i], e.C[i], strict=True))] for i in range(n)]
 
 
-def _of_second_order(e: LinearEquations, s: Node) -> Matrix:
+def _of_second_order(e: LinearEquations, s: Node) -> Entries:
     return [[s * s * m + s * c + k for m, c, k in zip(*rows, strict=True)] for rows in zip(e.M, e.C, e.K, strict=True)]
 
 
-def _determinant(matrix: Matrix | None) -> Scalar | None:
+def _determinant(matrix: Entries | None) -> Scalar | None:
     return None if matrix is None else cramer.determinant(matrix)
 
 

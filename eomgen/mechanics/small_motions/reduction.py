@@ -23,17 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.small_motions.field import (
-    Entry,
-    Field,
-    Matrix,
-    at,
-    negative,
-    product,
-    solved,
-    total,
-    turned,
-)
+from eomgen.mechanics.small_motions.field import Entries, Entry, Field, at, negative, product, solved, total, turned
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node
@@ -55,13 +45,13 @@ class LinearEquations:
     speeds: tuple[Node, ...]
     inputs: tuple[Node, ...]
     all: tuple[Node, ...]
-    M: Matrix
-    C: Matrix
-    K: Matrix
-    B: Matrix
-    F: Matrix
-    E: Matrix
-    P: Matrix
+    M: Entries
+    C: Entries
+    K: Entries
+    B: Entries
+    F: Entries
+    E: Entries
+    P: Entries
 
 
 # -- accelerations and multipliers of the reference -------------------------------------------------------
@@ -82,15 +72,15 @@ class Reducing:
     field: Field
 
     @cached_property
-    def J(self) -> Matrix:
+    def J(self) -> Entries:
         """The closing rows that are looked at; the others follow from them."""
         return at(self.field, [self.first.assembly.J[i] for i in self.choice.ties])
 
     @cached_property
-    def M(self) -> Matrix:
+    def M(self) -> Entries:
         return at(self.field, self.first.assembly.M)
 
-    def following(self, right: Matrix) -> Matrix:
+    def following(self, right: Entries) -> Entries:
         """x of all speeds with x_i = 0 and J x + right = 0."""
         choice = self.choice
         J_d = [[row[k] for k in choice.du] for row in self.J]
@@ -136,15 +126,15 @@ class Reducing:
         known = dict(zip(symbols.a, self.a, strict=True)) | dict(zip(symbols.lam, self.lam, strict=True))
         return self.field.with_values(known)
 
-    def derivative(self, name: str) -> Matrix:
+    def derivative(self, name: str) -> Entries:
         return at(self._whole, self.first.derivatives[name])
 
-    def _closing(self, name: str) -> Matrix:
+    def _closing(self, name: str) -> Entries:
         rows = self.first.derivatives[name]
         return at(self._whole, [rows[i] for i in self.choice.ties])
 
     @cached_property
-    def Z(self) -> Matrix:
+    def Z(self) -> Entries:
         """du = Z du_i: J Z = 0."""
         n, kept = len(self.first.system.symbols.u), self.choice.u
         found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.ties else []
@@ -152,7 +142,7 @@ class Reducing:
         return [[int(place[k] == j) for j in range(len(kept))] if k in place else found[k] for k in range(n)]
 
     @cached_property
-    def P(self) -> Matrix:
+    def P(self) -> Entries:
         """dq = P dq_i: G P = 0."""
         choice, n = self.choice, len(self.first.system.symbols.q)
         G = [self.first.derivatives["G"][i] for i in choice.relations]

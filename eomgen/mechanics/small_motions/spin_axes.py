@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.small_motions.field import Field, Matrix, at, negative, product, solved, total
+from eomgen.mechanics.small_motions.field import Entries, Field, at, negative, product, solved, total
 from eomgen.mechanics.small_motions.first_order import Choice
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.reference import Reference
@@ -73,7 +73,7 @@ def _over_turn(field: Field, system: System, e: LinearEquations, turn: Turn) -> 
     )
 
 
-def _by_turn(field: Field, system: System, e: LinearEquations, turn: Turn, n: int) -> tuple[Matrix, Matrix]:
+def _by_turn(field: Field, system: System, e: LinearEquations, turn: Turn, n: int) -> tuple[Entries, Entries]:
     """(T, T') of all coordinates: 1 and 0 for those that are no part of the quaternion."""
     scope = system.scope
     places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]

@@ -25,6 +25,7 @@ from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, dependent_speeds, unsettled
 from eomgen.mechanics.small_motions.reference import Reference
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, ITERATED, RANK, SUMMED
 
@@ -32,8 +33,6 @@ STEPS = 40
 LONGEST = 0.3  # of one step, against what has moved or 1
 DOUBLE = 0.02  # of a step, to within which the next is half of it: so Newton's method goes to a double root
 STATED, GUESSED, OPEN = 0, 1, 2  # by the model: held, marked by `near`, not said
-
-State = Mapping[Node, Any]
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ def _needed(here: Here, free: np.ndarray) -> np.ndarray:
     return needed
 
 
-def _sought(first: FirstOrder, choice: Choice, start: State, mask: np.ndarray) -> State | None:
+def _sought(first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: np.ndarray) -> State | None:
     """The state with all residuals zero, by steps of least size in what the mask frees; None where none is near."""
     state, before = start, np.zeros(len(mask))
     for _ in range(STEPS):
@@ -139,11 +138,11 @@ class Here:
     reducing: Reducing
 
     @classmethod
-    def at(cls, first: FirstOrder, choice: Choice, state: State) -> Here:
+    def at(cls, first: FirstOrder, choice: Choice, state: Mapping[Node, Any]) -> Here:
         return cls(first, choice, Reducing(first, choice, Numbers(state)))
 
     @property
-    def state(self) -> State:
+    def state(self) -> Mapping[Node, Any]:
         field = self.reducing.field
         assert isinstance(field, Numbers)
         return field.state

@@ -20,7 +20,7 @@ from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.rest_places import places_of_rest
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.small_motions.family import Family, State
+from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.reduction import Reducing, dependent_speeds
@@ -29,6 +29,7 @@ from eomgen.mechanics.small_motions.steady import Here
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BEST

@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, plus, vector_o
 from eomgen.symbolic.solve.solving import vanishes
 
 Thing = TypeVar("Thing")
-Place = tuple[str, Vector]
+LoadPoint = tuple[str, Vector]
 DOWN: Vector = (0, -1, 0)
 
 
@@ -211,17 +211,17 @@ class _Travelling:
                 before = cut is not None and self.sizes.sign(cut.x - b) >= 0
                 yield self._span(axis.body, (axis.body, leg.place(a)), (axis.body, leg.place(b)), before=before)
 
-    def _span(self, name: str, a: Place, b: Place, *, before: bool = False) -> Span:
+    def _span(self, name: str, a: LoadPoint, b: LoadPoint, *, before: bool = False) -> Span:
         return Span(name, self._position(a), self._position(b), self._value(a, before), self._value(b, before))
 
-    def _value(self, place: Place, before: bool) -> Scalar:
+    def _value(self, place: LoadPoint, before: bool) -> Scalar:
         """-e . v(P)"""
         v = self.plan.velocity(place)
         if before and self.cut is not None:
             v = plus(v, self.cut.velocity(self._position(place)))
         return self.sizes.shortest(-dot(self.load, v))
 
-    def _position(self, place: Place) -> Vector:
+    def _position(self, place: LoadPoint) -> Vector:
         found = substituted(self.structure.system.motion.position(place), self.structure.at)
         return vector_of(self.sizes.simple(x) for x in found)
 

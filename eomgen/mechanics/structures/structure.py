@@ -25,11 +25,12 @@ from eomgen.mechanics.balance.unknown_loads import slope
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.values_at_rest import State, at_rest, values_for
+from eomgen.mechanics.initial_state.values_at_rest import at_rest, values_for
 from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work

@@ -17,7 +17,7 @@ from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import Field, rotation_center
-from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
@@ -88,7 +88,7 @@ class Plan:
         """Of the mass centre, ground axes."""
         return self._simple(self.field(body).v)
 
-    def velocity(self, place: Place) -> Vector:
+    def velocity(self, place: BodyPoint) -> Vector:
         """Of a place of a body, ground axes; of the ground 0."""
         return self._simple(self.raw_velocity(place))
 
@@ -96,7 +96,7 @@ class Plan:
         """`spin`, not written out."""
         return ZERO if body is None else self.field(body).w
 
-    def raw_velocity(self, place: Place) -> Vector:
+    def raw_velocity(self, place: BodyPoint) -> Vector:
         """`velocity`, not written out."""
         body, _ = place
         return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
@@ -115,7 +115,7 @@ class Plan:
         six = self._six(body)
         return Field(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
 
-    def position(self, place: Place) -> Vector:
+    def position(self, place: BodyPoint) -> Vector:
         """Of a place in this configuration, ground axes."""
         return vector_of(substituted(self.system.motion.position(place), self.at))
 

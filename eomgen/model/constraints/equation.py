@@ -7,8 +7,9 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.measured import Measured
 from eomgen.model.constraints.plane import Push
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scalar, Scene
+from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import Gap, VelocityLaw
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,5 +50,5 @@ def _pushes(measured: dict, slopes: dict) -> tuple[Push, ...]:
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
 
 
-def _row(gap: Scalar | None, rate: Scalar | None, pushes: tuple[Push, ...]) -> TieRow:
+def _row(gap: AnyScalar | None, rate: AnyScalar | None, pushes: tuple[Push, ...]) -> TieRow:
     return TieRow(pushes, gap, rate, component="wrench" if pushes else "")

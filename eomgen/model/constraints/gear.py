@@ -6,9 +6,9 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Push, same_turn
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Couple, Scalar, Scene
+from eomgen.model.forces.load import Couple, Scene
 from eomgen.model.kinds import Pure, TwoBodies
-from eomgen.symbolic.expression.spatial import times
+from eomgen.symbolic.expression.spatial import AnyScalar, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +36,7 @@ class Gear(Constraint):
         return (TieRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
 
 
-def _at_joint(scene: Scene, body: str, couple: Scalar) -> tuple[Scalar, tuple[Push, ...]]:
+def _at_joint(scene: Scene, body: str, couple: AnyScalar) -> tuple[AnyScalar, tuple[Push, ...]]:
     """The angle of a body's joint, and the couple along its axis on the body, the opposite on its parent."""
     angle, axis, parent = scene.turn_of_joint(body)
     on_parent = () if parent is None else (Couple(parent, times(-couple, axis), axes=body),)

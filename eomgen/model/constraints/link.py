@@ -7,10 +7,10 @@ from typing import ClassVar
 from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Flag, Length, TwoPoints
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.spatial import dot, minus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +41,7 @@ class Link(Constraint):
         pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
         return (TieRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
 
-    def _length(self, scene: Scene, r: Vector) -> Scalar:
+    def _length(self, scene: Scene, r: Vector) -> AnyScalar:
         if self.length is not None:
             return scene.value(self.length)
         square = scene.start(dot(r, r))

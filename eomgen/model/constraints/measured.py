@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Push, Touch, angle_of, opposite
-from eomgen.model.forces.load import Couple, Place, Scalar, Scene, Vector
+from eomgen.model.forces.load import BodyPoint, Couple, Scene
 from eomgen.symbolic.expression.expressions import Call, Reference
-from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, apply, dot, minus, times
+from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 
 GROUND = "ground"
 
@@ -34,13 +34,13 @@ class Measured:
         return self.call.name.startswith(("v", "omega"))
 
     @property
-    def value(self) -> Scalar:
+    def value(self) -> AnyScalar:
         """Of a place or an angle."""
         if self.call.name == "angle":
             return angle_of(self.scene, self._body) - angle_of(self.scene, self._frame)
         return dot(self._axis, self._arm)
 
-    def pushed(self, k: Scalar) -> tuple[Push, ...]:
+    def pushed(self, k: AnyScalar) -> tuple[Push, ...]:
         """Forces and couples whose power is k times the rate of a place or angle, or k times the velocity."""
         push = times(k, self._axis)
         if self._turns:
@@ -74,7 +74,7 @@ class Measured:
         return position if self._frame is None else minus(position, self.scene.position((self._frame, ZERO)))
 
     @property
-    def _place(self) -> Place:
+    def _place(self) -> BodyPoint:
         return self.scene.place(self._named(0))
 
     @property

@@ -10,12 +10,12 @@ from eomgen.model.constraints.link import Link
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import NameRule
-from eomgen.model.forces.load import PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Text
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.expression.spatial import dot, minus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
 from eomgen.symbolic.expression.traversal import order
 
 
@@ -73,7 +73,7 @@ def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
     return {name: tie for name, tie in constraints.items() if isinstance(tie, Members)}
 
 
-def _direction(scene: Scene, r: Vector) -> tuple[Scalar, ...]:
+def _direction(scene: Scene, r: Vector) -> tuple[AnyScalar, ...]:
     """r over its length: in plain numbers and roots of them where all components are multiples of one parameter."""
     (square,) = scene.readable((dot(r, r),))
     (length,) = scene.readable((sqrt(square),))
@@ -81,6 +81,6 @@ def _direction(scene: Scene, r: Vector) -> tuple[Scalar, ...]:
     return direction if _has_root_of_sum(length) else scene.readable(direction)
 
 
-def _has_root_of_sum(x: Scalar) -> bool:
+def _has_root_of_sum(x: AnyScalar) -> bool:
     """Whether a root of something else than a number stands in a length."""
     return type(x) is Node and any(y.op == "sqrt" and type(y.args[0]) is Node for y in order((x,)))

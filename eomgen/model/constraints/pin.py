@@ -5,11 +5,11 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
-from eomgen.model.forces.load import Couple, Place, PointForce, Scene, Vector
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
 from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.spatial import IDENTITY, apply, cross, dot, matrix_of, minus, times, transposed
+from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Pin(Constraint):
         return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
 
 
-def others_of(scene: Scene, named: list[Place]) -> list[Place]:
+def others_of(scene: Scene, named: list[BodyPoint]) -> list[BodyPoint]:
     """The places to which the first is held: the others, or where it stands at the start."""
     first, *others = named
     if others:
@@ -57,7 +57,7 @@ def others_of(scene: Scene, named: list[Place]) -> list[Place]:
     return [(None, (scene.start(x), scene.start(y), scene.start(z)))]
 
 
-def held_together(scene: Scene, first: Place, other: Place) -> list[TieRow]:
+def held_together(scene: Scene, first: BodyPoint, other: BodyPoint) -> list[TieRow]:
     """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other."""
     gap = minus(scene.position(first), scene.position(other))
     return [

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
-from eomgen.symbolic.expression.spatial import ZERO, cross, times
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
+from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
 
 Push = PointForce | Couple
 
@@ -21,18 +21,18 @@ def right(d: Vector) -> Vector:
     return (d[1], -d[0], 0)
 
 
-def angle_of(scene: Scene, body: str | None) -> Scalar:
+def angle_of(scene: Scene, body: str | None) -> AnyScalar:
     """The angle of a body against the ground's axes; the ground's is 0 [rad]."""
     return 0 if body is None else scene.angle(body)
 
 
-def couples(first: str | None, second: str | None, ratio: Scalar = 1) -> tuple[Push, ...]:
+def couples(first: str | None, second: str | None, ratio: AnyScalar = 1) -> tuple[Push, ...]:
     """A unit couple on the first body and - ratio on the second (none on the ground)."""
     pairs = ((first, 1), (second, -ratio))
     return tuple(Couple(body, (0, 0, tau)) for body, tau in pairs if body is not None)
 
 
-def same_turn(scene: Scene, first: str | None, second: str | None, ratio: Scalar = 1) -> TieRow:
+def same_turn(scene: Scene, first: str | None, second: str | None, ratio: AnyScalar = 1) -> TieRow:
     """theta_1 - ratio theta_2 stays as at the start: a couple on the first body, - ratio times it on the second."""
     turned = angle_of(scene, first) - ratio * angle_of(scene, second)
     return TieRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")
@@ -45,7 +45,7 @@ class Touch:
     The place of contact wanders in a round body; its centre stays, and the moment arm x F goes beside the force.
     """
 
-    place: Place
+    place: BodyPoint
     arm: Vector = ZERO
 
     def pushed(self, force: Vector) -> tuple[Push, ...]:

@@ -22,11 +22,11 @@ from eomgen.model.constraints.tracks import (
     wheel_on_ball,
 )
 from eomgen.model.findings import Finding, Path
-from eomgen.model.forces.load import Scalar, Scene
+from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
-from eomgen.symbolic.expression.spatial import minus
+from eomgen.symbolic.expression.spatial import AnyScalar, minus
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]
@@ -195,5 +195,5 @@ class Rolling(Constraint):
         """Whether nothing is said of the body's form."""
         return self.radius is None and self.axis is None
 
-    def _radius(self, scene: Scene) -> Scalar:
+    def _radius(self, scene: Scene) -> AnyScalar:
         return scene.radius(self.body) if self.radius is None else scene.value(self.radius)

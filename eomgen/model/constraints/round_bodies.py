@@ -16,12 +16,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.errors import ModelError
-from eomgen.model.forces.load import Scalar, Scene, Vector
+from eomgen.model.forces.load import Scene
 from eomgen.model.joints.base import unit
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, times, transposed
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, apply, cross, dot, minus, plus, times, transposed
 from eomgen.symbolic.numeric.tolerances import DEGENERATE
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
@@ -39,14 +39,14 @@ class Nearest:
     """
 
     reach: Vector
-    height: Scalar
+    height: AnyScalar
 
 
 @dataclass(frozen=True)
 class Ball:
     """A ball of radius R."""
 
-    R: Scalar
+    R: AnyScalar
 
     def nearest(self, scene: Scene, n: Vector) -> Nearest:
         """R below the centre."""
@@ -59,8 +59,8 @@ class Wheel:
 
     body: str
     axis: Vector
-    R: Scalar
-    tube: Scalar
+    R: AnyScalar
+    tube: AnyScalar
 
     def nearest(self, scene: Scene, n: Vector) -> Nearest:
         """The lowest place of the rim.
@@ -95,7 +95,7 @@ class Wheel:
             )
         return times(over(-side * self.R, size), h)
 
-    def distance(self, scene: Scene, out: Vector) -> Scalar:
+    def distance(self, scene: Scene, out: Vector) -> AnyScalar:
         """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
         h = self._across(scene, out)
         return sqrt(_short(dot(h, h)))
@@ -104,7 +104,7 @@ class Wheel:
         a = self._axle(scene)
         return minus(out, times(dot(out, a), a))
 
-    def tilt(self, scene: Scene, n: Vector) -> Scalar:
+    def tilt(self, scene: Scene, n: Vector) -> AnyScalar:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)
         k = cross(n, a)
@@ -175,19 +175,19 @@ def _nearest_axis(scene: Scene, n: Vector) -> tuple[int, int]:
     return k, -1 if sizes[k] < 0 else 1
 
 
-def complement(scene: Scene, x: Scalar) -> Scalar:
+def complement(scene: Scene, x: AnyScalar) -> AnyScalar:
     """sqrt(1 - x^2)."""
     x = _short(x)
     wave = _other_wave(scene, x)
     return sqrt(1 - x * x) if wave is None else wave
 
 
-def _short(x: Scalar) -> Scalar:
+def _short(x: AnyScalar) -> AnyScalar:
     """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
     return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
-def _other_wave(scene: Scene, x: Scalar) -> Scalar | None:
+def _other_wave(scene: Scene, x: AnyScalar) -> AnyScalar | None:
     """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
     if type(x) is Node and x.op == "neg":
         return _other_wave(scene, x.args[0])
@@ -198,15 +198,15 @@ def _other_wave(scene: Scene, x: Scalar) -> Scalar | None:
     return -found if _sense(scene, found) < 0 else found
 
 
-def _sense(scene: Scene, x: Scalar) -> int:
+def _sense(scene: Scene, x: AnyScalar) -> int:
     return -1 if _worth(scene, x) < 0 else 1
 
 
-def _worth(scene: Scene, x: Scalar, unknown: float = 1.0) -> float:
+def _worth(scene: Scene, x: AnyScalar, unknown: float = 1.0) -> float:
     """What x is at the start with the model's values."""
     found = scene.worth(x)
     return unknown if found is None else found
 
 
-def _plain(x: Scalar) -> bool:
+def _plain(x: AnyScalar) -> bool:
     return type(x) is int and x == 0

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.model.forces.load import Couple, PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import Couple, PointForce, Scene
 from eomgen.model.joints.base import across, unit
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class TieRow:
     """
 
     pushes: tuple[PointForce | Couple, ...]
-    gap: Scalar | None
-    rate: Scalar | None = None
+    gap: AnyScalar | None
+    rate: AnyScalar | None = None
     component: str = ""
     material: bool = False
     tangent: tuple[PointForce | Couple, ...] = ()
@@ -43,7 +44,7 @@ class Edge:
     """A function of the configuration, positive until a motion ends where it vanishes; what is so there, in words."""
 
     words: str
-    vanishes: Scalar
+    vanishes: AnyScalar
 
 
 def direction_of(scene: Scene, v: Vector) -> Vector:

@@ -9,10 +9,10 @@ from typing import Any
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Push, angle_of, left
 from eomgen.model.constraints.row import TieRow, normals_of
-from eomgen.model.forces.load import Couple, Place, PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
 from eomgen.model.joints.base import Z
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.spatial import cross, dot, minus, plus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
@@ -30,8 +30,8 @@ class Stop:
     """
 
     scene: Scene
-    place: Place
-    offset: Scalar = 0
+    place: BodyPoint
+    offset: AnyScalar = 0
     axis: Vector = Z
 
     @property
@@ -52,7 +52,7 @@ class Stop:
         return self.round and self.body is not None and not self.scene.plane
 
     @property
-    def wound(self) -> Scalar:
+    def wound(self) -> AnyScalar:
         """a theta: what a turn of the body gives out at the strand's beginning [m]."""
         return self.offset * angle_of(self.scene, self.body) if self.round else 0
 
@@ -84,7 +84,7 @@ class Strand:
     first: Stop
     second: Stop
     d: Vector
-    length: Scalar | None
+    length: AnyScalar | None
 
     @property
     def ends(self) -> tuple[Vector, Vector]:
@@ -141,7 +141,9 @@ def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
     return Strand(first, second, _over(minus(times(length, D), times(h, side(D))), square), None)
 
 
-def _straight(scene: Scene, D: Vector, h: Scalar, side: Callable[[Vector], Vector]) -> tuple[Vector, Scalar] | None:
+def _straight(
+    scene: Scene, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
+) -> tuple[Vector, AnyScalar] | None:
     """Direction and length of a strand that stays along an axis: left(d) . D = h for good, d . D > 0 at the start."""
     for d in AXES if scene.plane else (*AXES, Z, times(-1, Z)):
         length = dot(d, D)
@@ -152,7 +154,7 @@ def _straight(scene: Scene, D: Vector, h: Scalar, side: Callable[[Vector], Vecto
     return None
 
 
-def _off(scene: Scene, d: Vector, D: Vector, h: Scalar, side: Callable[[Vector], Vector]) -> tuple[Scalar, ...]:
+def _off(scene: Scene, d: Vector, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]) -> tuple[AnyScalar, ...]:
     """What keeps D from being along d and h to its left."""
     if scene.plane:
         return (dot(side(d), D) - h,)
@@ -200,8 +202,8 @@ def rope_row(scene: Scene, strands: Sequence[Strand]) -> TieRow:
     return TieRow(pushes, _gap(scene, strands), component="tension")
 
 
-def _gap(scene: Scene, strands: Sequence[Strand]) -> Scalar | None:
-    used: Scalar = 0
+def _gap(scene: Scene, strands: Sequence[Strand]) -> AnyScalar | None:
+    used: AnyScalar = 0
     for strand in strands:
         if strand.length is None or strand.first.winds or strand.second.winds:
             return None
@@ -234,7 +236,7 @@ def side_rows(scene: Scene, strand: Strand) -> list[TieRow]:
     return rows
 
 
-def _sides(scene: Scene, strand: Strand) -> list[tuple[str, Vector, Scalar]]:
+def _sides(scene: Scene, strand: Strand) -> list[tuple[str, Vector, AnyScalar]]:
     """(name, n, how far apart along n the strand's centres are) for each n across it."""
     first, second = strand.first, strand.second
     if not (first.round or second.round) or scene.plane:
@@ -253,7 +255,7 @@ def _names(first: Stop, second: Stop) -> str:
     return " and ".join("the ground" if stop.body is None else f"'{stop.body}'" for stop in (first, second))
 
 
-def _over(a: Vector, b: Scalar) -> Vector:
+def _over(a: Vector, b: AnyScalar) -> Vector:
     return (over(a[0], b), over(a[1], b), over(a[2], b))
 
 

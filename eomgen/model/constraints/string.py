@@ -12,12 +12,12 @@ from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_r
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.findings import Finding, Path
-from eomgen.model.forces.load import Scene, Vector
+from eomgen.model.forces.load import Scene
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.spatial import apply
+from eomgen.symbolic.expression.spatial import Vector, apply
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,10 +6,10 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.round_bodies import laid_in
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.forces.load import PointForce, Scene, Vector
+from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
-from eomgen.symbolic.expression.spatial import dot, minus
+from eomgen.symbolic.expression.spatial import Vector, dot, minus
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,12 +8,12 @@ from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import right
 from eomgen.model.constraints.round_bodies import Ball, Round, Wheel, laid_in, turned_over
 from eomgen.model.constraints.row import direction_of
-from eomgen.model.forces.load import Place, Scalar, Scene, Vector
+from eomgen.model.forces.load import BodyPoint, Scene
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.spatial import ZERO, apply, cross, dot, minus, plus, times
+from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, apply, cross, dot, minus, plus, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,9 +50,9 @@ class Contact:
     """
 
     n: Vector
-    gap: Scalar
+    gap: AnyScalar
     reach: Vector
-    anchor: Place
+    anchor: BodyPoint
     arm: Vector
     tangents: tuple[Vector, ...]
 
@@ -66,8 +66,8 @@ class Curved:
         side: 1: it is rolled on outside, -1: inside.
     """
 
-    anchor: Place
-    r: Scalar
+    anchor: BodyPoint
+    r: AnyScalar
     side: int = 1
     axis: Vector | None = None
 
@@ -117,11 +117,11 @@ def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> 
     return Contact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
 
 
-def _gap(track: Curved, d: Vector, D: Scalar) -> Scalar:
+def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
     return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
 
 
-def _apart(scene: Scene, track: Curved, R: Scalar) -> Scalar:
+def _apart(scene: Scene, track: Curved, R: AnyScalar) -> AnyScalar:
     """How far the centre of a ball is from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
@@ -145,6 +145,6 @@ def curved(scene: Scene, on: str | None, circle: Circle) -> Curved:
     return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
 
 
-def anchor_of(scene: Scene, on: str | None, at: tuple | str) -> Place:
+def anchor_of(scene: Scene, on: str | None, at: tuple | str) -> BodyPoint:
     """A place of the track: of the ground, or in the axes of the body `on`."""
     return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))

@@ -6,8 +6,9 @@ from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding, Path
-from eomgen.model.forces.load import Load, Scalar, Scene, SpreadLoad
+from eomgen.model.forces.load import Load, Scene, SpreadLoad
 from eomgen.model.part import Part
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +43,6 @@ class Force(Part):
         """What is spread along lines, of which `loads` gives the resultants."""
         return ()
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         """V [J], or None where the force has none."""
         return None

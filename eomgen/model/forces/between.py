@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, Scalar, Scene
+from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Pull, TwoPoints
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,6 @@ class Between(Force):
         line = reach(scene, self.points)
         return line.pulled(scene.value_at(self.pull, {"r": line.length, "r'": line.rate}))
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         """V = integral of f dr where f holds r and parameters only; None where it has no closed form."""
         return scene.primitive(self.pull, "r", reach(scene, self.points).length)

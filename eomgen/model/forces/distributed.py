@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, SpreadLoad, Vector
+from eomgen.model.forces.load import Load, PointForce, Scene, SpreadLoad
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import is_zero
-from eomgen.symbolic.expression.spatial import dot, minus, plus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, plus, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,12 +60,12 @@ class Distributed(Force):
         return (line,)
 
 
-def _length(line: SpreadLoad) -> Scalar:
+def _length(line: SpreadLoad) -> AnyScalar:
     along = minus(line.end[1], line.start[1])
     return sqrt(dot(along, along))
 
 
-def _resultant(length: Scalar, near: Vector, far: Vector) -> Vector:
+def _resultant(length: AnyScalar, near: Vector, far: Vector) -> Vector:
     """L (2 q_near + q_far) / 6"""
     return times(length * Fraction(1, 6), plus(times(2, near), far))
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, PointForce, Scalar, Scene, UniformField
+from eomgen.model.forces.load import Load, PointForce, Scene, UniformField
 from eomgen.model.kinds import Acceleration, Bodies
-from eomgen.symbolic.expression.spatial import dot, times
+from eomgen.symbolic.expression.spatial import AnyScalar, dot, times
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,10 +30,10 @@ class Gravity(Force):
             return (UniformField(g),)
         return tuple(PointForce(place, times(m, g)) for place, m in scene.masses(self.bodies))
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         """V = - sum m g . r"""
         g = scene.vector(self.acceleration)
-        V: Scalar = 0
+        V: AnyScalar = 0
         for place, m in scene.masses(self.bodies):
             V = V - m * dot(g, scene.position(place))
         return V

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Scalar, Scene
+from eomgen.model.forces.load import Scene
 from eomgen.model.kinds import Energy
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,5 +17,5 @@ class Potential(Force):
     placeless: ClassVar[bool] = True
     energy: Energy
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         return scene.value(self.energy)

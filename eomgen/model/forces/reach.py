@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
-from eomgen.model.forces.load import Load, Place, PointForce, Scalar, Scene, Vector
+from eomgen.model.forces.load import BodyPoint, Load, PointForce, Scene
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import is_zero
-from eomgen.symbolic.expression.spatial import dot, minus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
 
 
 @dataclass(frozen=True)
@@ -22,12 +22,12 @@ class Reach:
         rate: of the length [m/s].
     """
 
-    ends: tuple[Place, Place]
-    length: Scalar
+    ends: tuple[BodyPoint, BodyPoint]
+    length: AnyScalar
     direction: Vector
-    rate: Scalar
+    rate: AnyScalar
 
-    def pulled(self, tension: Scalar) -> tuple[Load, ...]:
+    def pulled(self, tension: AnyScalar) -> tuple[Load, ...]:
         """Equal and opposite forces that draw the ends together [N]."""
         pull = times(tension, self.direction)
         return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))

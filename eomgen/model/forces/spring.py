@@ -5,9 +5,10 @@ from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, Scalar, Scene
+from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,10 +38,10 @@ class Spring(Force):
         line = reach(scene, self.points, self.along)
         return line.pulled(scene.value(self.stiffness) * self._stretch(scene, line.length))
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         """V = k (l - l0)^2 / 2"""
         stretch = self._stretch(scene, reach(scene, self.points, self.along).length)
         return Fraction(1, 2) * scene.value(self.stiffness) * stretch * stretch
 
-    def _stretch(self, scene: Scene, length: Scalar) -> Scalar:
+    def _stretch(self, scene: Scene, length: AnyScalar) -> AnyScalar:
         return length - (scene.start(length) if self.length == "start" else scene.value(self.length))

@@ -5,9 +5,10 @@ from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, Scalar, Scene
+from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,10 +34,10 @@ class TorsionSpring(Force):
         """A couple - k (theta - rest) on the second body, the opposite on the first."""
         return turned(self.bodies, self.body, -scene.value(self.stiffness) * self._twist(scene))
 
-    def potential(self, scene: Scene) -> Scalar | None:
+    def potential(self, scene: Scene) -> AnyScalar | None:
         """V = k (theta - rest)^2 / 2"""
         twist = self._twist(scene)
         return Fraction(1, 2) * scene.value(self.stiffness) * twist * twist
 
-    def _twist(self, scene: Scene) -> Scalar:
+    def _twist(self, scene: Scene) -> AnyScalar:
         return relative(self.bodies, self.body, scene.angle) - scene.value(self.rest)

@@ -16,7 +16,7 @@ from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture
 from eomgen.report.inertia.picture import inertia_picture, values_at_start
-from eomgen.report.inertia.rows import State, Sum, own_sum, together
+from eomgen.report.inertia.rows import Sum, own_sum, together
 from eomgen.report.inertia.steps import (
     LONGEST,
     Result,
@@ -38,6 +38,7 @@ from eomgen.report.shown import Shown
 from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, minus
 from eomgen.symbolic.print.text import text_size, to_text
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +15,7 @@ from eomgen.model.composite import about, scaled
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
@@ -29,12 +30,9 @@ from eomgen.symbolic.expression.spatial import (
     vector_of,
 )
 
-State = Mapping[Node, float]
-"""Coordinates and what else moves, in numbers."""
-
 
 @dataclass(frozen=True)
-class Row:
+class InertiaRow:
     """A body, or a piece of one.
 
     Args:
@@ -68,7 +66,7 @@ class Sum:
     """
 
     motion: Motion
-    rows: tuple[Row, ...]
+    rows: tuple[InertiaRow, ...]
     start: State
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
@@ -122,14 +120,16 @@ def together(motion: Motion, bodies: Sequence[str], start: State) -> Sum:
     return Sum(motion, tuple(rows), start)
 
 
-def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[Row, ...]:
+def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:
     """The pieces of a body, or itself, seen from where `pose` leads."""
     if motion.scope.model.bodies[body].parts is None:
-        return (Row(body, 1, _seen(mass_properties(motion.scope, body), pose)),)
+        return (InertiaRow(body, 1, _seen(mass_properties(motion.scope, body), pose)),)
     pieces = made_of(motion.scope, body).pieces
     begin = f"{of}, " if of else ""
     return tuple(
-        Row(f"{begin}part {k}: {p.piece.shape.kind}" + (" (hole)" if p.piece.hole else ""), p.sign, _seen(p.mass, pose))
+        InertiaRow(
+            f"{begin}part {k}: {p.piece.shape.kind}" + (" (hole)" if p.piece.hole else ""), p.sign, _seen(p.mass, pose)
+        )
         for k, p in enumerate(pieces, start=1)
     )
 

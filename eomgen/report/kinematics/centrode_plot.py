@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.centrodes import Centrodes
 from eomgen.mechanics.fields.field import field_of
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -23,10 +24,8 @@ STEPS = 240  # to each side
 FAR = 8.0  # sizes of the mechanism beyond which a centre is not drawn
 FIXED, MOVING = "#2f5d8a", "#b03a2e"
 
-Numbers = Mapping[Node, float]
 
-
-def centrode_panel(panel: Any, system: System, centrodes: Centrodes, values: Numbers) -> None:
+def centrode_panel(panel: Any, system: System, centrodes: Centrodes, values: State) -> None:
     """Draw both centrodes of a body.
 
     Args:
@@ -47,12 +46,12 @@ def centrode_panel(panel: Any, system: System, centrodes: Centrodes, values: Num
     panel.legend(fontsize=8)
 
 
-def _places(place: tuple[Scalar, ...], way: list[Numbers]) -> np.ndarray:
+def _places(place: tuple[Scalar, ...], way: list[State]) -> np.ndarray:
     """A place in the plane at each of the configurations."""
     return np.array([evaluate(place[:2], values, FLOAT) for values in way], dtype=float)
 
 
-def _in_ground(system: System, body: str, places: np.ndarray, values: Numbers) -> np.ndarray:
+def _in_ground(system: System, body: str, places: np.ndarray, values: State) -> np.ndarray:
     """Places of a body, where they are in the ground at the instant."""
     pose = system.motion.link(body).pose
     turn = np.array(evaluate([x for row in pose.R[:2] for x in row[:2]], values, FLOAT), dtype=float).reshape(2, 2)
@@ -67,14 +66,14 @@ def _cut(places: np.ndarray, size: float) -> np.ndarray:
     return np.where(far[:, None], np.nan, places)
 
 
-def _size(system: System, values: Numbers) -> float:
+def _size(system: System, values: State) -> float:
     """The size of the mechanism: the largest distance of a point from its body's origin."""
     points = [x for body in system.motion.points.values() for place in body.values() for x in place]
     found = [abs(x) for x in evaluate(points, values, FLOAT) if math.isfinite(x)]
     return max(found, default=0.0) or 1.0
 
 
-def _configurations(system: System, body: str, values: Numbers) -> list[Numbers]:
+def _configurations(system: System, body: str, values: State) -> list[State]:
     """Configurations before and after the instant, of the one freedom, or in time."""
     symbols, scope = system.symbols, system.scope
     if symbols.u:
@@ -87,7 +86,7 @@ def _configurations(system: System, body: str, values: Numbers) -> list[Numbers]
     return [*reversed(before), values, *after]
 
 
-def _reach(system: System, values: Numbers) -> float:
+def _reach(system: System, values: State) -> float:
     """How far the one freedom is followed to each side: half a turn of an angle, else sizes of the mechanism."""
     symbols = system.symbols
     leading = next(q for q, rate in zip(symbols.q, system.scope.rates, strict=True) if rate is symbols.u[0])
@@ -99,7 +98,7 @@ def _reach(system: System, values: Numbers) -> float:
 Slope = Callable[[np.ndarray], np.ndarray]
 
 
-def _slope(system: System, rates: tuple[Scalar, ...], values: Numbers) -> Slope:
+def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> Slope:
     """The rates as functions of t and the coordinates."""
     symbols = system.symbols
     function = compiled(program_of(rates, symbols), "numpy")
@@ -108,11 +107,11 @@ def _slope(system: System, rates: tuple[Scalar, ...], values: Numbers) -> Slope:
     return lambda x: np.asarray(function(float(x[0]), np.append(x[1:], speeds), p), dtype=float)
 
 
-def _followed(system: System, slope: Slope, values: Numbers, step: float) -> list[Numbers]:
+def _followed(system: System, slope: Slope, values: State, step: float) -> list[State]:
     """Configurations one after the other, by Runge and Kutta's method, as far as there are any."""
     moving = (system.symbols.t, *system.symbols.q)
     x = np.array([values[node] for node in moving], dtype=float)
-    found: list[Numbers] = []
+    found: list[State] = []
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
             k1 = slope(x)

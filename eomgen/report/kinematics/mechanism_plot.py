@@ -22,7 +22,7 @@ from eomgen.report.arrows import arrow
 from eomgen.report.drawing import ARROW, REACTION, Sketch, draw_model
 from eomgen.report.figures import Picture
 from eomgen.report.kinematics.centrode_plot import centrode_panel
-from eomgen.report.support_symbols import Place
+from eomgen.report.support_symbols import PagePoint
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 
@@ -70,7 +70,7 @@ class _Panels:
             raise MissingValues(tuple(n for n, p in parameters.items() if p in symbols_of((x,)) and known(p) is None))
         return found
 
-    def numbers(self, v: Sequence[Scalar]) -> Place:
+    def numbers(self, v: Sequence[Scalar]) -> PagePoint:
         return self.number(v[0]), self.number(v[1])
 
     # -- panels --------------------------------------------------------------------------------------
@@ -132,7 +132,7 @@ class _Panels:
             )
         return far
 
-    def _is_far(self, place: Place) -> bool:
+    def _is_far(self, place: PagePoint) -> bool:
         """Whether a place is well outside the mechanism."""
         corners = np.array([at for _, at, _ in self.points])
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -155,7 +155,7 @@ class _Panels:
         panel.axvline(0, color="#505050", linewidth=0.8)
         panel.set(ylim=limits, ylabel="y [m]", xlabel="$v_x$ [m/s]")
 
-    def _pieces(self, axis: int) -> list[tuple[str, Place, float, float]]:
+    def _pieces(self, axis: int) -> list[tuple[str, PagePoint, float, float]]:
         """(colour, extent along the axis, slope, value at 0) of the velocity across the axis, of every moving block."""
         found = []
         for color, block, bodies in self._blocks():

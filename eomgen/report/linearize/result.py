@@ -14,7 +14,7 @@ from eomgen.certificate import certify
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.small_motions.family import Family
-from eomgen.mechanics.small_motions.field import Matrix
+from eomgen.mechanics.small_motions.field import Entries
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
@@ -260,12 +260,12 @@ class Linearization(Shown):
             ],
         }
 
-    def _matrix(self, A: Matrix) -> dict[str, Any]:
+    def _matrix(self, A: Entries) -> dict[str, Any]:
         if not self.is_exact:
             return {"exact": None, "value": A}
         return {"exact": [[to_text(x) for x in row] for row in A], "value": self._values(A)}
 
-    def _values(self, A: Matrix) -> list[list[float]] | None:
+    def _values(self, A: Entries) -> list[list[float]] | None:
         if not self.valued:
             return None
         values = {x: float(v) for x, v in self.small.reference.trial.items()}

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Entry, Matrix
+from eomgen.mechanics.small_motions.field import Entries, Entry
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
@@ -134,7 +134,7 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     return shown
 
 
-def _symmetric(modes: Modes, A: Matrix) -> bool:
+def _symmetric(modes: Modes, A: Entries) -> bool:
     if modes.small.exact is None:
         n = range(len(A))
         largest = max((abs(x) for row in A for x in row), default=0)
@@ -143,7 +143,7 @@ def _symmetric(modes: Modes, A: Matrix) -> bool:
 
 
 def _entries(
-    letter: str, A: Matrix, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
+    letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
 ) -> list[Statement]:
     """The entries that are not zero; of a symmetric matrix each once."""
     found: list[Statement] = []

@@ -26,7 +26,7 @@ from eomgen.report.figures import Picture, halo
 from eomgen.report.quantities import Scale, scale_of
 from eomgen.report.statics.diagrams import diagram_panels, influence_panel
 from eomgen.report.statics.section_steps import Sections
-from eomgen.report.support_symbols import Place
+from eomgen.report.support_symbols import PagePoint
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -65,7 +65,7 @@ class Scene:
         return Sketch(system, {**numbers, **found})
 
     @cached_property
-    def forces(self) -> list[tuple[Place, Place, str, str]]:
+    def forces(self) -> list[tuple[PagePoint, PagePoint, str, str]]:
         """(tip, force, colour, label) of every single force, loads first."""
         return [*self._loads(), *self._reactions()]
 
@@ -85,7 +85,7 @@ class Scene:
         ends = [pair for _, _, pair in members_of(system)]
         return [*bodies, *(np.array([self.sketch.position((node, ZERO)) for node in pair]) for pair in ends)]
 
-    def length(self, force: Place) -> Place:
+    def length(self, force: PagePoint) -> PagePoint:
         """An arrow for a force: longer for a larger one, never very short."""
         size = math.hypot(*force)
         share = SHORTEST + (1 - SHORTEST) * size / self.largest
@@ -96,7 +96,7 @@ class Scene:
     def largest(self) -> float:
         return max((math.hypot(*force) for _, force, _, _ in self.forces), default=0.0) or 1.0
 
-    def _loads(self) -> Iterable[tuple[Place, Place, str, str]]:
+    def _loads(self) -> Iterable[tuple[PagePoint, PagePoint, str, str]]:
         for acting in loads_at_rest(self.statics.structure):
             load = acting.load
             if isinstance(load, PointForce) and load.place[0] is not None:
@@ -107,21 +107,21 @@ class Scene:
         """A load by its name, and how large it is."""
         return f"{load} = {self.scale.text(size, unit)}" if self.known else load
 
-    def _vector(self, vector: Any, axes: str | None) -> Place:
+    def _vector(self, vector: Any, axes: str | None) -> PagePoint:
         numbers = np.array(self.sketch.numbers(vector[:2]))
         if axes is not None:
             R = self.statics.system.motion.link(axes).pose.R
             numbers = np.array([self.sketch.numbers(row[:2]) for row in R[:2]]) @ numbers
         return float(numbers[0]), float(numbers[1])
 
-    def _reactions(self) -> Iterable[tuple[Place, Place, str, str]]:
+    def _reactions(self) -> Iterable[tuple[PagePoint, PagePoint, str, str]]:
         for component, value, label in self._outer():
             (effect,) = component.effects
             x, y = self.sketch.numbers(effect.force[:2])
             if math.hypot(x, y):
                 yield self.place(effect), (x * value, y * value), REACTION, label
 
-    def couples(self) -> Iterable[tuple[Place, float, str, str]]:
+    def couples(self) -> Iterable[tuple[PagePoint, float, str, str]]:
         """(place, sense, colour, label) of every couple."""
         for acting in loads_at_rest(self.statics.structure):
             load = acting.load
@@ -171,7 +171,7 @@ class Scene:
         text = self.scale.number(self.sketch.numbers((value,))[0]) if self.known else to_text(value)
         return text if len(text) <= LONGEST_LABEL else ""
 
-    def place(self, effect: Effect) -> Place:
+    def place(self, effect: Effect) -> PagePoint:
         """Where a reaction acts."""
         axes = Axes(self.statics.system.motion)
         link = axes.motion.links[effect.link]
@@ -179,14 +179,14 @@ class Scene:
         dx, dy = self.sketch.numbers(effect.arm[:2])
         return x + dx, y + dy
 
-    def _seat(self, couple: Component) -> Place:
+    def _seat(self, couple: Component) -> PagePoint:
         """Where a couple is drawn: at the forces of its tie or joint, else in the middle of the body."""
         for other in self.statics.structure.components:
             if other.owner == couple.owner and other.label != couple.label and len(other.effects) == 1:
                 return self.place(other.effects[0])
         return self._middle(self.statics.system.motion.links[couple.effects[0].link].name)
 
-    def _middle(self, body: str) -> Place:
+    def _middle(self, body: str) -> PagePoint:
         places = [
             self.sketch.position((body, r))
             for name, r in self.statics.system.motion.points[body].items()

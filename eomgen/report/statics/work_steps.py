@@ -11,7 +11,7 @@ from eomgen.mechanics.statics.two_ways import StaticReaction
 from eomgen.mechanics.statics.virtual_work import Acting, Term, WorkEquation
 from eomgen.mechanics.structures.blocks import Block, blocks_of, members_of, resting
 from eomgen.mechanics.structures.velocity_plan import Plan
-from eomgen.model.forces.load import Couple, Place, PointForce, SpreadLoad
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
 from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -175,7 +175,7 @@ def _moved(moved: Vector | None, turned: Vector | None, size: int, delta: Node) 
     return (*shift, *(x * delta for x in (turned[2:] if size == 2 else turned)))
 
 
-def point_name(plan: Plan, place: Place) -> str:
+def point_name(plan: Plan, place: BodyPoint) -> str:
     """A place by the name of the point of the body that is there."""
     body, r = place
     motion = plan.system.motion

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from eomgen.symbolic.exact.terms import Key, Monomial, Terms, Vector
+from eomgen.symbolic.exact.terms import AngleSum, Key, Monomial, Terms
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 
 RADIAN = -1  # the index of the angle of a plain number: sin(1)
-Place = tuple  # sorts monomials as they are written
+SortKey = tuple  # sorts monomials as they are written
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Atoms:
             total = self.graph.add(total, self.term(key, terms[key]))
         return total
 
-    def place(self, monomial: Monomial) -> Place:
+    def place(self, monomial: Monomial) -> SortKey:
         """Accelerations before squares of rates before rates before the rest; then in the order of declaration."""
         moving: tuple[list, list, list] = ([], [], [])
         for atom, e in monomial:
@@ -81,11 +81,11 @@ class Atoms:
                 below = self.graph.mul(below, self.graph.pow(written[atom], -e))
         return above, below
 
-    def wave_node(self, kind: str, k: Vector) -> Scalar:
+    def wave_node(self, kind: str, k: AngleSum) -> Scalar:
         """cos or sin of k . angles."""
         return self.graph.call(kind, self.angle_node(k))
 
-    def angle_node(self, k: Vector) -> Scalar:
+    def angle_node(self, k: AngleSum) -> Scalar:
         """k . angles"""
         angle: Scalar = 0
         for atom, c in k:

@@ -36,7 +36,7 @@ ALGEBRAIC = frozenset("symbol neg add sub mul div".split())
 
 
 @dataclass(frozen=True)
-class State:
+class ExactState:
     """Values at which expressions can be evaluated exactly.
 
     Args:
@@ -90,7 +90,7 @@ def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int 
         return _at_fifty_digits(flat, rng, states)
 
 
-def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> State:
+def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> ExactState:
     """A random state for the outputs in an exact arithmetic.
 
     Angles are taken apart into numbers times atoms: symbols, or other nodes such as omega*t. An atom's sine is
@@ -106,7 +106,7 @@ def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic =
     return _exact_state(order(outputs), rng, arithmetic)
 
 
-def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> State:
+def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> ExactState:
     """The same for nodes in evaluation order."""
     angles = {x.args[0]: linear_terms(x.args[0]) for x in nodes if x.op in ("sin", "cos")}
     circle = _Circle(arithmetic, rng, angles.values())
@@ -126,7 +126,7 @@ def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> 
             independent = False
     for symbols in _spheres(nodes):
         values |= zip(symbols, _unit_vector(arithmetic, rng, len(symbols)), strict=True)
-    return State(values, independent)
+    return ExactState(values, independent)
 
 
 def _spheres(nodes: Iterable[Node]) -> list[tuple[Node, ...]]:
@@ -220,7 +220,7 @@ def _random(arithmetic: Arithmetic, rng: Random) -> Any:
     return arithmetic.number(Fraction(rng.randint(1, 40), rng.randint(1, 40)))
 
 
-def _valued(flat: Sequence[Scalar], nodes: Sequence[Node], rng: Random) -> tuple[State, list[Any]]:
+def _valued(flat: Sequence[Scalar], nodes: Sequence[Node], rng: Random) -> tuple[ExactState, list[Any]]:
     """A state of the prime field at which everything has a value, and the values."""
     for _ in range(TRIES):
         try:

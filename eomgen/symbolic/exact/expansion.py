@@ -16,11 +16,11 @@ from eomgen.symbolic.exact.spheres import reduced_on
 from eomgen.symbolic.exact.terms import (
     HALF,
     ONE,
+    AngleSum,
     Key,
     Monomial,
     Terms,
     TooLarge,
-    Vector,
     accumulate,
     common_monomial,
     constant,
@@ -417,7 +417,7 @@ class Expansion:
         self.atoms.nodes[node.index] = node
         return node.index
 
-    def _wave(self, kind: str, k: Vector) -> Terms:
+    def _wave(self, kind: str, k: AngleSum) -> Terms:
         w, sign = wave(kind, k)
         return {((), w): sign} if sign else {}
 

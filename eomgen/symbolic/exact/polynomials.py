@@ -14,7 +14,7 @@ from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import Terms, TooLarge, Vector, Wave, plus, tidy
+from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, plus, tidy
 from eomgen.symbolic.expression.graph import Number
 
 MOST_AXES = 4  # angles, for other forms than that in cosines
@@ -37,7 +37,7 @@ class Polynomials:
         from sympy.polys.rings import PolyRing
 
         self._expansion = expansion
-        self._axes: tuple[Vector, ...] = axes_of([w for part in parts for _, w in part])
+        self._axes: tuple[AngleSum, ...] = axes_of([w for part in parts for _, w in part])
         self._atoms = sorted({atom for part in parts for monomial, _ in part for atom, _ in monomial})
         cosines = [f"{f}{i}" for i in range(len(self._axes)) for f in "cs"]
         self._domain = QQ
@@ -97,7 +97,7 @@ class Polynomials:
                 element = self._each(element, i, lambda c, s, top=top: (c, s, (top - c - s) // 2, (0, 1)))
         return element
 
-    def _columns(self) -> Iterable[tuple[int, Vector]]:
+    def _columns(self) -> Iterable[tuple[int, AngleSum]]:
         """(place of the cosine among the generators, axis); the sine follows."""
         return ((len(self._atoms) + 2 * k, axis) for k, axis in enumerate(self._axes))
 

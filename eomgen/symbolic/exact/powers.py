@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import lru_cache
 from math import comb
 
-from eomgen.symbolic.exact.terms import Vector, Wave, common_number, tidy
+from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy
 from eomgen.symbolic.expression.graph import Number
 
 Powers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
@@ -17,7 +17,7 @@ LARGEST_DEGREE = 12  # of a wave to be written in powers
 KEPT = 20_000  # waves and sets of angles of which the form is remembered
 
 
-def power_form(waves: Mapping[Wave, Number], axes: tuple[Vector, ...]) -> Polynomial | None:
+def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> Polynomial | None:
     """The waves as a polynomial in the axes' cosines and sines, s^2 eliminated; None where that is too large."""
     polynomial: Polynomial = {}
     for w, c in waves.items():
@@ -32,7 +32,7 @@ def power_form(waves: Mapping[Wave, Number], axes: tuple[Vector, ...]) -> Polyno
     return polynomial
 
 
-def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
+def axes_of(waves: Iterable[Wave]) -> tuple[AngleSum, ...]:
     """Angles of which those of all waves are whole combinations.
 
     Angles that always come in one proportion are one axis: sin(a) cos(b + c) has the axes a and b + c.
@@ -41,7 +41,7 @@ def axes_of(waves: Iterable[Wave]) -> tuple[Vector, ...]:
 
 
 @lru_cache(maxsize=KEPT)
-def _axes_of(angles: tuple[Vector, ...]) -> tuple[Vector, ...]:
+def _axes_of(angles: tuple[AngleSum, ...]) -> tuple[AngleSum, ...]:
     rows = list(map(dict, angles))
     groups: dict[tuple[Fraction, ...], list[tuple[int, Fraction]]] = {}
     for angle in sorted({angle for row in rows for angle in row}):
@@ -57,7 +57,7 @@ def _axes_of(angles: tuple[Vector, ...]) -> tuple[Vector, ...]:
 
 
 @lru_cache(maxsize=KEPT)
-def _multiples(k: Vector, axes: tuple[Vector, ...]) -> tuple[int, ...] | None:
+def _multiples(k: AngleSum, axes: tuple[AngleSum, ...]) -> tuple[int, ...] | None:
     """k as whole multiples of the axes, or None."""
     entries = dict(k)
     multiples = []

@@ -20,8 +20,8 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Number
 
 Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
-Vector = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian
-Wave = tuple[str, Vector] | tuple[()]  # ("cos", k), ("sin", k), or () for 1
+AngleSum = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian
+Wave = tuple[str, AngleSum] | tuple[()]  # ("cos", k), ("sin", k), or () for 1
 Key = tuple[Monomial, Wave]
 Terms = dict[Key, Number]
 
@@ -112,7 +112,7 @@ def wave_product(w: Wave, v: Wave) -> tuple[tuple[Wave, Number], ...]:
     return tuple((x, c) for x, c in pairs if c != 0)
 
 
-def vector_sum(k: Vector, l: Vector, factor: Number) -> Vector:
+def vector_sum(k: AngleSum, l: AngleSum, factor: Number) -> AngleSum:
     """k + factor l"""
     entries = dict(k)
     for angle, c in l:
@@ -120,7 +120,7 @@ def vector_sum(k: Vector, l: Vector, factor: Number) -> Vector:
     return tuple(sorted((angle, tidy(c)) for angle, c in entries.items() if c != 0))
 
 
-def wave(kind: str, k: Vector) -> tuple[Wave, int]:
+def wave(kind: str, k: AngleSum) -> tuple[Wave, int]:
     """(wave, sign) with kind(k . angles) = sign * wave; sign 0 for sin(0)."""
     if not k:
         return (), 1 if kind == "cos" else 0

@@ -15,11 +15,11 @@ from itertools import product
 from math import gcd
 
 from eomgen.symbolic.exact.powers import Polynomial, axes_of, eliminated, power_form
-from eomgen.symbolic.exact.terms import Vector, Wave, common_number, tidy, vector_sum, wave
+from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy, vector_sum, wave
 from eomgen.symbolic.expression.graph import Number
 
 Waves = dict[Wave, Number]
-Factors = tuple[tuple[str, Vector, int], ...]  # (function, angle, exponent)
+Factors = tuple[tuple[str, AngleSum, int], ...]  # (function, angle, exponent)
 Sum = tuple[tuple[Number, Factors], ...]
 
 MOST_WAVES = 500  # of a sum that is shortened: more are too long to be read either way
@@ -65,7 +65,7 @@ def _length(terms: Sum) -> tuple[int, int, int, int]:
     return len(terms), multiple, negative, sum(e for _, factors in terms for _, _, e in factors)
 
 
-def _is_multiple(k: Vector) -> bool:
+def _is_multiple(k: AngleSum) -> bool:
     return k[0][0] >= 0 and gcd(*(c.numerator for _, c in k)) > 1
 
 
@@ -82,7 +82,7 @@ def _as_waves(waves: Waves) -> Sum:
 
 def _by_directions(waves: Waves) -> Sum:
     """Powers of cos and sin of one combination of angles each: cos(2a - 2b) = 2 cos(a - b)^2 - 1."""
-    directions: dict[Vector, Waves] = {}
+    directions: dict[AngleSum, Waves] = {}
     for w, c in waves.items():
         if w:
             directions.setdefault(_direction(w[1]), {})[w] = c
@@ -125,12 +125,12 @@ def _forms(rays: Waves) -> list[Form]:
     return forms
 
 
-def _is_one_axis(angles: set[Vector]) -> bool:
+def _is_one_axis(angles: set[AngleSum]) -> bool:
     """Whether all is of one angle, which is no multiple of another."""
     return len(angles) == 1 and gcd(*(c.numerator for k in angles for _, c in k)) == 1
 
 
-def _direction(k: Vector) -> Vector:
+def _direction(k: AngleSum) -> AngleSum:
     """k divided by the largest number that leaves whole multiples."""
     common = common_number(c for _, c in k)
     return tuple((angle, tidy(c / common)) for angle, c in k)
@@ -154,7 +154,7 @@ def _paired(waves: Waves) -> tuple[list[tuple[Number, Factors]], Waves]:
     return products, rest
 
 
-def _product_of_pair(kind: str, k: Vector, l: Vector, c: Number, same: bool) -> tuple[Number, Factors] | None:
+def _product_of_pair(kind: str, k: AngleSum, l: AngleSum, c: Number, same: bool) -> tuple[Number, Factors] | None:
     """c (f(k) + f(l)), or c (f(k) - f(l)) where not `same`, as one product; None where (k + l)/2 is not whole."""
     halves = [tuple((angle, tidy(Fraction(m) / 2)) for angle, m in vector_sum(k, l, sign)) for sign in (1, -1)]
     if not all(halves) or any(type(m) is not int or angle < 0 for half in halves for angle, m in half):
@@ -172,7 +172,7 @@ def _product_of_pair(kind: str, k: Vector, l: Vector, c: Number, same: bool) -> 
     return tidy(c), tuple(sorted(factors))
 
 
-def _named(found: tuple[Wave, int]) -> tuple[tuple[str, Vector], int]:
+def _named(found: tuple[Wave, int]) -> tuple[tuple[str, AngleSum], int]:
     """A wave that is not 1."""
     w, sign = found
     assert w
@@ -219,7 +219,7 @@ def _in_powers(waves: Waves) -> Sum | None:
     return _as_sum(polynomial, axes)
 
 
-def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[Vector, ...]] | None:
+def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[AngleSum, ...]] | None:
     axes = axes_of(waves)
     if len(axes) > MOST_AXES:
         return None
@@ -227,11 +227,11 @@ def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[Vector, ...]] | None:
     return None if polynomial is None else (polynomial, axes)
 
 
-def _as_sum(polynomial: Polynomial, axes: tuple[Vector, ...]) -> Sum:
+def _as_sum(polynomial: Polynomial, axes: tuple[AngleSum, ...]) -> Sum:
     """The polynomial's terms, low powers first."""
     terms = []
     for powers in sorted(polynomial, key=lambda powers: (sum(c + s for c, s in powers), powers)):
-        factors: list[tuple[str, Vector, int]] = []
+        factors: list[tuple[str, AngleSum, int]] = []
         for axis, (c, s) in zip(axes, powers, strict=True):
             factors += [(kind, axis, e) for kind, e in (("sin", s), ("cos", c)) if e]
         terms.append((polynomial[powers], tuple(factors)))

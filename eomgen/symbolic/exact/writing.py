@@ -14,9 +14,9 @@ from eomgen.symbolic.exact.radicals import Radical, one_root
 from eomgen.symbolic.exact.spheres import shortest_on
 from eomgen.symbolic.exact.terms import (
     ONE,
+    AngleSum,
     Monomial,
     Terms,
-    Vector,
     Wave,
     common_monomial,
     common_number,
@@ -235,11 +235,11 @@ def _forward(factors: Factors) -> tuple[int, Factors]:
     return sign, tuple(turned)
 
 
-def _powers(factors: Factors) -> Counter[tuple[str, Vector]]:
+def _powers(factors: Factors) -> Counter[tuple[str, AngleSum]]:
     return Counter({(kind, angle): e for kind, angle, e in factors})
 
 
-def _factors(powers: Counter[tuple[str, Vector]]) -> Factors:
+def _factors(powers: Counter[tuple[str, AngleSum]]) -> Factors:
     return tuple((kind, angle, e) for (kind, angle), e in powers.items())
 
 

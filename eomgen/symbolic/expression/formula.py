@@ -14,9 +14,9 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.symbolic.expression import scalar_operations
+from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled
 
-Scalar = Any
 Instruction = tuple[str, Any]
 """("number", value) | ("name", name) | ("neg", None) | ("+" "-" "*" "/" "^", None) | ("function", (name, count))
 | ("call", Call) | ("sampled", Sampled): a function through samples, of what stands before it"""
@@ -107,7 +107,7 @@ class Expression:
         """The functions of outputs that stand in it, in the order written (those in their arguments not)."""
         return tuple(what for kind, what in self.code if kind == "call")
 
-    def evaluate(self, lookup: Mapping[str, Scalar], call: Callable[[Call], Scalar] | None = None) -> Scalar:
+    def evaluate(self, lookup: Mapping[str, AnyScalar], call: Callable[[Call], AnyScalar] | None = None) -> AnyScalar:
         """The value, in the arithmetic of the values given.
 
         Args:
@@ -118,7 +118,7 @@ class Expression:
             ExpressionError: an unknown name; no value there (1/0); a call where none has a meaning. It
                 carries the column.
         """
-        stack: list[Scalar] = []
+        stack: list[AnyScalar] = []
         pi = lookup.get("pi")
         for position, (kind, what) in enumerate(self.code):
             if kind == "number":
@@ -131,18 +131,18 @@ class Expression:
                 self._operate(stack, kind, what, pi, position)
         return stack[0]
 
-    def _looked_up(self, name: str, lookup: Mapping[str, Scalar], position: int) -> Scalar:
+    def _looked_up(self, name: str, lookup: Mapping[str, AnyScalar], position: int) -> AnyScalar:
         try:
             return lookup[name]
         except KeyError:
             raise unknown("name", name, lookup, self.columns[position]) from None
 
-    def _called(self, what: Call, call: Callable[[Call], Scalar] | None) -> Scalar:
+    def _called(self, what: Call, call: Callable[[Call], AnyScalar] | None) -> AnyScalar:
         if call is None:
             raise ExpressionError(f"'{what}' can only be asked in [outputs]", what.column, length=len(what.name))
         return call(what)
 
-    def _operate(self, stack: list[Scalar], kind: str, what: Any, pi: Scalar, position: int) -> None:
+    def _operate(self, stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar, position: int) -> None:
         try:
             apply_operation(stack, kind, what, pi)
         except (scalar_operations.Undefined, DerivationError) as error:
@@ -252,7 +252,7 @@ _BINARY = {
 }
 
 
-def apply_operation(stack: list[Scalar], kind: str, what: Any, pi: Scalar) -> None:
+def apply_operation(stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar) -> None:
     """Replaces the operands on top of the stack by the result of one operation."""
     if kind == "neg":
         stack[-1] = -stack[-1]

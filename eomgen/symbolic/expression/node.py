@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from heapq import heappop, heappush
 from typing import Any, final
 
@@ -85,6 +86,12 @@ def _short(a: Any) -> str:
 
 
 Scalar = Number | Node
+State = dict[Node, Any]
+"""Values of symbols, in any arithmetic: coordinates, speeds, parameters, t."""
+ScalarRow = tuple[Scalar, ...]
+ScalarRows = Sequence[Sequence[Scalar]]
+SparseRow = dict[int, Scalar]
+"""A row of linear equations, entries that are 0 left out."""
 
 
 def linear_terms(a: Scalar) -> dict[Node | None, Number]:

@@ -10,13 +10,11 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from math import isqrt
-from typing import Any
 
 from eomgen.symbolic.expression import functions
 from eomgen.symbolic.expression.graph import Node, Number
+from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled, number_of
-
-Scalar = Any
 
 LARGEST_MAGNITUDE = 1000  # in bits: an exact number still fits a double
 MOST_BITS = 5_000  # of a numerator or denominator: 9^9^9 is refused, not computed
@@ -26,12 +24,12 @@ class Undefined(ArithmeticError):
     """The operation has no value at these operands, said in words."""
 
 
-def is_exact(a: Scalar) -> bool:
+def is_exact(a: AnyScalar) -> bool:
     """True for whole numbers and fractions."""
     return type(a) is int or type(a) is Fraction
 
 
-def bounded(a: Scalar) -> Scalar:
+def bounded(a: AnyScalar) -> AnyScalar:
     """a itself; a fraction that is whole as an int; an exact number beyond all size raises Undefined."""
     if type(a) is int:
         if a.bit_length() > LARGEST_MAGNITUDE:
@@ -45,25 +43,25 @@ def bounded(a: Scalar) -> Scalar:
     return a
 
 
-def add(a: Scalar, b: Scalar) -> Scalar:
+def add(a: AnyScalar, b: AnyScalar) -> AnyScalar:
     return bounded(a + b)
 
 
-def subtract(a: Scalar, b: Scalar) -> Scalar:
+def subtract(a: AnyScalar, b: AnyScalar) -> AnyScalar:
     return bounded(a - b)
 
 
-def multiply(a: Scalar, b: Scalar) -> Scalar:
+def multiply(a: AnyScalar, b: AnyScalar) -> AnyScalar:
     return bounded(a * b)
 
 
-def divide(a: Scalar, b: Scalar) -> Scalar:
+def divide(a: AnyScalar, b: AnyScalar) -> AnyScalar:
     if type(b) is not Node and b == 0:
         raise Undefined("division by zero")
     return bounded(functions.over(a, b))
 
 
-def power(a: Scalar, b: Scalar, pi: Scalar = None) -> Scalar:
+def power(a: AnyScalar, b: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
     """a ^ b; of exact numbers it is exact where it can be (4^(1/2) = 2)."""
     if is_exact(b) and b.denominator == 1:
         return _whole_power(a, b.numerator)
@@ -80,7 +78,7 @@ def power(a: Scalar, b: Scalar, pi: Scalar = None) -> Scalar:
     return value
 
 
-def _whole_power(a: Scalar, n: int) -> Scalar:
+def _whole_power(a: AnyScalar, n: int) -> AnyScalar:
     if n < 0:
         return divide(1, _whole_power(a, -n))
     if is_exact(a) and a in (-1, 0, 1):
@@ -91,7 +89,7 @@ def _whole_power(a: Scalar, n: int) -> Scalar:
     return bounded(a**n)
 
 
-def _root(a: int | Fraction, b: Fraction, pi: Scalar) -> Scalar:
+def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
     """a ^ (m/n) of an exact number, in the arithmetic of pi."""
     if type(pi) is Node:
         return pi.graph.pow(a, b)
@@ -104,7 +102,7 @@ def _root(a: int | Fraction, b: Fraction, pi: Scalar) -> Scalar:
     return (a + (pi - pi)) ** b
 
 
-def through_samples(sampled: Sampled, t: Scalar, pi: Scalar = None) -> Scalar:
+def through_samples(sampled: Sampled, t: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
     """The value at t of a function through samples; in the graph it stays one operation."""
     if type(t) is Node:
         return t.graph.call("sampled", t, number_of(sampled))
@@ -116,7 +114,7 @@ def through_samples(sampled: Sampled, t: Scalar, pi: Scalar = None) -> Scalar:
     return sampled.chosen(t, functions.chosen, pi)
 
 
-def function(name: str, args: tuple[Scalar, ...], pi: Scalar = None) -> Scalar:
+def function(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar = None) -> AnyScalar:
     """An elementary function at its arguments; min and max take two or more."""
     if name in ("min", "max"):
         value = args[0]
@@ -126,7 +124,7 @@ def function(name: str, args: tuple[Scalar, ...], pi: Scalar = None) -> Scalar:
     return _function(name, args, pi)
 
 
-def _function(name: str, args: tuple[Scalar, ...], pi: Scalar) -> Scalar:
+def _function(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar) -> AnyScalar:
     if not all(is_exact(a) for a in args):
         if all(is_exact(a) or isinstance(a, float) for a in args):
             return functions.function(name, *(float(a) for a in args))

@@ -12,29 +12,29 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-Scalar = Any
-Vector = tuple[Scalar, Scalar, Scalar]
+AnyScalar = Any
+Vector = tuple[AnyScalar, AnyScalar, AnyScalar]
 Matrix = tuple[Vector, Vector, Vector]
 
 ZERO: Vector = (0, 0, 0)
 IDENTITY: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
-def vector_of(components: Iterable[Scalar]) -> Vector:
+def vector_of(components: Iterable[AnyScalar]) -> Vector:
     """The vector with these three components."""
     x, y, z = components
     return (x, y, z)
 
 
-def matrix_of(rows: Iterable[Iterable[Scalar]]) -> Matrix:
+def matrix_of(rows: Iterable[Iterable[AnyScalar]]) -> Matrix:
     """The matrix with these three rows of three."""
     first, second, third = (vector_of(row) for row in rows)
     return (first, second, third)
 
 
-def dot(a: Vector, b: Vector) -> Scalar:
+def dot(a: Vector, b: Vector) -> AnyScalar:
     """a . b; what is multiplied by the number 0 is not looked at."""
-    total: Scalar = 0
+    total: AnyScalar = 0
     for x, y in zip(a, b, strict=True):
         if (type(x) is not int or x != 0) and (type(y) is not int or y != 0):
             total = total + x * y
@@ -56,7 +56,7 @@ def minus(a: Vector, b: Vector) -> Vector:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-def times(k: Scalar, a: Vector) -> Vector:
+def times(k: AnyScalar, a: Vector) -> Vector:
     """k a"""
     return (k * a[0], k * a[1], k * a[2])
 
@@ -82,7 +82,7 @@ def added(A: Matrix, B: Matrix) -> Matrix:
     return (plus(A[0], B[0]), plus(A[1], B[1]), plus(A[2], B[2]))
 
 
-def rotation(axis: Vector, cosine: Scalar, sine: Scalar) -> Matrix:
+def rotation(axis: Vector, cosine: AnyScalar, sine: AnyScalar) -> Matrix:
     """Rotation about a unit axis n (Rodrigues): R = c 1 + s n~ + (1 - c) n n^T."""
     x, y, z = axis
     k = 1 - cosine
@@ -142,7 +142,7 @@ class Twist:
         """The same twist in the axes to which R leads."""
         return Twist(apply(R, self.w), apply(R, self.v))
 
-    def power(self, wrench: Wrench) -> Scalar:
+    def power(self, wrench: Wrench) -> AnyScalar:
         """tau . w + f . v, both at the same point and in the same axes [W]."""
         return dot(wrench.tau, self.w) + dot(wrench.f, self.v)
 
@@ -181,12 +181,12 @@ class Inertia:
         I: inertia about the origin, 3 x 3 [kg m^2].
     """
 
-    m: Scalar
+    m: AnyScalar
     h: Vector
     I: Matrix
 
     @staticmethod
-    def about_center(m: Scalar, com: Vector, I_com: Matrix) -> Inertia:
+    def about_center(m: AnyScalar, com: Vector, I_com: Matrix) -> Inertia:
         """From the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
         h = times(m, com)
         shift = matrix_of(((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
@@ -202,7 +202,7 @@ class Inertia:
             plus(times(self.m, xi.v), cross(xi.w, self.h)),
         )
 
-    def kinetic_energy(self, xi: Twist) -> Scalar:
+    def kinetic_energy(self, xi: Twist) -> AnyScalar:
         """T = (m v.v + w.I w) / 2 + w.(h x v) [J], the twist at the origin in body axes."""
         momentum = self.momentum(xi)
         return Fraction(1, 2) * xi.power(momentum)

@@ -20,7 +20,7 @@ from typing import Any
 WAYS = ("cubic", "linear", "steps")
 ENDS = ("not-a-knot", "natural", "rest")
 LONGEST = 1000  # bits of a denominator
-Row = tuple[Fraction, ...]
+SplineRow = tuple[Fraction, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +35,9 @@ class Spline:
         closed: the last bound belongs to the piece before it: there the samples end.
     """
 
-    bounds: Row
-    origins: Row
-    pieces: tuple[Row, ...]
+    bounds: SplineRow
+    origins: SplineRow
+    pieces: tuple[SplineRow, ...]
     closed: bool = True
 
     @property
@@ -67,7 +67,7 @@ class Spline:
             value = value * s + self._chosen(t, row, choose)
         return value
 
-    def _chosen(self, t: Any, values: Row, choose: Callable[..., Any], first: int = 0) -> Any:
+    def _chosen(self, t: Any, values: SplineRow, choose: Callable[..., Any], first: int = 0) -> Any:
         """The value of the piece in which t lies, by halving: no choice stands deeper than log2 of their number."""
         if len(set(values)) == 1:
             return _tidy(values[0])
@@ -183,14 +183,14 @@ def _tidy(a: Fraction) -> int | Fraction:
     return a.numerator if a.denominator == 1 else a
 
 
-def _polynomial(piece: Row, s: Any, number: Callable[[Fraction], Any] = Fraction) -> Any:
+def _polynomial(piece: SplineRow, s: Any, number: Callable[[Fraction], Any] = Fraction) -> Any:
     value = number(Fraction(0))
     for c in reversed(piece):
         value = value * s + number(c)
     return value
 
 
-def _piece(times: Sequence[Fraction], values: Sequence[Fraction], slopes: Sequence[Fraction] | None) -> Row:
+def _piece(times: Sequence[Fraction], values: Sequence[Fraction], slopes: Sequence[Fraction] | None) -> SplineRow:
     h = times[1] - times[0]
     m = (values[1] - values[0]) / h
     if slopes is None:

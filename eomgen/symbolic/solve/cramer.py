@@ -15,17 +15,17 @@ from dataclasses import dataclass
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import SparseRow
 
 LARGEST_BLOCK = 10  # unknowns in one determinant; its minors are 2^n
-Columns = dict[int, Scalar]
 
 
 @dataclass
-class Line:
+class SparseEquation:
     """One equation: sum of entries[j] x_j = right, one right side for each of several systems."""
 
     number: int
-    entries: Columns
+    entries: SparseRow
     right: list[Scalar]
 
 
@@ -61,7 +61,9 @@ def solved(
         DerivationError: more than LARGEST_BLOCK unknowns hang together.
     """
     pairs = zip(rows, right, strict=True)
-    lines = [Line(i, {j: x for j, x in row.items() if not is_zero(x)}, list(r)) for i, (row, r) in enumerate(pairs)]
+    lines = [
+        SparseEquation(i, {j: x for j, x in row.items() if not is_zero(x)}, list(r)) for i, (row, r) in enumerate(pairs)
+    ]
     written = shorter or (lambda x: x)
     by_numbers = _numbers_eliminated(lines, vanishes)
     known: dict[int, list[Scalar]] = {}
@@ -76,7 +78,9 @@ def solved(
     return tuple(tuple(known[j]) for j in range(len(rows))), tuple(blocks)
 
 
-def _numbers_eliminated(lines: list[Line], vanishes: Callable[[Scalar], bool]) -> list[tuple[int, Line]]:
+def _numbers_eliminated(
+    lines: list[SparseEquation], vanishes: Callable[[Scalar], bool]
+) -> list[tuple[int, SparseEquation]]:
     """(unknown, equation) wherever a plain number can be the pivot; these equations leave `lines`."""
     order = []
     while (found := _number(lines)) is not None:
@@ -89,19 +93,19 @@ def _numbers_eliminated(lines: list[Line], vanishes: Callable[[Scalar], bool]) -
     return order
 
 
-def _number(lines: Iterable[Line]) -> tuple[int, Line] | None:
+def _number(lines: Iterable[SparseEquation]) -> tuple[int, SparseEquation] | None:
     """The plain number whose elimination fills in least."""
     lines = list(lines)
     candidates = [(j, line) for line in lines for j, x in line.entries.items() if type(x) is not Node]
 
-    def fill(found: tuple[int, Line]) -> int:
+    def fill(found: tuple[int, SparseEquation]) -> int:
         j, line = found
         return (len(line.entries) - 1) * (sum(j in other.entries for other in lines) - 1)
 
     return min(candidates, key=fill, default=None)
 
 
-def _subtract(other: Line, line: Line, j: int, vanishes: Callable[[Scalar], bool]) -> None:
+def _subtract(other: SparseEquation, line: SparseEquation, j: int, vanishes: Callable[[Scalar], bool]) -> None:
     """other - factor * line, in which the unknown j has gone."""
     factor = over(other.entries.pop(j), line.entries[j])
     for k, x in line.entries.items():
@@ -112,7 +116,7 @@ def _subtract(other: Line, line: Line, j: int, vanishes: Callable[[Scalar], bool
     other.right = [a - factor * b for a, b in zip(other.right, line.right, strict=True)]
 
 
-def _without(line: Line, known: Mapping[int, Sequence[Scalar]]) -> list[Scalar]:
+def _without(line: SparseEquation, known: Mapping[int, Sequence[Scalar]]) -> list[Scalar]:
     """The right side less what the known unknowns make up."""
     rest = list(line.right)
     for j, x in line.entries.items():
@@ -121,7 +125,7 @@ def _without(line: Line, known: Mapping[int, Sequence[Scalar]]) -> list[Scalar]:
     return rest
 
 
-def _matrix(lines: Sequence[Line], unknowns: Sequence[int]) -> tuple[tuple[Scalar, ...], ...]:
+def _matrix(lines: Sequence[SparseEquation], unknowns: Sequence[int]) -> tuple[tuple[Scalar, ...], ...]:
     return tuple(tuple(line.entries.get(j, 0) for j in unknowns) for line in lines)
 
 
@@ -169,7 +173,7 @@ def _minor(A: Sequence[Sequence[Scalar]], rows: tuple[int, ...], columns: tuple[
 # -- block triangular form ---------------------------------------------------------------------------
 
 
-def triangular(lines: Sequence[Line]) -> list[tuple[list[Line], tuple[int, ...]]]:
+def triangular(lines: Sequence[SparseEquation]) -> list[tuple[list[SparseEquation], tuple[int, ...]]]:
     """(equations, unknowns) of the smallest square blocks, each after those whose unknowns stand in it.
 
     Source: Duff & Reid, An implementation of Tarjan's algorithm for the block triangularization of a matrix (1978).

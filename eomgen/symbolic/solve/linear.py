@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
 from eomgen.symbolic.solve import cramer
 
 TOGETHER = 4  # unknowns of one set of normal equations
 
-Row = dict[int, Scalar]
 Values = Callable[[Sequence[Scalar]], list[Any]]
 
 
@@ -52,10 +52,10 @@ class Solution:
 class _Line:
     """One row under elimination: its entries, their shadows, its right side, and its row of W."""
 
-    entries: Row
+    entries: SparseRow
     shadow: dict[int, Any]
     right: Scalar
-    test: Row
+    test: SparseRow
 
 
 def solved(
@@ -182,7 +182,9 @@ def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: Values) 
         lines += [_Line({}, {}, _rest(line, known), {}) for line in group[len(unknowns) :]]
 
 
-def _tested(group: list[_Line], unknowns: list[int], A: np.ndarray, values: Values) -> tuple[list[Row], list[Scalar]]:
+def _tested(
+    group: list[_Line], unknowns: list[int], A: np.ndarray, values: Values
+) -> tuple[list[SparseRow], list[Scalar]]:
     """(W^T A, W^T b), and (A, b) itself where it is square; unknowns counted from 0."""
     if len(group) == len(unknowns):
         return [_numbered(line.entries, unknowns) for line in group], [line.right for line in group]
@@ -200,7 +202,7 @@ def _tested(group: list[_Line], unknowns: list[int], A: np.ndarray, values: Valu
     return rows, [_sum(row[i] * line.right for row, line in zip(W, group, strict=True) if i in row) for i in unknowns]
 
 
-def _numbered(entries: Row, unknowns: list[int]) -> Row:
+def _numbered(entries: SparseRow, unknowns: list[int]) -> SparseRow:
     return {k: entries[j] for k, j in enumerate(unknowns) if j in entries}
 
 
@@ -281,7 +283,7 @@ def _substituted(
     return constants, shares
 
 
-def _add(share: Row, shadow: dict[int, Any], sizes: dict[int, Any], f: int, entry: Scalar, value: Any) -> None:
+def _add(share: SparseRow, shadow: dict[int, Any], sizes: dict[int, Any], f: int, entry: Scalar, value: Any) -> None:
     share[f] = share[f] + entry if f in share else entry
     shadow[f] = shadow.get(f, 0) + value
     sizes[f] = max(sizes.get(f, 0), abs(value))
