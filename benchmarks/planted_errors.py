@@ -1,0 +1,282 @@
+"""Planted errors: who sees a wrong law?
+
+`planted_errors.toml` holds a list of small patches by source text, over all rooms. One at a time each is put into a
+copy of the module in memory (no file changes), and the verb and model that use it are run. What comes out is
+
+    product     the verb itself says so: its certificate fails, or it refuses, with an exit code other than 0
+    crash       the verb ends in an internal error: loud, but nothing that a proof saw
+    tests       the verb says nothing; the tests named for the room fail
+    nobody      neither
+    no effect   what is printed is the same as without the patch: the entry does not reach what it should, and is mended
+
+    python benchmarks/planted_errors.py                         # all, by the product; a table
+    python benchmarks/planted_errors.py --tests                 # what the product did not see also by the tests
+    python benchmarks/planted_errors.py --only spring,disc -v   # these, with what was said
+    python benchmarks/planted_errors.py --write docs/planted_errors.md
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib.abc
+import importlib.machinery
+import importlib.util
+import io
+import json
+import multiprocessing
+import os
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+ROOT = Path(__file__).resolve().parent.parent
+LIST = Path(__file__).with_suffix(".toml")
+PATIENCE = 180  # s of one run of a verb; what takes longer counts as refused
+TEST_PATIENCE = 900  # s of the tests of one room
+
+
+@dataclass(frozen=True)
+class Planted:
+    """One error: in `file` (below eomgen/) the text `old`, which stands there once, becomes `new`.
+
+    Args:
+        name: unique, what is wrong in words.
+        room: of which law it is.
+        run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar".
+        tests: pytest's words that should see it, where the verb does not: "tests/test_targets.py -k nan".
+        model: text of a model of its own; `run` then names it "-".
+    """
+
+    name: str
+    room: str
+    file: str
+    old: str
+    new: str
+    run: str
+    tests: str = ""
+    model: str = ""
+
+    @property
+    def module(self) -> str:
+        return "eomgen." + self.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+    @property
+    def patched(self) -> str:
+        """The module's text with the error.
+
+        Raises:
+            ValueError: the old text does not stand there exactly once.
+        """
+        source = (ROOT / "eomgen" / self.file).read_text(encoding="utf-8")
+        if source.count(self.old) != 1:
+            raise ValueError(f"'{self.name}': the text stands {source.count(self.old)} times in {self.file}")
+        return source.replace(self.old, self.new)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a verb said: its exit code, and its output."""
+
+    code: int
+    out: str
+
+    @property
+    def why(self) -> str:
+        """The checks that failed, or the message of a refusal."""
+        with contextlib.suppress(ValueError, AttributeError, TypeError, KeyError):
+            found = json.loads(self.out)
+            if "error" in found:
+                return str(found["error"]["problems"][0]["what"])
+            failing = [c["name"] for c in found["certificate"]["checks"] if c["status"] == "fails"]
+            return "; ".join(failing) or str(found.get("failed", ""))
+        return self.out[-200:].strip().replace("\n", " / ")
+
+
+class Patch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+    """Loads one module from another text."""
+
+    def __init__(self, planted: Planted) -> None:
+        self.name, self.text = planted.module, planted.patched
+        self.path = str(ROOT / "eomgen" / planted.file)
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        if fullname != self.name:
+            return None
+        inside = [os.path.dirname(self.path)] if self.path.endswith("__init__.py") else None
+        return importlib.util.spec_from_file_location(
+            fullname, self.path, loader=self, submodule_search_locations=inside
+        )
+
+    def create_module(self, spec: importlib.machinery.ModuleSpec) -> None:
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        exec(compile(self.text, self.path, "exec", dont_inherit=True), module.__dict__)
+
+
+def entries(path: Path = LIST) -> tuple[Planted, ...]:
+    """The list, in its order."""
+    return tuple(Planted(**entry) for entry in tomllib.loads(path.read_text(encoding="utf-8"))["error"])
+
+
+def words_of(run: str, model: str, folder: str) -> list[str]:
+    """The command line of an entry: the model's path put in, results as JSON, files (@) in a folder."""
+    import shlex
+
+    verb, name, *options = shlex.split(run)
+    path = Path(folder) / "model.toml"
+    if name == "-":
+        path.write_text(model, encoding="utf-8")
+    else:
+        path = ROOT / "models" / f"{name}.toml"
+    return [verb, str(path), *(o.replace("@", folder) for o in options), "--json"]
+
+
+def _child(planted: Planted | None, run: str, model: str, pipe: multiprocessing.connection.Connection) -> None:
+    """In a process of its own: the verb, with the error."""
+    if planted is not None:
+        sys.meta_path.insert(0, Patch(planted))
+    out, err = io.StringIO(), io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        os.environ["XDG_CACHE_HOME"] = folder  # no code of another patch
+        try:
+            from eomgen.cli import main
+
+            main(words_of(run, model, folder))
+            code = 0
+        except SystemExit as end:
+            code = int(end.code or 0) if not isinstance(end.code, str) else 1
+        except BaseException as error:  # a crash is a refusal, too
+            code = 70
+            print(f"{type(error).__name__}: {error}", file=out)
+    pipe.send(Outcome(code, out.getvalue() or err.getvalue()))
+
+
+def outcome(planted: Planted | None, run: str, model: str = "") -> Outcome:
+    """What the verb says, with the error or without."""
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    child = context.Process(target=_child, args=(planted, run, model, there))
+    child.start()
+    there.close()
+    try:
+        found = here.recv() if here.poll(PATIENCE) else Outcome(124, f"no answer in {PATIENCE} s")
+    except EOFError:
+        found = Outcome(139, "the process died")
+    child.kill()
+    child.join()
+    return found
+
+
+@cache
+def without(run: str, model: str) -> Outcome:
+    """What the verb says of the right product."""
+    return outcome(None, run, model)
+
+
+def seen_by_product(planted: Planted) -> tuple[str, str]:
+    """("product" | "" | "no effect" | "broken", what was said)."""
+    right = without(planted.run, planted.model)
+    if right.code != 0:
+        return "broken", f"exit {right.code} without the error: {right.why}"
+    assert planted.patched
+    wrong = outcome(planted, planted.run, planted.model)
+    if wrong.code in (70, 139):
+        return "crash", f"exit {wrong.code}: {wrong.why}"
+    if wrong.code != 0:
+        return "product", f"exit {wrong.code}: {wrong.why}"
+    return ("no effect", "") if wrong.out == right.out else ("", "")
+
+
+def seen_by_tests(planted: Planted) -> bool:
+    """Whether the tests named for it fail in a copy of the tree with the error."""
+    import shlex
+    import shutil
+
+    if not planted.tests:
+        return False
+    with tempfile.TemporaryDirectory() as folder:
+        for part in ("eomgen", "tests", "models", "notebooks", "benchmarks", "pyproject.toml", "README.md"):
+            source = ROOT / part
+            if source.is_dir():
+                shutil.copytree(source, Path(folder) / part, ignore=shutil.ignore_patterns("__pycache__"))
+            else:
+                shutil.copy(source, folder)
+        (Path(folder) / "eomgen" / planted.file).write_text(planted.patched, encoding="utf-8")
+        environment = {**os.environ, "PYTHONPATH": folder, "XDG_CACHE_HOME": str(Path(folder) / "cache")}
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *shlex.split(planted.tests)]
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=TEST_PATIENCE)
+    return done.returncode == 1
+
+
+def warm() -> None:
+    """Import what every run needs and no patch touches: a run then is a fork."""
+    import click
+    import mpmath
+    import numpy
+    import scipy.integrate
+    import sympy
+
+    assert click and mpmath and numpy and scipy.integrate and sympy
+    assert not any(name.startswith("eomgen.") for name in sys.modules), "the errors are planted at import"
+
+
+def judged(chosen: Iterable[Planted], tests: bool, verbose: bool) -> list[tuple[Planted, str, str]]:
+    """(error, who saw it, what was said) of each."""
+    rows = []
+    for planted in chosen:
+        seen, said = seen_by_product(planted)
+        if not seen:
+            seen = "tests" if tests and seen_by_tests(planted) else "nobody" if tests else "not by the product"
+        rows.append((planted, seen, said))
+        if verbose or seen != "product":
+            print(f"{seen:18} {planted.room:14} {planted.name} [{planted.run}] {said[:160]}", flush=True)
+    return rows
+
+
+def table(rows: Sequence[tuple[Planted, str, str]]) -> str:
+    """Markdown: of every room how many were planted and who saw them."""
+    columns = ["product", *sorted({seen for _, seen, _ in rows} - {"product"})]
+    lines = [f"| room | planted | {' | '.join(columns)} |", f"|---|---:|{'---:|' * len(columns)}"]
+    rooms = list(dict.fromkeys(planted.room for planted, _, _ in rows))
+    for room in [*rooms, "all"]:
+        mine = Counter(seen for planted, seen, _ in rows if room in (planted.room, "all"))
+        lines.append(f"| {room} | {mine.total()} | {' | '.join(str(mine[c]) for c in columns)} |")
+    return "\n".join(lines)
+
+
+def main() -> int:
+    """The table, on stdout or in a file; 1 where an error was seen by nobody or had no effect."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="names that contain one of these words, separated by commas")
+    parser.add_argument("--room", default="", help="only this room")
+    parser.add_argument("--tests", action="store_true", help="run the tests of what the product did not see")
+    parser.add_argument("--write", help="a Markdown file for the table")
+    parser.add_argument("-v", "--verbose", action="store_true")
+    given = parser.parse_args()
+    words = [word for word in given.only.split(",") if word]
+    chosen = [e for e in entries() if (not words or any(w in e.name for w in words)) and given.room in ("", e.room)]
+    warm()
+    rows = judged(chosen, given.tests, given.verbose)
+    print(table(rows))
+    if given.write:
+        each = [f"| {p.room} | {p.name} | `{p.run}` | {seen} |" for p, seen, _ in rows]
+        head = ["# Planted errors", "", "Made by `python benchmarks/planted_errors.py --tests --write FILE`.", ""]
+        listed = ["", "| room | error | verb and model | seen by |", "|---|---|---|---|", *each, ""]
+        Path(given.write).write_text("\n".join([*head, table(rows), *listed]), encoding="utf-8")
+    return int(any(seen not in ("product", "tests") for _, seen, _ in rows))
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    sys.exit(main())
