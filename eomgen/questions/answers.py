@@ -22,12 +22,11 @@ from eomgen.errors import (
 from eomgen.mechanics.first_integrals.constants_of_motion import stays
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
-from eomgen.mechanics.initial_state.numeric_value import known_parameters
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
 from eomgen.mechanics.instant.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
-from eomgen.model.values import exact_parameters
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
@@ -36,9 +35,10 @@ from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call, Expression
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
 from eomgen.symbolic.print.text import text_size, to_text
 
@@ -193,7 +193,7 @@ class _Solver:
         try:
             state = start_state(phase.system)
             numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
-            found = phase.number(output.value, {**known_parameters(phase.system.scope), **numbers})
+            found = phase.number(output.value, {**known_exactly(phase.system.scope), **numbers})
         except (KeyError, MissingValues):
             return answer
         value = found if output.unit is None else float(output.unit.from_si(found, math.pi))
@@ -239,10 +239,10 @@ class _Solver:
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        known = exact_parameters(self.model)
+        known: dict[str, Scalar | float] = {x.name: v for x, v in self._parameters.items()}
         names = {x.name for x in symbols_of((scalar,))}
         if names <= known.keys():
-            return evaluate((scalar,), {x: float(known[x.name]) for x in symbols_of((scalar,))}, FLOAT)[0]
+            return number_of(scalar, {x: known[x.name] for x in symbols_of((scalar,))})
         if names <= self.model.parameters.keys():
             raise MissingValues(tuple(name for name in self.model.parameters if name in names and name not in known))
         system = self.phase.system
@@ -250,14 +250,18 @@ class _Solver:
         missing = tuple(name for name in self.model.parameters if name in names and name not in known)
         if missing:
             raise MissingValues(missing)
-        values = {"t": 0.0} | {name: float(x) for name, x in known.items()}
+        values = {"t": 0.0, **known}
         moving = {x.name for x in (*system.symbols.q, *system.symbols.u)}
         if names & moving:
             values |= start_state(system)
         for name in names & self.model.inputs.keys():
             state = {x: values[x.name] for x in symbols_of((system.inputs[name],))}
-            values[name] = evaluate((system.inputs[name],), state, FLOAT)[0]
-        return evaluate((scalar,), {x: values[x.name] for x in symbols_of((scalar,))}, FLOAT)[0]
+            values[name] = number_of(system.inputs[name], state)
+        return number_of(scalar, {x: values[x.name] for x in symbols_of((scalar,))})
+
+    @cached_property
+    def _parameters(self) -> dict[Node, Scalar]:
+        return known_exactly(self.phase.system.scope)
 
     # -- at an instant -------------------------------------------------------------------------
 
@@ -326,7 +330,7 @@ class _Solver:
         if not moment.numbers:
             raise RunFailed("the instant has no closed form, and without values of all parameters no number")
         phase = moment.phase
-        value = phase.number(output.value, {**known_parameters(phase.system.scope), **moment.numbers})
+        value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 

@@ -22,7 +22,6 @@ from eomgen.mechanics.balance.unknown_loads import still
 from eomgen.mechanics.bodies.contact_modes import Modes
 from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.constraints.closure import number as precise
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.assembly import Assembly
@@ -41,7 +40,8 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow, State
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import linear
@@ -149,35 +149,26 @@ class PhaseEquations:
 
     # -- at an instant ---------------------------------------------------------------------------
 
-    def number(self, formula: Expression, numbers: Mapping[Node, float]) -> float:
-        """The formula at a state in floating point, accelerations and reactions found there.
+    def number(self, formula: Expression, numbers: Mapping[Node, Scalar | float]) -> float:
+        """The number of the formula at a state, accelerations and reactions found there.
 
         Args:
             numbers: of t, q, u and the parameters.
         """
-        inputs = self.system.symbols.inputs
-        values = dict(numbers)
-        for name, node in inputs.items():
-            values[node] = evaluate((self.system.inputs[name],), values, FLOAT)[0]
-        closed = (self.eliminated(self.raw(formula)),)
-        found = evaluate(closed, values, FLOAT)[0]
-        if math.isfinite(found) and self._agrees(found, closed, values):
+        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
+        (closed,) = substituted((self.eliminated(self.raw(formula)),), inputs)
+        found = number_of(closed, numbers)
+        if math.isfinite(found) and self._is_stable(found, closed, numbers):
             return found
-        scalar = self._solved_at(formula, exact_numbers(numbers), readable=False)  # a pivot vanishes there
-        try:
-            return float(evaluate((scalar,), {x: precise(value) for x, value in values.items()}, fifty_digits())[0])
-        except (NoValue, ZeroDivisionError):
-            return evaluate((scalar,), values, FLOAT)[0]
+        return number_of(self._solved_at(formula, exact_numbers(numbers), readable=False), numbers)
 
-    def _agrees(self, found: float, closed: tuple[Scalar], values: Mapping[Node, float]) -> bool:
-        """Whether a form that divides by what may vanish there has the same value with 50 digits."""
+    def _is_stable(self, found: float, closed: Scalar, numbers: Mapping[Node, Scalar | float]) -> bool:
+        """Whether a form that divides by what may vanish there has the same value in floats: no pivot vanishes."""
         if not self.system.ties.closing:
             return True
-        try:
-            sharp = evaluate(closed, {x: precise(value) for x, value in values.items()}, fifty_digits())[0]
-        except (NoValue, ZeroDivisionError):
-            return False
-        return math.isclose(found, float(sharp), rel_tol=COMPUTED, abs_tol=COMPUTED)
+        exact = exact_numbers(numbers)
+        floats = dict(zip(exact, numbers_of(exact.values()), strict=True))
+        return math.isclose(found, evaluate((closed,), floats, FLOAT)[0], rel_tol=COMPUTED, abs_tol=COMPUTED)
 
     def at(self, formula: Expression, state: Mapping[Node, Any]) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.
@@ -259,9 +250,10 @@ def phase_equations_of(model: Model, modes: Modes | None = None) -> PhaseEquatio
     return PhaseEquations(system_of(model, modes))
 
 
-def exact_numbers(values: Mapping[Node, float]) -> dict[Node, Scalar]:
-    """Doubles as the exact numbers that they are."""
-    return {node: Fraction(value) for node, value in values.items() if value == value}
+def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
+    """Doubles as the exact numbers that they are; nan is left out."""
+    found = {node: Fraction(x) if isinstance(x, float) and math.isfinite(x) else x for node, x in values.items()}
+    return {node: x for node, x in found.items() if not isinstance(x, float)}
 
 
 def start_of(phase: PhaseEquations, *, at_rest: bool) -> dict[Node, Scalar]:

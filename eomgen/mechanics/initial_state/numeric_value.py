@@ -5,6 +5,7 @@ Parameters without a value, and symbols that were left free, are something at ra
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,9 +16,10 @@ from typing import Any
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 
@@ -26,12 +28,23 @@ def known_parameters(scope: Scope) -> dict[Node, float]:
     return {scope.symbols.parameters[name]: float(x) for name, x in exact_parameters(scope.model).items()}
 
 
-def numbers_of(scalars: Sequence[Scalar | None], values: Mapping[Node, float]) -> list[float | None]:
-    """The scalars as numbers, None where one has none."""
+def known_exactly(scope: Scope) -> dict[Node, Scalar]:
+    """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
+    parameters, values = scope.symbols.parameters, dict[Node, Scalar]()
+    for name, value in exact_parameters(scope.model).items():  # those that another needs come before it
+        part = scope.model.parameters[name]
+        if isinstance(value, float) and part is not None and part.value is not None:
+            (value,) = substituted((scope.value(part.value),), values)
+        values[parameters[name]] = value
+    return values
+
+
+def shown_numbers(scalars: Sequence[Scalar | None], values: Mapping[Node, Scalar | float]) -> list[float | None]:
+    """The scalars as numbers, None where something in one has no value; nan where it has none itself."""
     ready = [x is not None and set(symbols_of((x,))) <= values.keys() for x in scalars]
-    kept = [x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None]
-    found = iter(evaluate(kept, values, FLOAT))
-    return [float(next(found)) + 0.0 if is_ready else None for is_ready in ready]
+    known = [x for x, is_ready in zip(scalars, ready, strict=True) if is_ready and x is not None]
+    found = iter(numbers_of(known, values))
+    return [next(found) if is_ready else None for is_ready in ready]
 
 
 @dataclass(frozen=True)
@@ -62,15 +75,13 @@ class Worth:
         """A scalar as a number; None where something in it has no value."""
         if any(symbol not in self._known for symbol in symbols_of((x,))):
             return None
-        try:
-            return float(evaluate((x,), self._known, fifty_digits())[0]) + 0.0
-        except (NoValue, ZeroDivisionError):
-            return None
+        found = number_of(x, self._known)
+        return None if math.isnan(found) else found
 
     @cached_property
     def _values(self) -> dict[Node, Any]:
         return values_of_parameters(self.scope, Random(1))
 
     @cached_property
-    def _known(self) -> dict[Node, Any]:
-        return values_of_parameters(self.scope, None)
+    def _known(self) -> dict[Node, Scalar]:
+        return known_exactly(self.scope)

@@ -12,7 +12,7 @@ from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
-from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.model.parts import Model
 from eomgen.report.figures import Picture
 from eomgen.report.json_form import steps as steps_as_dicts
@@ -115,7 +115,7 @@ def _place(place: Equilibrium) -> dict[str, Any]:
 def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
     """Those at the first place."""
     _, reactions, why = those
-    numbers = numbers_of([each.value for each in reactions], known_parameters(place.statics.system.scope))
+    numbers = shown_numbers([each.value for each in reactions], known_exactly(place.statics.system.scope))
     return {
         "reactions": {
             each.named.name: {

@@ -6,7 +6,7 @@ from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, Restin
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.report.bounded import page
 from eomgen.report.naming import Written, with_roots_named
@@ -152,7 +152,7 @@ def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
         return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)
     if not found:
         return ()
-    numbers = numbers_of([each.value for each in found], known_parameters(place.statics.system.scope))
+    numbers = shown_numbers([each.value for each in found], known_exactly(place.statics.system.scope))
     rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
     grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
     pulls = [Prose((f"But '{name}' would have to pull there: it does not hold.",)) for name in place.pulling]

@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.static_equations import with_drives_held
-from eomgen.mechanics.initial_state.numeric_value import known_parameters, numbers_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
@@ -107,7 +107,7 @@ class Statics(Shown):
     def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
         """The scalars in numbers, those whose parameters have values."""
         names, scalars = zip(*pairs, strict=True) if pairs else ((), ())
-        found = numbers_of(scalars, known_parameters(self.found.system.scope))
+        found = shown_numbers(scalars, known_exactly(self.found.system.scope))
         return {name: x for name, x in zip(names, found, strict=True) if x is not None}
 
     @cached_property

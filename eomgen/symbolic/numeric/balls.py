@@ -1,0 +1,188 @@
+"""Balls: a number of many digits and how far from it the true one may be, (x, r) with |true - x| <= r.
+
+Rounding of each operation widens its ball, what cancels shows as a ball that is wide beside its number. r = 0 of a
+number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball of x. x = nan: surely no value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.numeric.evaluation import Arithmetic
+
+Ball = tuple[Any, Any]
+SLACK = 4  # units in the last place that one operation may lose, and the estimate of r too
+
+
+@cache
+def balls(digits: int, *, last: bool = False) -> Arithmetic:
+    """Balls around numbers of so many digits.
+
+    Args:
+        last: what no precision could tell apart is equal: a branch, a sign or an edge that hangs on it is decided so.
+    """
+    return _Balls(digits, last).arithmetic
+
+
+class _Balls:
+    """The operations on balls of one precision; the arguments are those of `balls`."""
+
+    def __init__(self, digits: int, last: bool) -> None:
+        from mpmath.ctx_mp import MPContext
+
+        self.mp, self.digits, self.last = MPContext(), digits, last
+        self.mp.dps = digits
+        self.unit = SLACK * self.mp.eps
+        self.zero: Ball = (self.mp.mpf(0), self.mp.mpf(0))
+        self.none: Ball = (self.mp.nan, self.mp.mpf(0))
+        self.open: Ball = (self.mp.mpf(0), self.mp.inf)
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        mp = self.mp
+        table: dict[str, Callable[..., Ball]] = {
+            "neg": lambda a: (-a[0], a[1]),
+            "add": lambda a, b: self._rounded(a[0] + b[0], a[1] + b[1]),
+            "sub": lambda a, b: self._rounded(a[0] - b[0], a[1] + b[1]),
+            "mul": self._mul,
+            "div": self._div,
+            "pow": self._pow,
+            "sqrt": self._sqrt,
+            "sin": lambda a: self._rounded(mp.sin(a[0]), a[1]),
+            "cos": lambda a: self._rounded(mp.cos(a[0]), a[1]),
+            "tan": lambda a: self._div(self._rounded(mp.sin(a[0]), a[1]), self._rounded(mp.cos(a[0]), a[1])),
+            "asin": lambda a: self._on(mp.asin, a, -1, 1),
+            "acos": lambda a: self._on(mp.acos, a, -1, 1),
+            "atan": lambda a: self._rounded(mp.atan(a[0]), a[1]),
+            "atan2": self._atan2,
+            "sinh": lambda a: self._on(mp.sinh, a),
+            "cosh": lambda a: self._rounded(mp.cosh(a[0]), mp.sinh(abs(a[0]) + a[1]) * a[1]),
+            "tanh": lambda a: self._rounded(mp.tanh(a[0]), a[1]),
+            "exp": lambda a: self._on(mp.exp, a),
+            "log": self._log,
+            "abs": lambda a: (abs(a[0]), a[1]),
+            "sign": lambda a: self._selected(self._less(self.zero, a), self.one, self._minus_if_negative(a)),
+            "min": lambda a, b: (min(a[0], b[0]), max(a[1], b[1])),
+            "max": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
+            "less": self._less,
+            "less_equal": lambda a, b: self._not(self._less(b, a)),
+            "sampled": self._sampled,
+        }
+        guarded = {op: self._guarded(function) for op, function in table.items()}
+        own = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
+        return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none)
+
+    @property
+    def one(self) -> Ball:
+        return (self.mp.mpf(1), self.mp.mpf(0))
+
+    def number(self, c: Number) -> Ball:
+        """An exact number."""
+        above = self.mp.mpf(c.numerator)
+        if c.denominator == 1 and above == c.numerator:
+            return (above, self.mp.mpf(0))
+        return self._rounded(above / c.denominator, 0)
+
+    def _rounded(self, x: Any, r: Any) -> Ball:
+        return (x, r + self.unit * abs(x))
+
+    def _guarded(self, function: Callable[..., Ball]) -> Callable[..., Ball]:
+        """Of what has no value: none; of what nothing can be said: nothing can be said."""
+
+        def of(*arguments: Ball) -> Ball:
+            if any(x != x for x, _ in arguments):
+                return self.none
+            return self.open if any(r == self.mp.inf for _, r in arguments) else function(*arguments)
+
+        return of
+
+    # -- operations --------------------------------------------------------------------------------
+
+    def _mul(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (y, s) = a, b
+        return self._rounded(x * y, abs(x) * s + abs(y) * r + r * s) if r or s else self._rounded(x * y, 0)
+
+    def _div(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (y, s) = a, b
+        if abs(y) <= s:
+            return self.none if not y and not s else self.open
+        quotient = x / y
+        return self._rounded(quotient, (r + abs(quotient) * s) / (abs(y) - s))
+
+    def _sqrt(self, a: Ball) -> Ball:
+        x, r = a
+        if x > r:
+            root = self.mp.sqrt(x)
+            return self._rounded(root, r / root)
+        return (self.mp.mpf(0), self.mp.sqrt(abs(x) + r)) if x + r >= 0 else self.none
+
+    def _log(self, a: Ball) -> Ball:
+        x, r = a
+        if x > r:
+            return self._rounded(self.mp.log(x), r / (x - r))
+        return self.open if x + r > 0 else self.none
+
+    def _on(self, function: Callable[[Any], Any], a: Ball, low: Any = None, high: Any = None) -> Ball:
+        """A function that rises, or falls, from `low` to `high`: its ends say how far it reaches."""
+        x, r = a
+        if low is not None and (x + r < low or x - r > high):
+            return self.none
+        inside = [y if low is None else min(max(y, low), high) for y in (x, x - r, x + r)]
+        middle, *ends = (function(y) for y in inside)
+        return self._rounded(middle, max(abs(end - middle) for end in ends))
+
+    def _pow(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (n, s) = a, b
+        if not s and self.mp.isint(n):
+            size = self.mp.power(abs(x) + r, abs(n) - 1) * abs(n) * r if n else self.mp.mpf(0)
+            power = self._rounded(self.mp.power(x, abs(n)), size)
+            return power if n >= 0 else self._div(self.one, power)
+        if x > r:
+            return self._on(self.mp.exp, self._mul(b, self._log(a)))
+        if x + r < 0:
+            return self.none
+        reach = self.mp.power(abs(x) + r, n - s) if n > s else self.mp.inf  # at the edge 0^n = 0
+        return self.none if reach == self.mp.inf and not r else (self.mp.mpf(0), reach)
+
+    def _atan2(self, a: Ball, b: Ball) -> Ball:
+        (y, r), (x, s) = a, b
+        if x <= s and abs(y) <= r and (r or s or not x):
+            return self.open if r or s else self.zero
+        least = self.mp.hypot(max(abs(y) - r, 0), max(abs(x) - s, 0))
+        return self._rounded(self.mp.atan2(y, x), (r + s) / least if r or s else 0)
+
+    def _sampled(self, t: Ball, k: Ball) -> Ball:
+        """Samples at t: as far apart as they are at the ends of its ball; twice, for what lies in between."""
+        sampled, (x, r) = sampled_of(k[0]), t
+        values = [sampled.at(y, lambda c: self.number(c)[0], +self.mp.pi) for y in (x, x - r, x + r)]
+        return self._rounded(
+            values[0], 2 * max(abs(y - values[0]) for y in values[1:]) + 9 * self.unit * abs(values[0])
+        )
+
+    # -- decisions ---------------------------------------------------------------------------------
+
+    def _less(self, a: Ball, b: Ball) -> Ball:
+        """1 or 0; (1/2, 1/2) where both may be."""
+        (x, r), (y, s) = a, b
+        if abs(x - y) > r + s or (not r and not s):
+            return self.one if x < y else self.zero
+        return self.zero if self.last else (self.mp.mpf(0.5), self.mp.mpf(0.5))
+
+    def _not(self, a: Ball) -> Ball:
+        return (1 - a[0], a[1])
+
+    def _minus_if_negative(self, a: Ball) -> Ball:
+        return self._selected(self._less(a, self.zero), (-self.one[0], self.one[1]), self.zero)
+
+    def _selected(self, condition: Ball, if_true: Ball, if_false: Ball) -> Ball:
+        """One of the two; both in one ball where the condition is open."""
+        if condition[0] != condition[0]:
+            return self.none
+        if not condition[1]:
+            return if_true if condition[0] else if_false
+        (x, r), (y, s) = if_true, if_false
+        return (x, max(r, abs(x - y) + s)) if x == x and y == y else self.open
