@@ -26,7 +26,7 @@ from typing import Any
 from eomgen.version import __version__ as __version__
 
 _HOMES = {
-    "questions.answers": ("solve",),
+    "questions.answers": ("Answer", "solve"),
     "proof.check": ("Certificate", "Check"),
     "errors": (
         "DerivationError",
@@ -40,7 +40,7 @@ _HOMES = {
         "ToolMissing",
         "UsageError",
     ),
-    "mechanics.loops.freedom": ("Freedom", "freedom_of"),
+    "mechanics.constraints.freedom": ("Freedom", "freedom_of"),
     "model.parts": (
         "Body",
         "Coordinate",
@@ -60,7 +60,6 @@ _HOMES = {
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
-    "report.answer": ("Answer",),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),
     "report.statics.result": ("Statics", "statics"),

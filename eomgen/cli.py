@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from eomgen.model.parts import Model
     from eomgen.verbs.outcome import Outcome
 
-FORMATS = {".tex": "latex", ".md": "markdown", ".json": "json"}
+FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".json": "json"}
+"""ending of a file -> the form of what is written into it"""
 
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
@@ -43,30 +44,54 @@ def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     return following(declared, follow) if follow else declared
 
 
+FORMAT = click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["text", "latex", "markdown", "json"]),
+    help="Form of the result.  [default: by the ending of -o, else text]",
+)
+PLOT = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
+
+
 def _common(function: Callable[..., int]) -> Callable[..., int]:
-    return MODEL(JSON(OUTPUT(function)))
+    """Options of every result of a model."""
+    return MODEL(JSON(OUTPUT(FORMAT(function))))
 
 
 def _written(function: Callable[..., int]) -> Callable[..., int]:
-    """Options of what is written step by step, and drawn."""
-    format_ = click.option(
-        "--format",
-        "format_",
-        type=click.Choice(["text", "latex", "markdown", "json"]),
-        help="Form of the result.  [default: by the ending of -o, else text]",
-    )
-    plot = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
-    return _common(format_(plot(function)))
+    """Options of what is drawn, too."""
+    return _common(PLOT(function))
+
+
+def _form(wants_json: bool, format_: str | None, output: str | None = None) -> str:
+    """The form that is asked, else that of the ending of the file.
+
+    Raises:
+        UsageError: no form has that ending.
+    """
+    if wants_json or format_:
+        return "json" if wants_json else str(format_)
+    ending = Path(output or "").suffix.lower()
+    if ending not in FORMATS:
+        known = ", ".join(filter(None, FORMATS))
+        raise click.UsageError(f"'{output}' ends in no form that is known here: {known}; or say --format")
+    return FORMATS[ending]
 
 
 def _write(
-    found: Callable[..., Outcome], model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any
+    found: Callable[..., Outcome],
+    model: str,
+    wants_json: bool,
+    output: str | None,
+    format_: str | None,
+    follow: tuple[str, ...] = (),
+    **options: Any,
 ) -> int:
-    """What a verb finds, in the form that is asked, else by the ending of the file."""
-    form = "json" if wants_json else format_ or FORMATS.get(Path(output or "").suffix.lower(), "text")
+    """What a verb finds, in the form that is asked."""
+    form = _form(wants_json, format_, output)
     with reading(model) as declared:
-        outcome = found(declared, format=form, **options)
-    return deliver(outcome, form == "json", output)
+        outcome = found(_followed(declared, follow), **options)
+    return deliver(outcome, form, output)
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -86,12 +111,12 @@ def new(name: str, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
     from eomgen.verbs.new import new as made
 
-    return deliver(made(name), wants_json)
+    return deliver(made(name), _form(wants_json, None))
 
 
 @main.command()
 @_common
-def check(model: str, wants_json: bool, output: str | None) -> int:
+def check(model: str, wants_json: bool, output: str | None, format_: str | None) -> int:
     """Validate a model; count its degrees of freedom.
 
     By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
@@ -99,9 +124,7 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
     """
     from eomgen.verbs.check import check as checked
 
-    with reading(model) as declared:
-        outcome = checked(declared)
-    return deliver(outcome, wants_json, output)
+    return _write(checked, model, wants_json, output, format_)
 
 
 @main.command()
@@ -112,12 +135,6 @@ def check(model: str, wants_json: bool, output: str | None) -> int:
     default="lagrange",
     show_default=True,
     help="By energies, by projection, or body by body with every reaction.",
-)
-@click.option(
-    "--format",
-    "format_",
-    type=click.Choice(["text", "latex", "markdown", "json"]),
-    help="Form of the result.  [default: by the ending of -o, else text]",
 )
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @NO_CERTIFY
@@ -133,13 +150,11 @@ def derive(
 @main.command()
 @_common
 @FOLLOW
-def solve(model: str, wants_json: bool, output: str | None, follow: tuple[str, ...]) -> int:
+def solve(model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...]) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve as solved
 
-    with reading(model) as declared:
-        outcome = solved(_followed(declared, follow))
-    return deliver(outcome, wants_json, output)
+    return _write(solved, model, wants_json, output, format_, follow)
 
 
 @main.command()
@@ -149,14 +164,7 @@ def solve(model: str, wants_json: bool, output: str | None, follow: tuple[str, .
 )
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
-def reactions(
-    model: str,
-    wants_json: bool,
-    output: str | None,
-    at: str | None,
-    from_rest: tuple[str, ...],
-    follow: tuple[str, ...],
-) -> int:
+def reactions(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
@@ -164,9 +172,7 @@ def reactions(
     """
     from eomgen.verbs.reactions import reactions as found
 
-    with reading(model) as declared:
-        outcome = found(_followed(declared, follow), at=at, from_rest=from_rest)
-    return deliver(outcome, wants_json, output)
+    return _write(found, model, wants_json, output, format_, **options)
 
 
 @main.command()
@@ -248,8 +254,9 @@ def linearize(
 @main.command()
 @MODEL
 @JSON
+@FORMAT
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
-@click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
+@PLOT
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
 @click.option("--set", "given", multiple=True, metavar="NAME=VALUE", help="Another value of a parameter.")
 @click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
@@ -286,6 +293,7 @@ def linearize(
 def simulate(
     model: str,
     wants_json: bool,
+    format_: str | None,
     output: str | None,
     method: str,
     rtol: float,
@@ -313,10 +321,8 @@ def simulate(
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as declared:
         outcome = simulated(_followed(declared, follow), output=output, certify=not no_certify, **options)
-    if output and not wants_json:
-        click.echo(outcome.text, err=True, nl=False)
-        return deliver(type(outcome)("", failed=outcome.failed, notes=outcome.notes), False)
-    return deliver(outcome, wants_json)
+    asked = wants_json or format_ is not None
+    return deliver(outcome, _form(wants_json, format_), on_stderr=output is not None and not asked)
 
 
 @main.command()
@@ -353,7 +359,7 @@ def codegen(
     from eomgen.verbs.codegen import languages
 
     if wants_list:
-        return deliver(languages(), wants_json)
+        return deliver(languages(), _form(wants_json, None))
     if model is None or output is None:
         raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")
     stem = "model" if model == "-" else Path(model).stem
@@ -369,7 +375,7 @@ def codegen(
             actuated=names,
             baumgarte=baumgarte,
         )
-    return deliver(outcome, wants_json)
+    return deliver(outcome, _form(wants_json, None))
 
 
 @main.command()
@@ -379,7 +385,7 @@ def schema(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
     from eomgen.verbs.schema import schema as written
 
-    return deliver(written(), wants_json, output)
+    return deliver(written(), _form(wants_json, None), output)
 
 
 @main.command()
@@ -389,4 +395,4 @@ def doctor(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
     from eomgen.verbs.doctor import doctor as examined
 
-    return deliver(examined(), wants_json, output)
+    return deliver(examined(), _form(wants_json, None), output)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -25,20 +25,22 @@ from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
+from eomgen.report.derivation import derivation_of
+from eomgen.report.document import Document
+from eomgen.report.latex import equations_latex
+from eomgen.report.payload import equations_payload
+from eomgen.report.result import Result
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
-if TYPE_CHECKING:
-    from eomgen.report.statements import Derivation
-
 FEW = 200  # operations of a matrix that a person reads
 
 
 @dataclass(frozen=True)
-class Equations:
+class Equations(Result):
     """The equations of motion of a model: q' = N u + nu, M a = forcing + J^T lam, J a + gamma = 0.
 
     `graph` holds N, nu, M, c, Q, forcing, J, sigma, gamma, phi, T, V as graph scalars; the same names on the
@@ -162,32 +164,21 @@ class Equations:
         return InverseDynamics(inverse_of(self.system, actuated))
 
     @cached_property
-    def derivation(self) -> Derivation:
+    def derivation(self) -> Document:
         """The derivation, step by step."""
-        from eomgen.report.derivation import derivation_of
-
         return derivation_of(self.system, self.graph, self.method)
 
-    def latex(self) -> str:
-        """The derivation as LaTeX (amsmath)."""
-        return self.render("latex")
+    def written(self, *, full: bool) -> Document:
+        """The document; `full`: everything is printed, however long."""
+        derivation = derivation_of(self.system, self.graph, self.method, full=full) if full else self.derivation
+        return replace(derivation, entries=self.entries)
 
-    def render(self, format: str = "text") -> str:
-        """The derivation as text, latex, markdown or json."""
-        from eomgen.report import rendered
-
-        return rendered(self.derivation, format)
-
-    def __str__(self) -> str:
-        return self.render("text")
+    def entries(self) -> dict[str, Any]:
+        """What `derive --json` carries."""
+        return equations_payload(self.system, self.graph, self.method)
 
     def _repr_latex_(self) -> str:
-        from eomgen.report.latex import equations_latex
-
         return equations_latex(self.derivation)
-
-    def _repr_markdown_(self) -> str:
-        return self.render("markdown")
 
     def start(
         self, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing
+from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     from eomgen.model.parts import Model
     from eomgen.verbs.outcome import Outcome
 
-SCHEMA_VERSION = 1
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
 LATER = ("verify", "sweep")
@@ -135,12 +135,15 @@ def _say(text: str) -> None:
         sys.exit(CLOSED_PIPE)
 
 
-def deliver(outcome: Outcome, wants_json: bool, output: str | None = None) -> int:
-    """The result to stdout or into a file, the rest to stderr; the exit code."""
+def deliver(outcome: Outcome, form: str, output: str | None = None, *, on_stderr: bool = False) -> int:
+    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code."""
+    from eomgen.report import rendered
     from eomgen.verbs.outcome import write_text
 
-    result = outcome.json if wants_json else outcome.text
-    if output is None:
+    result = rendered(outcome.document, form)
+    if on_stderr:
+        click.echo(result, err=True, nl=False)
+    elif output is None:
         _say(result)
     else:
         write_text(output, result)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import eomgen
-from eomgen.report.answer import Answer
+from eomgen import Answer
 from eomgen.symbolic.expression.expressions import parse
 
 PENDULUM = """

@@ -243,8 +243,12 @@ def test_output_goes_into_a_file_whole_its_folder_made(tmp_path):
 def test_a_file_that_cannot_be_written_is_said_and_nothing_is_left(tmp_path):
     """A folder that is a file: exit 3, no traceback."""
     (tmp_path / "file").write_text("precious")
-    for words in (("solve", SEED), ("derive", SEED), ("simulate", PENDULUM, "--time", "0.1")):
-        result = run(*words, "-o", str(tmp_path / "file" / "x.csv"))
+    for name, *words in (
+        ("x.txt", "solve", SEED),
+        ("x.tex", "derive", SEED),
+        ("x.csv", "simulate", PENDULUM, "--time", "0.1"),
+    ):
+        result = run(*words, "-o", str(tmp_path / "file" / name))
         assert result.exit_code == 3
         assert "cannot be" in result.stderr
     assert (tmp_path / "file").read_text() == "precious"
@@ -343,6 +347,27 @@ def test_the_ending_of_the_file_chooses_the_format(ending, mark, tmp_path):
     assert mark in path.read_text()
     assert run("derive", SEED, "-o", str(path), "--format", "markdown").exit_code == 0
     assert path.read_text().startswith("#")
+
+
+@pytest.mark.parametrize("verb", ["check", "derive", "solve", "reactions", "kinematics", "inertia", "linearize"])
+def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
+    """derive -o w.html: exit 2, the endings that there are, no file; --format says which form all the same."""
+    path = tmp_path / "w.html"
+    result = run(verb, SEED, "-o", str(path))
+    assert result.exit_code == 2 and not path.exists()
+    assert ".txt, .tex, .md, .json" in result.stderr
+
+
+@pytest.mark.parametrize("words", [("solve", SEED), ("reactions", SEED), ("simulate", PENDULUM, "--time", "0.1")])
+def test_what_is_no_derivation_has_the_four_forms_too(words):
+    """--format latex and markdown typeset the same formulas that the text and the JSON hold."""
+    found = {form: run(*words, "--format", form).stdout for form in ("text", "latex", "markdown", "json")}
+    assert found["latex"].endswith("\\end{document}\n") and found["markdown"].startswith("# ")
+    assert json.loads(found["json"])["schema_version"] == 1
+    if words[0] == "simulate":
+        assert "& $0.1$" in found["latex"] and "| 0.1 |" in found["markdown"]
+    else:
+        assert r"\theta" in found["latex"] and r"\theta" in found["markdown"] and "theta" in found["text"]
 
 
 def test_derive_shows_its_certificate_in_every_format():

@@ -11,10 +11,10 @@ from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.questions.at_instant import parameters_of
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.report.document import Document
 from eomgen.report.kinematics.centrode_plot import centrode_panel
 from eomgen.report.kinematics.field_steps import field_payload, field_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
-from eomgen.report.statements import Derivation
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.expressions import parse
 
@@ -64,8 +64,8 @@ def same(phase: PhaseEquations, *texts: str) -> bool:
     return equal(first, second)
 
 
-def derivation(steps) -> Derivation:
-    return Derivation("test", "", "", "plane", "kinematics", tuple(steps))
+def derivation(steps) -> Document:
+    return Document("test", "", "", "plane", "kinematics", tuple(steps))
 
 
 def journey_of(text: str) -> MotionFromStart:

@@ -18,10 +18,10 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
 from eomgen.report import rendered
-from eomgen.report.payload import equations_payload
+from eomgen.report.document import Document
 from eomgen.report.reaction_names import Lettered
 from eomgen.report.reaction_steps import letters_of
-from eomgen.report.statements import Derivation, Formula
+from eomgen.report.statements import Formula
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -127,12 +127,12 @@ def reactions_along_motion(derived: Equations) -> dict[Node, Scalar]:
     return values
 
 
-def formulas(derivation: Derivation, key: str) -> list[Formula]:
+def formulas(derivation: Document, key: str) -> list[Formula]:
     steps = [step for step in derivation.steps if step.key.startswith(key)]
     return [f for step in steps for f in step.statements if isinstance(f, Formula)]
 
 
-def whole(derivation: Derivation, x: Scalar) -> Scalar:
+def whole(derivation: Document, x: Scalar) -> Scalar:
     """x with everything that has a name written out."""
     known: dict[Node, Scalar] = {}
     for symbol, value in derivation.definitions:
@@ -209,7 +209,7 @@ def test_multipliers_are_the_reactions_that_they_are_said_to_be(name):
 def test_indeterminate_reactions_are_said_with_what_they_leave_open():
     """the null space: sum of coefficient * change = 0 in every equation of every body"""
     derived = equations("four_cranks", "kinetostatic")
-    data = equations_payload(derived)
+    data = derived.entries()
     assert None in data["reactions"].values() and len(data["reaction_null_space"]) == 2
     names = [c.name for c in derived.reactions.components]
     a, b, c, e, d = (next(q for q in derived.graph.symbols.q if q.name == name) for name in "abced")
@@ -230,7 +230,7 @@ def test_indeterminate_reactions_are_said_with_what_they_leave_open():
 def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     """{name: text}: the values that an output of that name has, accelerations as theta''"""
     derived = equations(name)
-    data = json.loads(json.dumps(equations_payload(derived)))
+    data = json.loads(json.dumps(derived.entries()))
     motion, also = along_motion(derived), {}
     for symbol, text in [*data.get("definitions", []), *data.get("reaction_definitions", [])]:
         also[symbol] = read_back(text, derived, also)
@@ -266,7 +266,7 @@ def test_a_path_of_pieces_is_read_piece_by_piece():
     text = rendered(equations("ch16_p5").derivation, "text")
     on_the_line, on_the_arc = "m*g*cos(alpha) where s <= L", "m*s'^2/R + m*g*cos(alpha - s/R + L/R) otherwise"
     assert f"    N_ball =\n        {on_the_line}\n        {on_the_arc}\n" in text
-    forcing = equations_payload(equations("ch16_p5"))["forcing"][0]
+    forcing = equations("ch16_p5").entries()["forcing"][0]
     assert "select" not in forcing and "sign(s - L)" in forcing
 
 
@@ -285,7 +285,7 @@ def test_what_nothing_holds_is_told_and_has_no_kinetostatics(model, word):
     derived = derive(model)
     text = " ".join(rendered(derived.derivation, "text").split())
     assert "The reactions do not follow: " in text and word in text
-    assert word in equations_payload(derived)["reactions_message"]
+    assert word in derived.entries()["reactions_message"]
     with pytest.raises(DerivationError, match=word):
         derive(model, "kinetostatic")
 

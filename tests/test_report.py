@@ -26,13 +26,15 @@ from eomgen.errors import UsageError
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, per_speed
+from eomgen.proof.check import Certificate
 from eomgen.report import ALL, rendered
 from eomgen.report.derivation import derivation_of
+from eomgen.report.document import Document
+from eomgen.report.json_form import as_dict
 from eomgen.report.latex import symbols_in
 from eomgen.report.notation import MEANINGS, quantities
-from eomgen.report.payload import equations_payload
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Derivation, Entry, Formula, Name, Partial, Prose, Rate, Step
+from eomgen.report.statements import Entry, Formula, Name, Partial, Prose, Rate, Step
 from eomgen.report.text import WIDTH, broken, formula_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted
@@ -53,7 +55,7 @@ KINETIC_ENERGIES = {
 }
 
 
-def step(derivation: Derivation, key: str) -> Step:
+def step(derivation: Document, key: str) -> Step:
     return next(step for step in derivation.steps if step.key == key)
 
 
@@ -71,7 +73,7 @@ def printed_equations(text: str) -> list[tuple[str, str]]:
     return printed_formulas(section.split("The constraints, differentiated")[0])
 
 
-def printed_definitions(text: str, derived: Equations, derivation: Derivation) -> dict[str, Scalar]:
+def printed_definitions(text: str, derived: Equations, derivation: Document) -> dict[str, Scalar]:
     """What the printed names of sub-expressions stand for; each is printed once, before its use."""
     names = {symbol.name for symbol, _ in derivation.definitions}
     found: dict[str, Scalar] = {}
@@ -86,7 +88,7 @@ def printed_definitions(text: str, derived: Equations, derivation: Derivation) -
     return found
 
 
-def without_names(derivation: Derivation, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+def without_names(derivation: Document, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The scalars with everything that has a name written out."""
     known: dict[Node, Scalar] = {}
     for symbol, value in derivation.definitions:
@@ -114,7 +116,7 @@ def test_a_full_derivation_of_a_large_model_reads_back_as_its_equations_of_motio
     assert equal_at_random_states([(without_names(full, energy.sides[1:])[0], derived.graph.T)]).equal
 
 
-def assert_printed_equations_are_those_of_motion(derived: Equations, derivation: Derivation) -> None:
+def assert_printed_equations_are_those_of_motion(derived: Equations, derivation: Document) -> None:
     """divisor (left - right) = M a + c - Q - J^T lam; with friction, whose N hold accelerations, along every motion"""
     text = rendered(derivation, "text")
     also = printed_definitions(text, derived, derivation)
@@ -175,7 +177,7 @@ def _printed_system(derived: Equations) -> System:
     return derived.system if by <= {*derived.system.symbols.q, *derived.system.symbols.u} else free_system(derived)
 
 
-def _derivatives(derivation: Derivation) -> list[Formula]:
+def _derivatives(derivation: Document) -> list[Formula]:
     steps = [step for step in derivation.steps if step.key == "derivatives"]
     return [f for step in steps for f in step.statements if isinstance(f, Formula)]
 
@@ -243,14 +245,14 @@ def test_kinetic_energies_come_out_term_by_term_as_a_textbook_prints_them(name):
     text = re.sub(r"\n {8}", " ", rendered(derived.derivation, "text"))
     printed = re.search(r"^    T = (.*)$", text, re.M)
     assert printed is not None and sorted(printed[1].split(" + ")) == terms
-    assert sorted(equations_payload(derived)["kinetic_energy"].split(" + ")) == terms
+    assert sorted(derived.entries()["kinetic_energy"].split(" + ")) == terms
 
 
 @pytest.mark.parametrize("name", derivable())
 def test_the_payload_reads_back_as_the_equations(name):
     """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back"""
     derived = equations(name)
-    data = json.loads(json.dumps(equations_payload(derived)))
+    data = json.loads(json.dumps(derived.entries()))
     graph, also = derived.graph, {}
     for symbol, text in data.get("definitions", []):
         assert symbol not in symbols_named(derived)
@@ -285,7 +287,7 @@ def test_the_payload_reads_back_as_the_equations(name):
 
 def test_the_payload_has_the_keys_that_others_rely_on():
     """Names and shapes of DESIGN 5"""
-    data = equations_payload(equations("loop"), {"ok": True})
+    data = as_dict(equations("loop").document.proven(Certificate(())))
     assert data["schema_version"] == 1
     assert data["coordinates"] == ["theta1", "phi", "x_c", "lambda"]
     assert data["speeds"] == ["theta1'", "phi'", "x_c'"]
@@ -295,8 +297,8 @@ def test_the_payload_has_the_keys_that_others_rely_on():
     assert data["kinematic_matrix"][3] == ["0", "0", "0"]
     assert data["kinematic_bias"][3] == "theta_1*Omega*cos(t*Omega)"
     assert data["gaps"][2] is None and data["gaps"][1] is not None
-    assert data["certificate"] == {"ok": True}
-    assert equations_payload(equations("loop"))["certificate"] is None
+    assert data["certificate"] == {"ok": None, "checks": []}
+    assert as_dict(equations("loop").document.proven(None))["certificate"] is None
     assert "definitions" not in data
 
 

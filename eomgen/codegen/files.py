@@ -13,9 +13,7 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import Description
 from eomgen.errors import RunFailed
-
-SCHEMA_VERSION = 1
-
+from eomgen.version import SCHEMA_VERSION
 
 Emitted = tuple[Program, Description]
 

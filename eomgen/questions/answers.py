@@ -30,8 +30,8 @@ from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.report.answer import Answer
 from eomgen.report.linearize.result import Linearization, linearize
+from eomgen.report.quantity import Quantity
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call, Expression
@@ -41,6 +41,8 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
 from eomgen.symbolic.print.text import text_size, to_text
+
+Answer = Quantity  # of an output
 
 LONGEST = 20_000  # characters of an exact answer
 NO_VALUE = "it has no finite value {}"

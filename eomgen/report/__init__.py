@@ -2,12 +2,12 @@
 
 from eomgen.errors import UsageError
 from eomgen.report import json_form, latex, markdown, text
-from eomgen.report.statements import Derivation
+from eomgen.report.document import Document
 
 ALL = (text, latex, markdown, json_form)
 
 
-def rendered(derivation: Derivation, format: str = "text") -> str:
+def rendered(derivation: Document, format: str = "text") -> str:
     """The derivation in one of the formats of ALL: text, latex, markdown, json.
 
     Raises:

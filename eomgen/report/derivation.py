@@ -1,6 +1,8 @@
-"""System, Assembly -> Derivation: the way to the equations of motion, step by step, as a teacher would write it."""
+"""System, Assembly -> Document: the way to the equations of motion, step by step, as a teacher would write it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.equations.assembly import Assembly
@@ -10,8 +12,9 @@ from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import reactions_table_step
+from eomgen.report.document import Document, document_of
 from eomgen.report.energy_steps import Momenta
-from eomgen.report.equation_steps import Result, Sides, equations_of, multiplier_forces, sides_of
+from eomgen.report.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.report.integral_steps import integral_steps
 from eomgen.report.kinetostatic_steps import kinetostatic_steps
 from eomgen.report.maggi_steps import MAGGI, maggi_equations
@@ -21,7 +24,7 @@ from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_steps import along_the_motion, letters_of, reactions_step
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
-from eomgen.report.statements import Derivation, Law, Step
+from eomgen.report.statements import Law, Step
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.print.text import text_size
@@ -39,7 +42,7 @@ MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{
 SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
 
 
-def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool = False) -> Derivation:
+def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool = False) -> Document:
     """The derivation of the equations of motion of a system.
 
     By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
@@ -65,21 +68,14 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
     written = with_roots_named(written, graph, taken, reader.roots)
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
-    return Derivation(
-        model.name,
-        model.about or "",
-        model.source or "",
-        model.space,
-        method,
-        (*written.steps, notation_step(written.steps, system.scope.names)),
-        written.equations,
-        written.definitions,
-    )
+    notation = notation_step(written.steps, system.scope.names)
+    document = document_of(model, method, (*written.steps, notation))
+    return replace(document, equations=written.equations, definitions=written.definitions)
 
 
 def _by_method(
     system: System, reader: Reader, assembly: Assembly, method: str, letters: Lettered | str
-) -> tuple[tuple[Step, ...], Result]:
+) -> tuple[tuple[Step, ...], EquationSteps]:
     """The method's own steps, and its equations of motion.
 
     Raises:
@@ -95,7 +91,7 @@ def _by_method(
     return steps, result
 
 
-def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
     """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations.
 
     Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
@@ -117,7 +113,7 @@ def _is_integrable(system: System, assembly: Assembly) -> bool:
     return equal_at_random_states(zip(c, assembly.c, strict=True)).equal
 
 
-def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
     energies = body_energies(system.motion)
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
@@ -137,7 +133,9 @@ def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tu
     return steps, equations_of(system, reader, assembly, sides, ("Lagrange's equations ", law, ":"))
 
 
-def _by_maggi(system: System, free: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _by_maggi(
+    system: System, free: System, reader: Reader, assembly: Assembly
+) -> tuple[tuple[Step, ...], EquationSteps]:
     """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
     energies = body_energies(free.motion)
     T = _whole(free, reader, energies)
@@ -174,7 +172,7 @@ def _lagrange_sides(assembly: Assembly, momenta: Momenta, forces: tuple[Scalar, 
     return [Sides(rate - held, force + tie) for rate, held, force, tie in rows]
 
 
-def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], Result]:
+def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
     own = projection.assemble(system)
     steps: tuple[Step, ...] = (
         motion_steps.positions_step(system, reader),

@@ -48,7 +48,7 @@ class Sides:
 
 
 @dataclass(frozen=True)
-class Result:
+class EquationSteps:
     """The equations as printed, and the steps that print them."""
 
     equations: tuple[Equation, ...]
@@ -78,7 +78,7 @@ def sides_of(
 
 def equations_of(
     system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
-) -> Result:
+) -> EquationSteps:
     """The equations of motion, divided by what is common, and the accelerations where that is short.
 
     Args:
@@ -86,28 +86,30 @@ def equations_of(
         rule: the law by which they come, in words.
     """
     if not sides:
-        return Result((), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),))
+        return EquationSteps(
+            (), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),)
+        )
     if assembly.friction:
         friction = friction_of(system, reader, assembly)
         sides = [Sides(row.left, row.right + force) for row, force in zip(sides, friction.forces, strict=True)]
         result = _equations(system, reader, assembly, sides, rule)
         steps = (friction.step, *result.steps, *friction.solved)
-        return Result(result.equations, (*friction.definitions, *result.definitions), steps)
+        return EquationSteps(result.equations, (*friction.definitions, *result.definitions), steps)
     return _equations(system, reader, assembly, sides, rule)
 
 
 def _equations(
     system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
-) -> Result:
+) -> EquationSteps:
     equations = readable_equations(reader, assembly, sides)
     if equations is not None:
         statements = (Prose(rule), *printed(system, equations), *closing(reader, assembly))
         steps = (Step("equations", "Equations of motion", statements), *_solved(reader, assembly, equations))
-        return Result(tuple(equations), (), steps)
+        return EquationSteps(tuple(equations), (), steps)
     found = _whole(reader, assembly) if reader.full else _named(reader, assembly)
     if found is None:
         count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
-        return Result((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
+        return EquationSteps((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
     equations, definitions = found
     statements = (
         Prose(rule),
@@ -116,7 +118,7 @@ def _equations(
         *printed(system, equations),
         *closing(reader, assembly),
     )
-    return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
+    return EquationSteps(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
 def readable_equations(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:

@@ -1,35 +1,50 @@
-"""Derivation -> JSON: the same steps, formulas as text that the grammar of the model file reads back."""
+"""Document -> JSON: its entries, its steps; formulas as text that the grammar of the model file reads back."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
-from eomgen.report.statements import Derivation, Formula, Grid, Prose, Statement
-from eomgen.report.text import cell_text, formula_text, prose_text, side_text
+from eomgen.report.document import Document
+from eomgen.report.quantity import Quantity
+from eomgen.report.statements import Formula, Grid, Prose, Statement, Table
+from eomgen.report.text import cell_text, formula_text, prose_text, side_text, statement_lines
 from eomgen.symbolic.print.text import to_text
+from eomgen.version import SCHEMA_VERSION
 
 name = "json"
 
-VERSION = 1
+
+def render(document: Document) -> str:
+    """The document as a JSON text."""
+    return json.dumps(as_dict(document), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 
-def render(derivation: Derivation) -> str:
-    """The derivation as a JSON text."""
-    return json.dumps(as_dict(derivation), indent=2, ensure_ascii=False) + "\n"
+def as_dict(document: Document) -> dict[str, Any]:
+    """The document as plain data; of one without entries what is printed."""
+    entries = document.entries() or _printed(document)
+    own = {"steps": steps(document)} if document.has_heads else {}
+    return {"schema_version": SCHEMA_VERSION, **_plain(entries), **own}
 
 
-def as_dict(derivation: Derivation) -> dict[str, Any]:
-    """The derivation as plain data."""
+def _plain(entry: Any) -> Any:
+    """An entry, quantities as what is known of them."""
+    if isinstance(entry, Quantity):
+        return entry.as_dict()
+    if isinstance(entry, Mapping):
+        return {key: _plain(inner) for key, inner in entry.items()}
+    return [_plain(inner) for inner in entry] if isinstance(entry, (list, tuple)) else entry
+
+
+def _printed(document: Document) -> dict[str, Any]:
     return {
-        "schema_version": VERSION,
-        "name": derivation.title,
-        "about": derivation.about,
-        "source": derivation.source,
-        "space": derivation.space,
-        "method": derivation.method,
-        "steps": steps(derivation),
-        "definitions": [[symbol.name, to_text(value)] for symbol, value in derivation.definitions],
+        "name": document.title,
+        "about": document.about,
+        "source": document.source,
+        "space": document.space,
+        "method": document.method,
+        "definitions": [[symbol.name, to_text(value)] for symbol, value in document.definitions],
         "equations": [
             {
                 "speed": equation.speed.name,
@@ -37,16 +52,16 @@ def as_dict(derivation: Derivation) -> dict[str, Any]:
                 "right": to_text(equation.right),
                 "divisor": to_text(equation.divisor),
             }
-            for equation in derivation.equations
+            for equation in document.equations
         ],
     }
 
 
-def steps(derivation: Derivation) -> list[dict[str, Any]]:
+def steps(document: Document) -> list[dict[str, Any]]:
     """The steps, each a list of prose, formulas and tables."""
     return [
         {"key": step.key, "title": step.title, "statements": [_statement(s) for s in step.statements]}
-        for step in derivation.steps
+        for step in document.steps
     ]
 
 
@@ -58,6 +73,8 @@ def _statement(statement: Statement) -> dict[str, Any]:
     if isinstance(statement, Grid):
         head, *lines = (list(map(cell_text, row)) for row in (statement.head, *statement.rows))
         return {"kind": "grid", "head": head, "rows": lines}
+    if not isinstance(statement, Table):
+        return {"kind": "lines", "lines": statement_lines(statement)}
     rows = [
         {"symbol": side_text(row.symbol), "meaning": row.meaning, "unit": row.unit, "value": row.value}
         for row in statement.rows

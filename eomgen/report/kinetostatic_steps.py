@@ -11,7 +11,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import projection
 from eomgen.report import motion_steps, projection_steps
 from eomgen.report.balance_steps import body_steps, reactions_table_step
-from eomgen.report.equation_steps import Result, equations_of, sides_of
+from eomgen.report.equation_steps import EquationSteps, equations_of, sides_of
 from eomgen.report.reaction_names import Lettered
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Formula, Law, Prose, Statement, Step
@@ -25,7 +25,7 @@ DROPPED = Law(
 
 def kinetostatic_steps(
     system: System, reader: Reader, assembly: Assembly, letters: Lettered
-) -> tuple[tuple[Step, ...], Result]:
+) -> tuple[tuple[Step, ...], EquationSteps]:
     """The free bodies and their balance, and the equations of motion that come out of it."""
     own = projection.assemble(system)
     steps = (

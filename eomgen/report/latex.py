@@ -1,21 +1,24 @@
-"""Derivation -> a complete LaTeX document that compiles as it stands, and its equations alone for notebooks."""
+"""Document -> a complete LaTeX document that compiles as it stands, and its equations alone for notebooks."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
+from eomgen.report.document import Document
 from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
 from eomgen.report.latex_names import escaped, notation, upright
 from eomgen.report.statements import (
     Cell,
     Code,
-    Derivation,
     Entry,
     Formula,
     Grid,
     Law,
+    Lines,
+    Listing,
     Name,
     Omitted,
     Partial,
@@ -27,7 +30,8 @@ from eomgen.report.statements import (
     Table,
     parts_of,
 )
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 
 name = "latex"
@@ -79,10 +83,10 @@ LETTERS = {
 """letter -> how it begins, its subscript opened"""
 
 
-def setter_of(derivation: Derivation) -> Setter:
-    """One notation for the symbols of the whole derivation."""
+def setter_of(document: Document) -> Setter:
+    """One notation for the symbols of the whole document."""
     names: dict[str, None] = {}
-    for step in derivation.steps:
+    for step in document.steps:
         for statement in step.statements:
             names |= dict.fromkeys(symbol.name for symbol in symbols_in(statement))
     return Setter(notation(names))
@@ -108,16 +112,20 @@ def _symbols(part: object) -> list[Node]:
     return _symbols(part.of) if isinstance(part, Rate) else []
 
 
-def render(derivation: Derivation) -> str:
-    """The derivation as a document."""
-    setter = setter_of(derivation)
-    lines = [PREAMBLE + r"\begin{document}", rf"\section*{{{escaped(derivation.title)}}}"]
-    if derivation.about:
-        lines.append(escaped(derivation.about) + "\n")
-    if derivation.source:
-        lines.append(f"Source: {escaped(derivation.source)}.\n")
-    for step in derivation.steps:
-        lines.append(rf"\subsection*{{{escaped(step.title)}}}")
+def render(document: Document) -> str:
+    """The document as a file of LaTeX; its proof is a comment, what contradicts it is visible."""
+    document = with_listings_typeset(document)
+    setter = setter_of(document)
+    proof = () if document.certificate is None else str(document.certificate).splitlines()
+    lines = [*(f"% {line}" for line in proof), PREAMBLE + r"\begin{document}"]
+    lines += [rf"\textbf{{{document.distrust}}}"] if document.distrust else []
+    lines.append(rf"\section*{{{escaped(document.title)}}}")
+    if document.about:
+        lines.append(escaped(document.about) + "\n")
+    if document.source:
+        lines.append(f"Source: {escaped(document.source)}.\n")
+    for step in document.steps:
+        lines += [rf"\subsection*{{{escaped(step.title)}}}"] if step.title else []
         lines += statement_blocks(setter, step.statements)
     return "\n".join([*lines, r"\end{document}"]) + "\n"
 
@@ -132,15 +140,21 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
         elif isinstance(group, Prose):  # a display belongs to the paragraph before it
             end = "" if isinstance(after, list) else "\n"
             blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + end)
+        elif isinstance(group, Lines):
+            blocks.append("\n".join([r"\begin{verbatim}", *group.lines, r"\end{verbatim}"]))
         else:
             blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
     return blocks
 
 
-def grouped(statements: Sequence[Statement]) -> list[Prose | Table | Grid | list[Formula]]:
-    """The statements, formulas in a row taken together."""
-    groups: list[Prose | Table | Grid | list[Formula]] = []
+Group = Prose | Table | Grid | Lines | list[Formula]
+
+
+def grouped(statements: Sequence[Statement]) -> list[Group]:
+    """The statements, formulas in a row taken together; listings are typeset before."""
+    groups: list[Group] = []
     for statement in statements:
+        assert not isinstance(statement, Listing)
         if not isinstance(statement, Formula):
             groups.append(statement)
         elif groups and isinstance(groups[-1], list):
@@ -159,7 +173,42 @@ def _sides(setter: Setter, formulas: Sequence[Formula]) -> list[list[Set | Scala
     return [[_side(setter, side) for side in formula.sides] for formula in formulas]
 
 
-def equations_latex(derivation: Derivation) -> str:
+def with_listings_typeset(document: Document) -> Document:
+    """The document with sentences and formulas in place of listings."""
+    graph = Graph()
+    steps = (
+        replace(step, statements=tuple(x for s in step.statements for x in _typeset(graph, s)))
+        for step in document.steps
+    )
+    return replace(document, steps=tuple(steps))
+
+
+def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
+    """name: words [method], then exact = number, below one another."""
+    if not isinstance(statement, Listing):
+        yield statement
+        return
+    for row in statement.rows:
+        found = row.quantity
+        way, message = (f" [{found.method}]" if found.method else ""), (f" ({found.message})" if found.message else "")
+        yield Prose((Code(row.name), f": {row.words}" if row.words else "", way, message))
+        sides = [] if found.exact is None else [_read_back(graph, found.exact)]
+        sides += [Law(found.number, _number_latex(found.number))] if found.number else []
+        yield from [Formula(tuple(sides))] if sides else []
+
+
+def _read_back(graph: Graph, exact: str) -> Side:
+    """What a text of the grammar says, as a formula."""
+    expression = parse(exact, longest=len(exact))
+    return expression.evaluate({name: graph.symbol(name) for name in expression.names} | {"pi": graph.pi})
+
+
+def _number_latex(number: str) -> str:
+    value, _, unit = number.partition(" ")
+    return value_latex(value).strip("$") + (rf"\ \text{{{unit_latex(unit)}}}" if unit else "")
+
+
+def equations_latex(derivation: Document) -> str:
     """The equations of motion in one display, for Jupyter: $$ aligned $$."""
     setter = setter_of(derivation)
     formulas = [Formula(pair) for pair in derivation.definitions]

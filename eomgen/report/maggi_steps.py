@@ -14,7 +14,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.report.energy_steps import Momenta
-from eomgen.report.equation_steps import Result, Sides, closing, multiplier_forces, printed, readable_equations
+from eomgen.report.equation_steps import EquationSteps, Sides, closing, multiplier_forces, printed, readable_equations
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
 from eomgen.symbolic.expression.derivative import jacobian
@@ -32,7 +32,7 @@ WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\math
 
 def maggi_equations(
     system: System, free: System, reader: Reader, assembly: Assembly, momenta: Momenta, forces: ScalarRow
-) -> Result | None:
+) -> EquationSteps | None:
     """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
 
     Args:
@@ -60,7 +60,7 @@ def maggi_equations(
         *map(Formula, shown[len(shown) // 2 :]),
     )
     definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
-    return Result(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
+    return EquationSteps(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
 
 
 def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:

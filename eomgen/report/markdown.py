@@ -1,28 +1,32 @@
-"""Derivation -> Markdown with formulas between dollars, as notebooks and code forges show it."""
+"""Document -> Markdown with formulas between dollars, as notebooks and code forges show it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex
+from eomgen.report.document import Document
+from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex, with_listings_typeset
 from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Cell, Code, Derivation, Grid, Piece, Prose, Statement, Table
+from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose, Statement, Table
 
 name = "markdown"
 
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|$~^])")
 
 
-def render(derivation: Derivation) -> str:
-    """The derivation as Markdown."""
-    setter = setter_of(derivation)
-    blocks = [f"# {escaped(derivation.title)}"]
-    blocks += [escaped(text) for text in (derivation.about,) if text]
-    blocks += [f"Source: {escaped(derivation.source)}."] if derivation.source else []
-    for step in derivation.steps:
-        blocks.append(f"## {escaped(step.title)}")
+def render(document: Document) -> str:
+    """The document as Markdown: what contradicts it first, its proof last."""
+    document = with_listings_typeset(document)
+    setter = setter_of(document)
+    blocks = [f"**{document.distrust}**"] if document.distrust else []
+    blocks.append(f"# {escaped(document.title)}")
+    blocks += [escaped(text) for text in (document.about,) if text]
+    blocks += [f"Source: {escaped(document.source)}."] if document.source else []
+    for step in document.steps:
+        blocks += [f"## {escaped(step.title)}"] if step.title else []
         blocks += statement_blocks(setter, step.statements)
+    blocks += [f"```\n{document.certificate}\n```"] if document.certificate is not None else []
     return "\n\n".join(blocks) + "\n"
 
 
@@ -34,6 +38,8 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
             blocks += [f"$$\n{block}\n$$" for block in display_blocks(setter, group)]
         elif isinstance(group, Prose):
             blocks.append("".join(_piece(setter, piece) for piece in group.pieces))
+        elif isinstance(group, Lines):
+            blocks.append("\n".join(["```", *group.lines, "```"]))
         else:
             blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
     return blocks

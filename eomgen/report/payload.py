@@ -7,16 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.report.equation_steps import multiplier_forces
-from eomgen.report.json_form import VERSION, steps
 from eomgen.report.reaction_payload import reactions_payload
 from eomgen.report.reading import TRIED, Reader, without_cases
-from eomgen.report.statements import Derivation
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
@@ -24,56 +22,35 @@ LARGEST = 16_000_000  # characters of all expressions together that are written 
 NAMED_PART = 200  # characters of a text in which long parts have names
 
 
-class Derived(Protocol):
-    """Equations with the system that they are of."""
-
-    @property
-    def system(self) -> System: ...
-    @property
-    def graph(self) -> Assembly: ...
-    @property
-    def derivation(self) -> Derivation: ...
-
-
-def equations_payload(
-    equations: Derived, certificate: dict[str, Any] | None = None, derivation: Derivation | None = None
-) -> dict[str, Any]:
+def equations_payload(system: System, assembly: Assembly, method: str) -> dict[str, Any]:
     """The equations of motion as plain data, ready for JSON.
 
     Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
     would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each
     before its use.
-
-    Args:
-        certificate: as its `as_dict` gives it; None where none was made.
-        derivation: whose steps are carried; the equations' own where none is given.
     """
-    system, assembly, derivation = equations.system, equations.graph, derivation or equations.derivation
-    symbols = assembly.symbols
+    model, symbols = system.scope.model, assembly.symbols
     fields = _fields(system, assembly)
     definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(assembly))
     rest = iter(texts)
     written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in fields.items()}
     sides = written.pop("equations")
-    values = exact_parameters(system.scope.model)
+    values = exact_parameters(model)
     return {
-        "schema_version": VERSION,
-        "name": derivation.title,
-        "space": derivation.space,
-        "source": derivation.source,
-        "method": derivation.method,
+        "name": model.name,
+        "space": model.space,
+        "source": model.source or "",
+        "method": method,
         "coordinates": [q.name for q in symbols.q],
         "speeds": [u.name for u in symbols.u],
         "parameters": {name: float(values[name]) if name in values else None for name in symbols.parameters},
-        "inputs": {name: part.value.text for name, part in system.scope.model.inputs.items()},
+        "inputs": {name: part.value.text for name, part in model.inputs.items()},
         **({"definitions": [list(pair) for pair in definitions]} if definitions else {}),
         **written,
         "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
         "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
         "equations": [f"{left} = {right}" for left, right in sides],
         **reactions_payload(system, assembly, _taken(assembly) | {name for name, _ in definitions}),
-        "steps": steps(derivation),
-        "certificate": certificate,
     }
 
 

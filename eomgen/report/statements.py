@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from eomgen.report.quantity import Quantity
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 
@@ -147,7 +148,30 @@ def narrow_grid(head: Sequence[Cell], rows: Sequence[tuple[Cell, ...]], kept: Se
     return Grid(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
 
 
-Statement = Prose | Formula | Table | Grid
+@dataclass(frozen=True)
+class Found:
+    """A quantity by its name, and what it is in words."""
+
+    name: str
+    quantity: Quantity
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Quantities one after the other, each with what is known of it."""
+
+    rows: tuple[Found, ...]
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Text that stands as it is: paths, counts, words of a tool."""
+
+    lines: tuple[str, ...]
+
+
+Statement = Prose | Formula | Table | Grid | Listing | Lines
 
 
 def parts_of(statement: Statement) -> list[Piece | Side]:
@@ -158,12 +182,14 @@ def parts_of(statement: Statement) -> list[Piece | Side]:
         return list(statement.pieces)
     if isinstance(statement, Table):
         return [row.symbol for row in statement.rows]
+    if isinstance(statement, (Listing, Lines)):
+        return []
     return [cell for row in (statement.head, *statement.rows) for cell in row]
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a derivation; `key` names it for machines."""
+    """One step of a derivation, a section of a document; `key` names it for machines, "" where it has no head."""
 
     key: str
     title: str
@@ -185,34 +211,3 @@ class Equation:
     left: Scalar
     right: Scalar
     divisor: Scalar = 1
-
-
-@dataclass(frozen=True)
-class Derivation:
-    """A derivation, step by step.
-
-    Args:
-        title: the model's name.
-        about: a remark of the user, "" where there is none.
-        source: where the system comes from, "".
-        space: "plane" or "space".
-        method: "lagrange" or "projection".
-        steps: in order.
-        equations: the equations of motion as printed; empty where they are too long.
-        definitions: sub-expressions with a name of their own, in the order of their use.
-    """
-
-    title: str
-    about: str
-    source: str
-    space: str
-    method: str
-    steps: tuple[Step, ...]
-    equations: tuple[Equation, ...] = ()
-    definitions: tuple[tuple[Node, Scalar], ...] = ()
-
-    @property
-    def nomenclature(self) -> tuple[Meaning, ...]:
-        """What every symbol stands for."""
-        tables = (s for step in self.steps for s in step.statements if isinstance(s, Table))
-        return tuple(row for table in tables for row in table.rows)

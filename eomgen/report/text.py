@@ -1,4 +1,4 @@
-"""Derivation -> plain text, 100 columns wide. Formulas are in the grammar of the model file."""
+"""Document -> plain text, 100 columns wide. Formulas are in the grammar of the model file."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import textwrap
 from collections.abc import Iterator
 from typing import TypeGuard
 
+from eomgen.report.document import Document
 from eomgen.report.reading import without_cases
 from eomgen.report.statements import (
     Cell,
     Code,
-    Derivation,
     Entry,
     Formula,
     Grid,
     Law,
+    Lines,
+    Listing,
     Meaning,
     Name,
     Omitted,
@@ -36,26 +38,32 @@ WIDTH = 100
 INDENT = "    "
 
 
-def render(derivation: Derivation) -> str:
-    """The derivation as text."""
-    lines = [*_headed(derivation.title, "="), *_remarks(derivation)]
-    for number, step in enumerate(derivation.steps, start=1):
-        lines += ["", *_headed(f"{number}. {step.title}", "-")]
-        for statement in step.statements:
-            lines += _statement_lines(statement)
-    return "\n".join(lines) + "\n"
+def render(document: Document) -> str:
+    """The document as text: what contradicts it first, its proof last."""
+    lines = [document.distrust, ""] if document.distrust else []
+    lines += [*_headed(document.title, "="), *_remarks(document)] if document.has_heads else []
+    for number, step in enumerate(document.steps, start=1):
+        lines += ["", *_headed(f"{number}. {step.title}", "-")] if step.title else []
+        lines += [line for statement in step.statements for line in statement_lines(statement)]
+    lines += ["", str(document.certificate)] if document.certificate is not None else []
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _headed(title: str, rule: str) -> list[str]:
     return [title, rule * len(title)]
 
 
-def _remarks(derivation: Derivation) -> list[str]:
-    source = f"Source: {derivation.source}." if derivation.source else ""
-    return [line for text in (derivation.about, source) if text for line in textwrap.wrap(text, WIDTH)]
+def _remarks(document: Document) -> list[str]:
+    source = f"Source: {document.source}." if document.source else ""
+    return [line for text in (document.about, source) if text for line in textwrap.wrap(text, WIDTH)]
 
 
-def _statement_lines(statement: Statement) -> list[str]:
+def statement_lines(statement: Statement) -> list[str]:
+    """A statement on lines of text."""
+    if isinstance(statement, Lines):
+        return list(statement.lines)
+    if isinstance(statement, Listing):
+        return _listing_lines(statement)
     if isinstance(statement, Prose):
         return textwrap.wrap(prose_text(statement), WIDTH)
     if isinstance(statement, Formula):
@@ -137,6 +145,19 @@ def _table_lines(table: Table) -> list[str]:
             cells = [part if k == 1 else row[k] if number == 0 else "" for k in kept]
             line = "  ".join(cell.ljust(widths[k]) for k, cell in zip(kept, cells, strict=True))
             lines.append(f"{INDENT}{line}".rstrip())
+    return lines
+
+
+def _listing_lines(listing: Listing) -> list[str]:
+    """Each name and what is known of it beside it; below it where words stand there."""
+    width = max((len(row.name) for row in listing.rows), default=0)
+    lines: list[str] = []
+    for row in listing.rows:
+        if row.words:
+            lines += [f"{row.name}: {row.words}", *(f"{INDENT}{line}" for line in row.quantity.lines)]
+        else:
+            first, *more = row.quantity.lines
+            lines += [f"{row.name:<{width}}  {first}", *(f"{'':<{width}}  {line}" for line in more)]
     return lines
 
 

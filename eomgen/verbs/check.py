@@ -7,6 +7,8 @@ from typing import Any
 from eomgen.mechanics.constraints.freedom import Freedom
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.parts import Model, Truss
+from eomgen.report.document import plain_document
+from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.branch_lines import branch_lines
 from eomgen.verbs.checked import Checked, LoopStart, checked
@@ -18,8 +20,11 @@ def check(model: Model) -> Outcome:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
     found = checked(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    payload = {"ok": True, **_declared(found), **_counted(found), **_started(found.start), "problems": []}
-    return Outcome("\n".join(lines) + "\n", payload)
+    return Outcome(plain_document(model, lambda: _entries(found), Lines(tuple(lines))))
+
+
+def _entries(found: Checked) -> dict[str, Any]:
+    return {"ok": True, **_declared(found), **_counted(found), **_started(found.start), "problems": []}
 
 
 def _declared_lines(found: Checked) -> list[str]:

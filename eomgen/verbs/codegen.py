@@ -14,6 +14,8 @@ from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
+from eomgen.report.document import lines_document, plain_document
+from eomgen.report.statements import Lines
 from eomgen.running import pulling
 from eomgen.verbs.outcome import Outcome, listed
 from eomgen.version import __version__
@@ -73,13 +75,13 @@ def codegen(
     }
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
-    return Outcome("".join(f"{path}\n" for path in paths), payload, notes=(note,) if note else ())
+    return Outcome(plain_document(model, lambda: payload, Lines(tuple(paths))), (note,) if note else ())
 
 
 def languages() -> Outcome:
     """The targets that there are, a line each."""
     found = [{"name": target.name, "about": target.about} for target in ALL]
-    return Outcome("".join(f"{target.name:10} {target.about}\n" for target in ALL), {"targets": found})
+    return Outcome(lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in ALL)))
 
 
 def _reactions(

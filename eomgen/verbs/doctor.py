@@ -11,6 +11,7 @@ from pathlib import Path
 import platformdirs
 
 from eomgen.codegen.build import compiler
+from eomgen.report.document import lines_document
 from eomgen.verbs.outcome import Outcome
 from eomgen.version import __version__
 
@@ -27,7 +28,7 @@ def doctor() -> Outcome:
     rows.append(("cache", _cache()))
     rows.append(("LaTeX", next(filter(None, map(shutil.which, ("pdflatex", "lualatex", "xelatex", "tectonic"))), None)))
     lines = [f"{what:<12}  {found or 'not found' + _without(what)}" for what, found in rows]
-    return Outcome("\n".join(lines) + "\n", {"found": dict(rows)})
+    return Outcome(lines_document(lambda: {"found": dict(rows)}, *lines))
 
 
 def _without(what: str) -> str:

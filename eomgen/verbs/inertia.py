@@ -10,7 +10,6 @@ from eomgen.verbs.outcome import Outcome, told
 def inertia(
     model: Model,
     *,
-    format: str = "text",
     plot: str | None = None,
     bodies: tuple[str, ...] = (),
     about: str | None = None,
@@ -19,10 +18,9 @@ def inertia(
     """Masses, mass centres, moments and products of inertia, principal axes.
 
     Args:
-        format: text, latex, markdown or json.
         plot: a picture's file.
         bodies: only these.
         about: a point about which they are taken too.
         axis: "A,B", or x, y, z through that point.
     """
-    return told(found_in(model, bodies, about=about, axis=axis), format=format, plot=plot)
+    return told(found_in(model, bodies, about=about, axis=axis), plot=plot)

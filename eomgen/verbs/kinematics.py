@@ -14,7 +14,6 @@ from eomgen.verbs.outcome import Outcome, told
 def kinematics(
     model: Model,
     *,
-    format: str = "text",
     plot: str | None = None,
     at: str | None = None,
     given: Sequence[str] = (),
@@ -23,7 +22,6 @@ def kinematics(
     """The motion at one instant.
 
     Args:
-        format: text, latex, markdown or json.
         plot: a picture's file.
         at: the instant, an equation; None: the start, or the one configuration.
         given: velocities besides those of the model: "omega(crank) = 2".
@@ -40,9 +38,7 @@ def kinematics(
         if not given:
             raise
         raise UsageError(f"--given: {error.what}", mend=error.mend) from error
-    wrong = found.disagreement
-    failed = f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
-    return told(found, format=format, plot=plot, failed=failed)
+    return told(found, plot=plot)
 
 
 def _asked(at: str | None, given: Sequence[str]) -> str:

@@ -10,7 +10,6 @@ from eomgen.verbs.outcome import Outcome, proven, told
 def linearize(
     model: Model,
     *,
-    format: str = "text",
     plot: str | None = None,
     about: str | None = None,
     coordinates: tuple[str, ...] = (),
@@ -19,11 +18,10 @@ def linearize(
     """M, C, K, modes, stability.
 
     Args:
-        format: text, latex, markdown or json.
         plot: a picture's file.
         about: "equilibrium", "start" or "steady".
         coordinates: only these.
         certify: whether it is proven.
     """
     found = found_in(model, about, coordinates)
-    return proven(told(found, format=format, plot=plot), found.certify() if certify else None, format)
+    return proven(told(found, plot=plot), found.certify() if certify else None)

@@ -7,6 +7,7 @@ import shlex
 from pathlib import Path
 
 from eomgen.errors import RunFailed, UsageError
+from eomgen.report.document import lines_document
 from eomgen.verbs.outcome import Outcome
 
 TEMPLATES = Path(__file__).parent.parent / "templates"
@@ -31,4 +32,5 @@ def new(name: str) -> Outcome:
         raise UsageError(f"'{path}' is there already", mend="take another name") from None
     except OSError as error:
         raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
-    return Outcome(f"{path}\n", {"file": str(path)}, notes=(f"now try: eomgen derive {shlex.quote(str(path))}",))
+    document = lines_document(lambda: {"file": str(path)}, str(path))
+    return Outcome(document, (f"now try: eomgen derive {shlex.quote(str(path))}",))

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from eomgen.errors import RunFailed
 from eomgen.proof.check import Certificate
-
-SCHEMA_VERSION = 1
+from eomgen.report import json_form
+from eomgen.report.document import NOTHING_CHECKED, Document
+from eomgen.report.result import Result
 
 
 @dataclass(frozen=True)
@@ -21,80 +21,36 @@ class Outcome:
     """What a verb gives.
 
     Args:
-        text: the result for people.
-        payload: the result for machines; `schema_version` is added on the way out.
-        failed: why the exit code is 3, or "".
+        document: the result, for people and for machines.
         notes: what else is worth a line on stderr.
     """
 
-    text: str
-    payload: Mapping[str, Any] = field(default_factory=dict)
-    failed: str = ""
+    document: Document
     notes: tuple[str, ...] = ()
 
     @property
-    def json(self) -> str:
-        return (
-            json.dumps(
-                {"schema_version": SCHEMA_VERSION, **self.payload}, ensure_ascii=False, indent=1, allow_nan=False
-            )
-            + "\n"
-        )
+    def failed(self) -> str:
+        """Why the exit code is 3, or ""."""
+        return "; ".join(filter(None, (self.document.distrust, self.document.failed)))
+
+    @property
+    def payload(self) -> dict[str, Any]:
+        """The result for machines."""
+        return json_form.as_dict(self.document)
 
 
-class Told(Protocol):
-    """A result that is written step by step, for machines, and drawn."""
-
-    def render(self, format: str) -> str: ...
-
-    def as_dict(self) -> dict[str, Any]: ...
-
-    def plot(self, path: str | Path) -> None: ...
-
-
-def told(found: Told, *, format: str, plot: str | None, failed: str = "") -> Outcome:
-    """A result in the format that is asked for, its picture in a file where one is."""
+def told(found: Result, *, plot: str | None) -> Outcome:
+    """A result, its picture in a file where one is asked for."""
     if plot is not None:
         found.plot(prepared(plot))
-    if format == "json":
-        return Outcome("", found.as_dict(), failed)
-    return Outcome(found.render(format), {}, failed)
-
-
-DISTRUST = "the certificate FAILS: do not trust this result"
-NOTHING_CHECKED = "warning: nothing of this result could be checked"
+    return Outcome(found.document)
 
 
 def proven(outcome: Outcome, certificate: Certificate | None, format: str = "text") -> Outcome:
-    """A result with its certificate: a contradiction stands first and ends in exit 3; None: none was asked for.
-
-    Args:
-        format: text, latex, markdown or json, as the result is written.
-    """
-    if certificate is None:
-        return replace(outcome, payload={**outcome.payload, "certificate": None})
-    failed = DISTRUST if certificate.ok is False else ""
-    text = outcome.text and _with_proof(outcome.text, certificate, failed, format)
-    return replace(
-        outcome,
-        text=text,
-        payload={**outcome.payload, "certificate": certificate.as_dict()},
-        failed="; ".join(filter(None, (failed, outcome.failed))),
-        notes=(*outcome.notes, *((NOTHING_CHECKED,) if certificate.ok is None else ())),
-    )
-
-
-def _with_proof(text: str, certificate: Certificate, failed: str, format: str) -> str:
-    """The result and its proof: part of the text, a comment in LaTeX; a failure stands first, visibly."""
-    text, proof = text.rstrip("\n") + "\n", str(certificate)
-    if format == "latex":
-        comment = "".join(f"% {line}\n" for line in proof.splitlines())
-        visible = r"\begin{document}" + "\n" + r"\textbf{" + failed + "}\n"
-        return comment + (text.replace(r"\begin{document}" + "\n", visible, 1) if failed else text)
-    if format == "markdown":
-        proof = f"```\n{proof}\n```"
-        failed = f"**{failed}**" if failed else ""
-    return (f"{failed}\n\n" if failed else "") + f"{text}\n{proof}\n"
+    """A result with its certificate: a contradiction stands first and ends in exit 3; None: none was asked for."""
+    doubt = certificate is not None and certificate.ok is None
+    notes = (*outcome.notes, NOTHING_CHECKED) if doubt else outcome.notes
+    return Outcome(outcome.document.proven(certificate), notes)
 
 
 def listed(names: Iterable[str]) -> str:

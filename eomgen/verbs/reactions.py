@@ -24,10 +24,12 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
 from eomgen.questions import answers
-from eomgen.report.answer import Answer
+from eomgen.report.document import plain_document
+from eomgen.report.quantity import Quantity
 from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space
+from eomgen.report.statements import Found, Lines, Listing, Prose, Statement
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
@@ -61,18 +63,14 @@ def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     space = null_space(system, equations.graph) if open_ and equations is not None else []
-    payload = {
-        "name": model.name,
-        "reactions": {name: answer.as_dict() for name, answer in found.items()},
-        **({"null_space": space} if space else {}),
-    }
-    notes = () if found else ("nothing reacts: no body is held by joints or ties",)
-    return Outcome(
-        _text(system, asked, found, bool(space)) + _open_text(space),
-        payload,
-        f"not answered: {listed(failed)}" if failed else broken,
-        notes,
+    document = plain_document(
+        model,
+        lambda: {"name": model.name, "reactions": found, **({"null_space": space} if space else {})},
+        _listing(system, asked, found, bool(space)),
+        *_open_statements(space),
+        failed=f"not answered: {listed(failed)}" if failed else broken,
     )
+    return Outcome(document, () if found else ("nothing reacts: no body is held by joints or ties",))
 
 
 def _function(name: str) -> str:
@@ -82,7 +80,7 @@ def _function(name: str) -> str:
 # -- as formulas -----------------------------------------------------------------------------------
 
 
-def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Answer]:
+def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Quantity]:
     """Every reaction as a formula, and its value at the start."""
     found = reaction_formulas(equations.system, equations.graph)
     values, missing = _at_start(equations)
@@ -92,7 +90,7 @@ def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Ans
         method = "balance of the bodies" + (", accelerations left in it" if formula.accelerated else "")
         value = 0.0 if formula.text == "0" else values.get(named.name)
         message = formula.message or missing or (None if value is not None else NO_VALUE)
-        answered[named.name] = Answer(formula.text, value, named.unit, method, message)
+        answered[named.name] = Quantity(formula.text, value, named.unit, method, message)
     return answered
 
 
@@ -115,7 +113,7 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
 # -- at an instant, or from rest -------------------------------------------------------------------
 
 
-def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Answer]:
+def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Quantity]:
     """The answers to outputs that ask for the reactions, with their units."""
     instant = None if at is None else _instant(at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, Equation) else None
@@ -177,32 +175,32 @@ def _expression(name: str, text: str) -> Expression:
         raise UsageError(f"--from-rest {name}={text}: {error.what}", mend=error.mend) from error
 
 
-# -- as text ---------------------------------------------------------------------------------------
+# -- as it is told -----------------------------------------------------------------------------------
 
 
-def _text(system: System, asked: Iterable[NamedReaction], found: dict[str, Answer], below: bool) -> str:
-    """Each reaction by name and in words, then as `solve` prints its answers.
+def _listing(system: System, asked: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
+    """Each reaction by name and in words, then as `solve` tells its answers.
 
     Args:
         below: what may be added to indeterminate ones follows below.
     """
     balance = balance_of(system)
-    lines = []
+    rows = []
     for named in asked:
         answer = found[named.name]
-        known = [f"{OPEN}, see below"] if below and OPEN in (answer.message or "") else answer.lines
-        lines += [f"{named.name}: {said(balance, named)}\n", *(f"    {line}\n" for line in known)]
-    return "".join(lines)
+        if below and OPEN in (answer.message or ""):
+            answer = dataclasses.replace(answer, message=f"{OPEN}, see below")
+        rows.append(Found(named.name, answer, said(balance, named)))
+    return Listing(tuple(rows))
 
 
-def _open_text(space: list[dict[str, str]]) -> str:
+def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:
     """What may be added to the indeterminate ones without a trace."""
-    lines = []
     for number, shares in enumerate(space, start=1):
         k = "k" if len(space) == 1 else f"k{number}"
-        lines.append(f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:\n")
-        lines += [f"    {name}: {_times(share, k)}\n" for name, share in shares.items()]
-    return "\n" + "".join(lines) if lines else ""
+        yield Prose(("",))
+        yield Prose((f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:",))
+        yield Lines(tuple(f"    {name}: {_times(share, k)}" for name, share in shares.items()))
 
 
 def _times(share: str, k: str) -> str:

@@ -15,6 +15,8 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
+from eomgen.report.document import plain_document
+from eomgen.report.statements import Grid, Prose, Statement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
@@ -60,11 +62,16 @@ def simulate(
 
         units = {q: part.unit.si for q, part in model.coordinates.items() if part.unit is not None}
         plot_trajectory(run, prepared(plot), title=model.name, units=units)
-    told = f"The start was {run.assembled}." if run.assembled else ""
-    notes = tuple(note for note in (told, run.remark if run.reactions else "") if note)
-    payload = _run_payload(model, run, files) | _first_instant(equations, run, parameters)
-    outcome = Outcome(_run_text(model, run), payload, "" if run.ok else run.message, notes)
-    return proven(outcome, run.certify() if certify else None)
+    assembled = f"The start was {run.assembled}." if run.assembled else ""
+    notes = tuple(note for note in (assembled, run.remark if run.reactions else "") if note)
+    first = _first_instant(equations, run, parameters)
+    document = plain_document(
+        model,
+        lambda: _run_payload(model, run, files) | first,
+        *_run_statements(model, run),
+        failed="" if run.ok else run.message,
+    )
+    return proven(Outcome(document, notes), run.certify() if certify else None)
 
 
 def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:
@@ -104,18 +111,14 @@ def _write_run(run: Trajectory, output: str) -> None:
         run.to_csv(prepared(output))
 
 
-def _run_text(model: Model, run: Trajectory) -> str:
+def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     """Where the motion ended, and how well the laws were kept."""
-    columns = run.columns()
-    width = max((len(name) for name in columns), default=0)
-    lines = [f"{model.name}: {run.summary()}"]
-    told = run.phases[:MOST_TOLD] if len(run.phases) > 1 else ()
-    lines += [f"  from {phase.start:.6g} s: {phase.ended_by}" for phase in told]
-    lines += [f"  and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
-    if len(run.t):
-        lines += [f"{'':<{width}}  {'start':>16}  {'end':>16}"]
-        lines += [f"{name:<{width}}  {column[0]:>16.9g}  {column[-1]:>16.9g}" for name, column in columns.items()]
-    return "\n".join(lines) + "\n"
+    shown = run.phases[:MOST_TOLD] if len(run.phases) > 1 else ()
+    lines = [f"from {phase.start:.6g} s: {phase.ended_by}" for phase in shown]
+    lines += [f"and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
+    rows = tuple((name, f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in run.columns().items() if len(x))
+    table = (Grid(("", "start", "end"), rows),) if rows else ()
+    return (Prose((f"{model.name}: {run.summary()}",)), *(Prose((f"  {line}",)) for line in lines), *table)
 
 
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:

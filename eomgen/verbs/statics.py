@@ -10,7 +10,6 @@ from eomgen.verbs.outcome import Outcome, told
 def statics(
     model: Model,
     *,
-    format: str = "text",
     plot: str | None = None,
     reaction: str | None = None,
     influence: str | None = None,
@@ -18,10 +17,9 @@ def statics(
     """Reactions, member forces, inner forces of a structure; of a system that is free to move, where it is at rest.
 
     Args:
-        format: text, latex, markdown or json.
         plot: a picture's file.
         reaction: the only one by virtual work.
         influence: of which the influence line is asked too.
     """
     found = found_in(model, reaction=reaction, influence=influence)
-    return told(found, format=format, plot=plot, failed=found.failed)
+    return told(found, plot=plot)

@@ -434,7 +434,7 @@ def test_outputs_and_reactions_at_rest():
 
 def test_the_verb_of_statics_gives_the_places_of_rest():
     model = eomgen.load("models/simple_pendulum.toml")
-    payload = statics(model, format="json").payload
+    payload = statics(model).payload
     assert [e["coordinates"]["theta"]["exact"] for e in payload["equilibria"]] == ["0", "pi"]
     assert payload["complete"] and payload["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
     text = statics(model).text

@@ -530,7 +530,7 @@ def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     from eomgen.verbs.inertia import inertia
 
     picture = tmp_path / "plate.png"
-    outcome = inertia(eomgen.Model(**CH13), format="json", plot=str(picture), about="O")
+    outcome = inertia(eomgen.Model(**CH13), plot=str(picture), about="O")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert outcome.payload["results"]["m(plate)"] == {"exact": "87", "value": 87.0, "unit": "kg"}
     assert outcome.payload["principal_axes"].keys() == {"plate", "O"}

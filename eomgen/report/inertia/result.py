@@ -14,12 +14,13 @@ from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import values_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
+from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.inertia.picture import inertia_picture, values_at_start
 from eomgen.report.inertia.rows import Sum, own_sum, together
 from eomgen.report.inertia.steps import (
     LONGEST,
-    Result,
+    InertiaEntry,
     Section,
     axis_results,
     conventions_grid,
@@ -32,10 +33,10 @@ from eomgen.report.inertia.steps import (
     principal_statements,
     tensor_results,
 )
-from eomgen.report.json_form import steps
-from eomgen.report.setting_steps import setting_steps
-from eomgen.report.shown import Shown
-from eomgen.report.statements import Derivation, Law, Prose, Statement, Step
+from eomgen.report.quantity import Quantity
+from eomgen.report.result import Result
+from eomgen.report.setting_steps import data_step
+from eomgen.report.statements import Law, Prose, Statement, Step
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
@@ -52,32 +53,28 @@ TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
 
 
 @dataclass(frozen=True)
-class Value:
-    """One result: exact text of the grammar with every parameter as a symbol, its number or None, its unit."""
-
-    exact: str
-    value: float | None
-    unit: str
-
-
-@dataclass(frozen=True)
-class Inertia(Shown):
+class Inertia(Result):
     """What is asked of the inertia of a model's bodies.
 
     Args:
         system: whose bodies they are.
         results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
         axes: the principal axes in numbers, the rows of R, by "plate" or "O".
-        derivation: how they are found.
+        steps: how they are found.
     """
 
     system: System
-    results: dict[str, Value]
+    results: dict[str, Quantity]
     axes: dict[str, list[list[float]]]
-    derivation: Derivation
+    steps: tuple[Step, ...]
 
-    def __getitem__(self, name: str) -> Value:
+    def __getitem__(self, name: str) -> Quantity:
         return self.results[name]
+
+    @property
+    def derivation(self) -> Document:
+        """How they are found."""
+        return document_of(self.system.scope.model, "inertia", self.steps)
 
     @property
     def picture(self) -> Picture:
@@ -89,14 +86,9 @@ class Inertia(Shown):
         """
         return inertia_picture(self.system, self.axes)
 
-    def as_dict(self) -> dict[str, Any]:
-        """For `--json`."""
-        return {
-            "name": self.derivation.title,
-            "results": {name: {"exact": r.exact, "value": r.value, "unit": r.unit} for name, r in self.results.items()},
-            "principal_axes": self.axes,
-            "steps": steps(self.derivation),
-        }
+    def entries(self) -> dict[str, Any]:
+        """For machines."""
+        return {"name": self.system.scope.model.name, "results": self.results, "principal_axes": self.axes}
 
 
 def inertia(model: Model, bodies: Sequence[str] = (), *, about: str | None = None, axis: str | None = None) -> Inertia:
@@ -168,23 +160,13 @@ class _Report:
             made.append(self._about(bodies))
         results = [result for _, found, _ in made for result in found]
         axes = {key or "together": rows for _, _, (key, rows) in made if rows is not None}
-        scope = self.system.scope
-        model = scope.model
-        first = (setting_steps(self.system)[0], _conventions())
-        derivation = Derivation(
-            model.name,
-            model.about or "",
-            model.source or "",
-            model.space,
-            "inertia",
-            (*first, *(step for step, _, _ in made)),
-        )
-        values = {name: self._value(r) for name, r in named_results(results).items()}
-        return Inertia(self.system, values, axes, derivation)
+        steps = (data_step(self.system), _conventions(), *(step for step, _, _ in made))
+        values = {name: self._quantity(r) for name, r in named_results(results).items()}
+        return Inertia(self.system, values, axes, steps)
 
-    def _value(self, result: Result) -> Value:
-        values = values_of((result.value,), self.system.scope, self.start)
-        return Value(to_text(result.value), None if values is None else values[0] + 0.0, result.unit)
+    def _quantity(self, entry: InertiaEntry) -> Quantity:
+        values = values_of((entry.value,), self.system.scope, self.start)
+        return Quantity(to_text(entry.value), None if values is None else values[0] + 0.0, entry.unit)
 
     def _own(self, body: str) -> Section:
         return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))

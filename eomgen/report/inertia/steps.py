@@ -26,7 +26,7 @@ PRODUCTS = ((0, 1), (1, 2), (2, 0))
 
 
 @dataclass(frozen=True)
-class Result:
+class InertiaEntry:
     """One result by name: how it is printed, and what it is worth."""
 
     name: str
@@ -63,11 +63,11 @@ class Section:
     def tensor(self) -> Matrix:
         return self.sum.tensor(self.point)
 
-    def named(self, letter: str, index: str, value: Scalar, unit: str) -> Result:
+    def named(self, letter: str, index: str, value: Scalar, unit: str) -> InertiaEntry:
         text = f"{letter}_{index}" if index else letter
         latex = f"{letter}_{{{index}}}" if index else letter
         whose = f"({self.of})" if self.of else ""
-        return Result(text + whose, Law(text, latex), value, unit)
+        return InertiaEntry(text + whose, Law(text, latex), value, unit)
 
 
 def number(section: Section, x: Scalar) -> str:
@@ -88,7 +88,7 @@ def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str |
     return Grid(head, tuple(tuple(map(cell, row)) for row in rows))
 
 
-def line(section: Section, result: Result) -> Formula:
+def line(section: Section, result: InertiaEntry) -> Formula:
     """name = exact = number."""
     sides: list[Side] = [result.label]
     value = number(section, result.value)
@@ -102,7 +102,7 @@ def line(section: Section, result: Result) -> Formula:
 # -- mass and mass centre ---------------------------------------------------------------------------
 
 
-def mass_results(section: Section) -> list[Result]:
+def mass_results(section: Section) -> list[InertiaEntry]:
     """Mass and mass centre."""
     count = 2 if section.plane else 3
     places = zip(AXES[:count], section.sum.com, strict=False)
@@ -153,7 +153,7 @@ def _columns(section: Section) -> list[tuple[int, int]]:
     return [(0, 0), (1, 1), (2, 2), *(PRODUCTS[:1] if section.plane else PRODUCTS)]
 
 
-def tensor_results(section: Section) -> list[Result]:
+def tensor_results(section: Section) -> list[InertiaEntry]:
     """The entries of the tensor, and the textbook's products."""
     I = section.tensor
     found = [section.named("I", AXES[i] + AXES[j], I[i][j], "kg*m^2") for i, j in _columns(section)]
@@ -175,7 +175,7 @@ def conventions_grid(section: Section) -> Grid:
     return grid(section, ("tensor (products with -)", "kg*m^2", "textbook (products with +)", "kg*m^2"), rows)
 
 
-def polar_results(section: Section) -> list[Result]:
+def polar_results(section: Section) -> list[InertiaEntry]:
     """About the point itself, and about the planes through it."""
     if section.flat:
         return []
@@ -185,7 +185,7 @@ def polar_results(section: Section) -> list[Result]:
     return [section.named("J", "P", section.sum.short(polar(section.tensor)), "kg*m^2"), *planes]
 
 
-def axis_results(section: Section, point: Vector, along: Vector) -> list[Result]:
+def axis_results(section: Section, point: Vector, along: Vector) -> list[InertiaEntry]:
     """About the axis through a point."""
     value = section.sum.short(about_axis(section.sum.tensor(point), along))
     return [section.named("J", "axis", value, "kg*m^2")]
@@ -194,7 +194,7 @@ def axis_results(section: Section, point: Vector, along: Vector) -> list[Result]
 # -- principal axes ---------------------------------------------------------------------------------
 
 
-def principal_statements(section: Section) -> tuple[list[Statement], list[Result], list[list[float]] | None]:
+def principal_statements(section: Section) -> tuple[list[Statement], list[InertiaEntry], list[list[float]] | None]:
     """The principal moments, radii of gyration and axes; the rows of R as numbers too, where they have values."""
     if section.flat:
         return [], [], None
@@ -255,6 +255,6 @@ def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | N
     return [list(map(float, row)) for row in axes]
 
 
-def named_results(results: Sequence[Result]) -> dict[str, Result]:
+def named_results(results: Sequence[InertiaEntry]) -> dict[str, InertiaEntry]:
     """The results by name."""
     return {result.name: result for result in results}

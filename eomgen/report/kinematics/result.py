@@ -12,15 +12,16 @@ from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Center
+from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
-from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
 from eomgen.report.kinematics.mechanism_plot import mechanism_picture
 from eomgen.report.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
 from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
+from eomgen.report.quantity import Quantity
+from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.report.shown import Shown
-from eomgen.report.statements import Cell, Derivation, Law, Piece, Prose, Step
+from eomgen.report.statements import Cell, Law, Piece, Prose, Step
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.print.text import text_size, to_text
@@ -30,7 +31,7 @@ LONGEST = 20_000  # characters of an exact value
 
 
 @dataclass(frozen=True)
-class Kinematics(Shown):
+class Kinematics(Result):
     """Velocities, accelerations and centres of rotation at one instant.
 
     Args:
@@ -44,12 +45,13 @@ class Kinematics(Shown):
     relative: tuple[tuple[str, str], ...] = ()
 
     @property
-    def disagreement(self) -> str:
+    def failed(self) -> str:
         """The centres that a drawing finds elsewhere than the velocities; "" as it must be."""
-        return self.state.disagreement
+        wrong = self.state.disagreement
+        return f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
 
     @cached_property
-    def derivation(self) -> Derivation:
+    def derivation(self) -> Document:
         """Step by step."""
         model, system = self.state.system.scope.model, self.state.system
         data = (data_step(system),) if system.symbols.parameters else ()
@@ -57,7 +59,7 @@ class Kinematics(Shown):
         more = (*kinds, *self._seen())
         more = more if self.state.exact else tuple(in_numbers(self.state, step) for step in more)
         steps = (*data, *mechanism_steps(self.state), *more)
-        return Derivation(model.name, model.about or "", model.source or "", model.space, "kinematics", steps)
+        return document_of(model, "kinematics", steps)
 
     def _kinds(self) -> tuple[Step, ...]:
         """Kinds of motion; spins, poles and centrodes where the accelerations are known exactly."""
@@ -106,7 +108,7 @@ class Kinematics(Shown):
 
     # -- for machines --------------------------------------------------------------------------------
 
-    def as_dict(self) -> dict[str, Any]:
+    def entries(self) -> dict[str, Any]:
         """For machines."""
         state = self.state
         mechanism = state.mechanism
@@ -124,7 +126,6 @@ class Kinematics(Shown):
             **self._accelerations(),
             "bodies": field_payload(state.system, state.state, self.kinds) if self._has_bodies else {},
             "relative": [relative_payload(state.system, p, b, state.state) for p, b in self.relative],
-            "steps": steps_as_dicts(self.derivation),
         }
 
     @property
@@ -160,7 +161,7 @@ class Kinematics(Shown):
         parts = {axis: self._value(x, exact) for axis, x in zip(axes, v, strict=False)}
         return {**parts, "magnitude": self._value(self.state.size(v), exact)}
 
-    def _value(self, x: Scalar, exact: bool = True) -> dict[str, Any]:
+    def _value(self, x: Scalar, exact: bool = True) -> Quantity:
         shown = self.state.put((x, 0, 0))[0]
         written = to_text(shown) if exact and self.state.exact and text_size(shown) <= LONGEST else None
-        return {"exact": written, "value": self.state.number(shown)}
+        return Quantity(written, self.state.number(shown), unit=None)

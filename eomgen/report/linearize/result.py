@@ -24,13 +24,12 @@ from eomgen.mechanics.statics.reaction_outputs import name_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.small_motions import small_motion_checks
+from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
-from eomgen.report.json_form import steps as steps_as_dicts
 from eomgen.report.linearize.picture import modes_picture
 from eomgen.report.linearize.steps import linearization_steps
+from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.report.shown import Shown
-from eomgen.report.statements import Derivation
 from eomgen.simulation.phase_change import modes_at_start
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
@@ -41,7 +40,7 @@ METHOD = "linearization"
 
 
 @dataclass(frozen=True)
-class Linearization(Shown):
+class Linearization(Result):
     """Small motions about a place of rest or a steady motion.
 
     Args:
@@ -170,11 +169,11 @@ class Linearization(Shown):
     # -- as it is shown --------------------------------------------------------------------------------------
 
     @cached_property
-    def derivation(self) -> Derivation:
+    def derivation(self) -> Document:
         """The way, step by step."""
         model = self.model
         steps = (data_step(self.small.reference.system), *linearization_steps(self.modes))
-        return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
+        return document_of(model, METHOD, steps)
 
     @property
     def picture(self) -> Picture:
@@ -185,7 +184,7 @@ class Linearization(Shown):
         """
         return modes_picture(self.modes)
 
-    def as_dict(self) -> dict[str, Any]:
+    def entries(self) -> dict[str, Any]:
         """For machines."""
         reference, equations = self.small.reference, self.equations
         parts = self.modes.symmetric_parts if self.small.is_second_order else {}
@@ -237,7 +236,6 @@ class Linearization(Shown):
             "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
-            "steps": steps_as_dicts(self.derivation),
         }
 
     def _family(self, family: Family | None) -> dict[str, Any] | None:

@@ -14,11 +14,10 @@ from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equi
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.model.parts import Model
+from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
-from eomgen.report.json_form import steps as steps_as_dicts
+from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.report.shown import Shown
-from eomgen.report.statements import Derivation
 from eomgen.report.statics.equilibrium_picture import resting_picture
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps
 from eomgen.symbolic.expression.derivative import depends_on
@@ -29,7 +28,7 @@ METHOD = "equilibrium"
 
 
 @dataclass(frozen=True)
-class Resting(Shown):
+class Resting(Result):
     """The places of rest of a system with freedoms.
 
     Args:
@@ -41,11 +40,6 @@ class Resting(Shown):
     found: Equilibria
 
     @property
-    def failed(self) -> str:
-        """What is wrong with the result, in words: nothing."""
-        return ""
-
-    @property
     def places(self) -> tuple[Equilibrium, ...]:
         return self.found.found
 
@@ -55,13 +49,13 @@ class Resting(Shown):
         return reactions_or_why(self.places[0]) if self.places else None
 
     @cached_property
-    def derivation(self) -> Derivation:
+    def derivation(self) -> Document:
         """The way to them, step by step."""
         model = self.model
         steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found, self.reactions))
-        return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
+        return document_of(model, METHOD, steps)
 
-    def as_dict(self) -> dict[str, Any]:
+    def entries(self) -> dict[str, Any]:
         """For machines."""
         return {
             "name": self.model.name,
@@ -72,7 +66,6 @@ class Resting(Shown):
             "indifferent": [q.name for q in self.found.indifferent],
             "chosen": [q.name for q in self.found.chosen],
             "held": list(self.found.statics.held),
-            "steps": steps_as_dicts(self.derivation),
         }
 
     @property

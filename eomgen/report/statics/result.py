@@ -19,10 +19,9 @@ from eomgen.mechanics.structures.blocks import Block, blocks_of
 from eomgen.mechanics.structures.velocity_plan import Plan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
+from eomgen.report.document import Document
 from eomgen.report.figures import Picture
-from eomgen.report.json_form import steps as steps_as_dicts
-from eomgen.report.shown import Shown
-from eomgen.report.statements import Derivation
+from eomgen.report.result import Result
 from eomgen.report.statics.equilibrium_result import Resting, has_freedoms, resting_places
 from eomgen.report.statics.picture import statics_picture
 from eomgen.report.statics.section_steps import (
@@ -40,7 +39,7 @@ from eomgen.symbolic.print.text import to_text
 
 
 @dataclass(frozen=True)
-class Statics(Shown):
+class Statics(Result):
     """A structure at rest: every reaction by virtual work and by equilibrium.
 
     Args:
@@ -111,13 +110,13 @@ class Statics(Shown):
         return {name: x for name, x in zip(names, found, strict=True) if x is not None}
 
     @cached_property
-    def derivation(self) -> Derivation:
+    def derivation(self) -> Document:
         """The solution, step by step."""
         contacts = contacts_step(self.conditions, self.broken)
         influence = () if self.influence is None else (influence_step(self.influence),)
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 
-    def as_dict(self) -> dict[str, Any]:
+    def entries(self) -> dict[str, Any]:
         """For machines."""
         structure = self.found.structure
         return {
@@ -140,7 +139,6 @@ class Statics(Shown):
             "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
             "broken": list(self.broken),
             "agree": self.ok,
-            "steps": steps_as_dicts(self.derivation),
         }
 
     def _reaction(self, reaction: StaticReaction) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""StaticReactions -> Derivation: structure and count, every reaction, each by virtual work, and the comparison."""
+"""StaticReactions -> Document: structure and count, every reaction, each by virtual work, and the comparison."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.mechanics.structures.loose_motion import motion_in_words
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.trusses import is_node
+from eomgen.report.document import Document, document_of
 from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step
-from eomgen.report.statements import Cell, Derivation, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
 from eomgen.report.statics.work_steps import work_step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
@@ -20,7 +21,7 @@ METHOD = "statics"
 Symbols = Mapping[str, Node]
 
 
-def statics_derivation(statics: StaticReactions, values: Mapping[str, float], more: Sequence[Step] = ()) -> Derivation:
+def statics_derivation(statics: StaticReactions, values: Mapping[str, float], more: Sequence[Step] = ()) -> Document:
     """The solution, step by step.
 
     Args:
@@ -38,7 +39,7 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
         *agreement_step(statics),
         *more,
     )
-    return Derivation(model.name, model.about or "", model.source or "", model.space, METHOD, steps)
+    return document_of(model, METHOD, steps)
 
 
 def symbols_of_reactions(statics: StaticReactions) -> dict[str, Node]:

@@ -1,0 +1,106 @@
+"""What a verb gives, as one value: sections for people, quantities for machines, the proof; each format draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate
+from eomgen.report.quantity import Quantity
+from eomgen.report.statements import Equation, Lines, Meaning, Statement, Step, Table
+from eomgen.symbolic.expression.graph import Node, Scalar
+
+DISTRUST = "the certificate FAILS: do not trust this result"
+NOTHING_CHECKED = "warning: nothing of this result could be checked"
+
+
+def _nothing() -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a verb gives.
+
+    Args:
+        title: the model's name.
+        about: a remark of the user, "" where there is none.
+        source: where the system comes from, "".
+        space: "plane" or "space".
+        method: "lagrange", "statics", ...; "" where nothing is derived.
+        steps: its sections, in order.
+        equations: the equations of motion as printed; empty where they are too long.
+        definitions: sub-expressions with a name of their own, in the order of their use.
+        entries: gives what machines get by name, with quantities as leaves; made when they are asked.
+        failed: what is wrong with the result, or open in it; "" as it must be.
+        certificate: the proof; None where none was made.
+    """
+
+    title: str
+    about: str = ""
+    source: str = ""
+    space: str = ""
+    method: str = ""
+    steps: tuple[Step, ...] = ()
+    equations: tuple[Equation, ...] = ()
+    definitions: tuple[tuple[Node, Scalar], ...] = ()
+    entries: Callable[[], Mapping[str, Any]] = _nothing
+    failed: str = ""
+    certificate: Certificate | None = None
+
+    @property
+    def nomenclature(self) -> tuple[Meaning, ...]:
+        """What every symbol stands for."""
+        tables = (s for step in self.steps for s in step.statements if isinstance(s, Table))
+        return tuple(row for table in tables for row in table.rows)
+
+    @property
+    def has_heads(self) -> bool:
+        """Whether its sections have titles: then it has one too."""
+        return any(step.title for step in self.steps)
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """Every quantity by its place among the entries: reactions.reaction_y(A)."""
+        return dict(_leaves("", self.entries()))
+
+    @property
+    def distrust(self) -> str:
+        """That the proof contradicts the result, in words; "" as it must be."""
+        return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
+
+    def proven(self, certificate: Certificate | None) -> Document:
+        """With its proof; None: none was asked for."""
+        entries = self.entries
+        proof = None if certificate is None else certificate.as_dict()
+        return replace(self, certificate=certificate, entries=lambda: {**entries(), "certificate": proof})
+
+
+def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
+    """The document of a model, under its name, its remark and its source."""
+    return Document(model.name, model.about or "", model.source or "", model.space, method, steps)
+
+
+def plain_document(
+    model: Model, entries: Callable[[], Mapping[str, Any]], *statements: Statement, failed: str = ""
+) -> Document:
+    """A document of one section without a head: what is no derivation."""
+    return Document(model.name, steps=(Step("", "", statements),), entries=entries, failed=failed)
+
+
+def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:
+    """Lines of text that are of no model."""
+    return Document("", steps=(Step("", "", (Lines(lines),)),), entries=entries)
+
+
+def _leaves(name: str, entry: Any) -> Iterator[tuple[str, Quantity]]:
+    if isinstance(entry, Quantity):
+        yield name, entry
+    elif isinstance(entry, Mapping):
+        for key, inner in entry.items():
+            yield from _leaves(f"{name}.{key}" if name else str(key), inner)
+    elif isinstance(entry, (list, tuple)):
+        for k, inner in enumerate(entry):
+            yield from _leaves(f"{name}[{k}]", inner)

@@ -1,0 +1,53 @@
+"""What was found of one quantity, and how it is told: exact, as a number, by which way; else what is missing."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One thing that was found: exact, as a number, by which way; else what is missing.
+
+    Args:
+        exact: text of the grammar with every parameter as a symbol, or None.
+        value: a number, parameters and start (or instant) put in, or None.
+        unit: of the number; "" for SI, None where nobody names one.
+        method: the way on which it was found.
+        message: what is missing, or None.
+    """
+
+    exact: str | None = None
+    value: float | None = None
+    unit: str | None = ""
+    method: str = ""
+    message: str | None = None
+
+    @property
+    def answered(self) -> bool:
+        return self.exact is not None or self.value is not None
+
+    @property
+    def number(self) -> str:
+        """The number with its unit, as it is printed; "" where there is none."""
+        return "" if self.value is None else f"{self.value:.10g} {self.unit or ''}".rstrip()
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each thing that is known of it."""
+        if not self.answered:
+            return [f"not answered: {self.message}"]
+        found = [f"= {part}" for part in (self.exact, self.number) if part]
+        found[-1] += f"   [{self.method}]" if self.method else ""
+        return [*found, f"({self.message})"] if self.message else found
+
+    def as_dict(self) -> dict[str, Any]:
+        """For `--json`; without what nobody says: unit, method and message."""
+        told = {"exact", "value"} | ({"unit"} if self.unit is not None else set())
+        told |= {"method", "message"} if self.method or self.message else set()
+        return {name: x for name, x in asdict(self).items() if name in told}
+
+    def _repr_markdown_(self) -> str:
+        parts = [f"`{self.exact}`" if self.exact is not None else "", self.number]
+        return " = ".join(part for part in parts if part) or (self.message or "")
