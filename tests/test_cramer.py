@@ -11,7 +11,7 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import RATIONAL, evaluate
-from eomgen.symbolic.solve.cramer import components, determinant, matching, solved
+from eomgen.symbolic.solve.cramer import components, determinant, matching, solution_by_minors
 
 
 def random_system(seed: int, n: int, density: float):
@@ -34,7 +34,7 @@ def random_system(seed: int, n: int, density: float):
 def test_the_solution_solves(seed, n, density):
     """A X = right, exactly."""
     rows, right = random_system(seed, n, density)
-    X, _ = solved(rows, right)
+    X, _ = solution_by_minors(rows, right)
     rng = Random(seed)
     symbols = symbols_of([x for row in (*rows, *map(_by_place, right)) for x in row.values()])
     values = {x: Fraction(rng.choice((-1, 1)) * rng.randint(1, 3000), rng.randint(1, 9)) for x in symbols}
@@ -52,7 +52,7 @@ def test_no_pivot_vanishes_where_the_determinant_does_not():
     """[[x, 1], [1, y]] at x = y = 0 is regular."""
     g = Graph()
     x, y, a, b, c, d = (g.symbol(name) for name in "xyabcd")
-    X, blocks = solved([{0: x, 1: a}, {0: b, 1: y}], [[c], [d]])
+    X, blocks = solution_by_minors([{0: x, 1: a}, {0: b, 1: y}], [[c], [d]])
     values = dict(zip((x, y, a, b, c, d), map(Fraction, (0, 0, 2, 3, 4, 5)), strict=True))
     assert evaluate([X[0][0], X[1][0]], values, RATIONAL) == [Fraction(5, 3), 2]
     assert [block.unknowns for block in blocks] == [(0, 1)]
@@ -63,7 +63,7 @@ def test_blocks_are_as_small_as_can_be():
     g = Graph()
     s = [g.symbol(f"s{k}") for k in range(7)]
     rows = [{0: s[0], 1: s[1]}, {0: s[2], 1: s[3]}, {1: s[4], 2: s[5]}, {2: s[6], 3: -1}]
-    _, blocks = solved(rows, [[1]] * 4)
+    _, blocks = solution_by_minors(rows, [[1]] * 4)
     assert [(block.unknowns, block.equations) for block in blocks] == [((0, 1), (0, 1)), ((2,), (2,))]
 
 
@@ -89,4 +89,4 @@ def test_a_block_that_is_too_large_is_refused():
     g = Graph()
     rows = [{j: g.symbol(f"x{i}_{j}") for j in range(11)} for i in range(11)]
     with pytest.raises(DerivationError, match="11 unknowns hang together"):
-        solved(rows, [[1]] * 11)
+        solution_by_minors(rows, [[1]] * 11)

@@ -7,7 +7,7 @@ import pytest
 
 import eomgen
 from eomgen.symbolic.numeric import dense, modular
-from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution
+from eomgen.symbolic.numeric.dense import dense_solution, independent, scaled_condition
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 
 SMALLEST = 1e-11
@@ -22,7 +22,7 @@ def test_a_solution_keeps_its_digits_in_any_unit_of_mass(unit):
     A = np.block([[unit * M, -J.T], [J, np.zeros((2, 2))]])
     right = np.concatenate([unit * (M @ a - J.T @ lam), J @ a])
     assert independent(J, smallest=SMALLEST)
-    assert solution(A, right, regular=True, smallest=SMALLEST) == pytest.approx([*a, *(unit * lam)], rel=1e-11)
+    assert dense_solution(A, right, regular=True, smallest=SMALLEST) == pytest.approx([*a, *(unit * lam)], rel=1e-11)
 
 
 def test_rows_that_follow_from_others_leave_the_accelerations_as_they_are():
@@ -30,14 +30,14 @@ def test_rows_that_follow_from_others_leave_the_accelerations_as_they_are():
     J = np.array([[1.0, 1.0], [1e3, 1e3]])
     A = np.block([[np.eye(2), -J.T], [J, np.zeros((2, 2))]])
     assert not independent(J, smallest=SMALLEST)
-    a = solution(A, np.array([1.0, 0.0, 0.0, 0.0]), regular=False, smallest=SMALLEST)[:2]
+    a = dense_solution(A, np.array([1.0, 0.0, 0.0, 0.0]), regular=False, smallest=SMALLEST)[:2]
     assert a == pytest.approx([0.5, -0.5])
 
 
 def test_a_system_without_solution_has_no_value():
     """0 a = 1"""
     with pytest.raises(NoValue):
-        solution(np.zeros((1, 1)), np.ones(1), regular=True, smallest=SMALLEST)
+        dense_solution(np.zeros((1, 1)), np.ones(1), regular=True, smallest=SMALLEST)
 
 
 def test_the_condition_of_a_mass_matrix_knows_no_units():
@@ -54,7 +54,7 @@ def test_a_row_follows_in_the_reals_as_in_the_prime_field(seed):
     row = shares @ rows
     number = fifty_digits().number
     for asked in (row, row + np.eye(5, dtype=int)[seed], 0 * row):
-        real = dense.follows([[number(int(x)) for x in r] for r in rows], [number(int(x)) for x in asked])
+        real = dense.follows_in_digits([[number(int(x)) for x in r] for r in rows], [number(int(x)) for x in asked])
         assert real == modular.follows(rows.tolist(), asked.tolist()) == (np.linalg.matrix_rank([*rows, asked]) == 3)
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from eomgen.symbolic.expression.expressions import Expression, as_expression, parse
-from eomgen.symbolic.expression.functions import chosen, cos, sin
+from eomgen.symbolic.expression.functions import cos, selected, sin
 
 A, B = parse("x + 2*y"), parse("-x/y^2")
 VALUES = {"x": Fraction(3, 7), "y": Fraction(-5, 2), "pi": 3}
@@ -43,4 +43,4 @@ def test_sines_of_formulas_are_formulas():
 
 def test_a_piecewise_law_chooses_by_the_value():
     """if_below where a <= bound: at the bound itself too."""
-    assert [chosen(s, 2, "below", "above") for s in (1, 2, Fraction(5, 2))] == ["below", "below", "above"]
+    assert [selected(s, 2, "below", "above") for s in (1, 2, Fraction(5, 2))] == ["below", "below", "above"]

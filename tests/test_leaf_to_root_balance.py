@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eomgen.simulation.leaf_to_root_balance import solved, steps_of
+from eomgen.simulation.leaf_to_root_balance import balanced_from_leaves, steps_of
 
 
 def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Generator) -> tuple[np.ndarray, list]:
@@ -34,7 +34,7 @@ def test_blocks_give_what_the_whole_gives(parents, loops, core):
     rho = np.random.default_rng(3).normal(size=(4, A.shape[2]))
     b = (A @ rho[:, :, None])[:, :, 0]
     steps = steps_of(A[0], (A != 0).any(axis=0), groups)
-    found, regular = solved(A, b, steps)
+    found, regular = balanced_from_leaves(A, b, steps)
     assert regular.all()
     assert found == pytest.approx(rho, abs=1e-10)
     assert sorted(np.concatenate([step.columns for step in steps])) == list(range(A.shape[2]))
@@ -44,5 +44,5 @@ def test_blocks_give_what_the_whole_gives(parents, loops, core):
 def test_a_state_in_which_a_block_is_singular_is_told():
     A, groups = _bodies([-1, 0], [], np.random.default_rng(4))
     A[2, :, 7] = A[2, :, 6]
-    _, regular = solved(A, np.ones(A.shape[:2]), steps_of(A[0], A[0] != 0, groups))
+    _, regular = balanced_from_leaves(A, np.ones(A.shape[:2]), steps_of(A[0], A[0] != 0, groups))
     assert list(regular) == [True, True, False, True]

@@ -11,7 +11,7 @@ from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.solve.linear import solved
+from eomgen.symbolic.solve.linear import sparse_solution
 
 
 def system(rows, right, unknowns, **how):
@@ -22,7 +22,7 @@ def system(rows, right, unknowns, **how):
         state = {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))}
         return evaluate(scalars, state, fifty_digits())
 
-    return solved(rows, right, unknowns, values, **how)
+    return sparse_solution(rows, right, unknowns, values, **how)
 
 
 def rank(a) -> int:

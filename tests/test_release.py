@@ -7,7 +7,7 @@ import pytest
 import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.release import released, stays_straight
-from eomgen.mechanics.constraints.ties import rows_of
+from eomgen.mechanics.constraints.ties import rows_of_tie
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -60,7 +60,7 @@ def test_a_displacement_stands_last_and_its_rate_is_that_of_the_gap():
     before, after = freed(WIRE, "wire")
     assert [q.name for q in before.symbols.q] == ["s", "theta"]
     assert [q.name for q in after.symbols.q] == ["s", "theta", "wire_gap"]
-    (row,) = rows_of(after.motion, "wire")
+    (row,) = rows_of_tie(after.motion, "wire")
     numbers = [0.3, 0.7, 0.2, 0.5, -0.4, 0.9]
     state = dict(zip((*after.symbols.q, *after.symbols.u), numbers, strict=True))
     state |= {node: 1.0 for node in after.symbols.parameters.values()}

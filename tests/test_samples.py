@@ -19,7 +19,7 @@ from eomgen.errors import ModelError, UsageError
 from eomgen.model.samples import samples
 from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.splines import Sampled, number_of, spline_of
+from eomgen.symbolic.expression.splines import Sampled, number_of_sampled, spline_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.sympy_form import to_sympy
 from eomgen.symbolic.print.text import to_text
@@ -118,7 +118,7 @@ def test_every_scalar_gives_the_same_value(pi_power):
     sampled = Sampled("f", spline_of(*random_samples(7)), pi_power)
     graph = Graph()
     t = graph.symbol("t")
-    x = graph.call("sampled", t, number_of(sampled))
+    x = graph.call("sampled", t, number_of_sampled(sampled))
     assert to_text(x) == "f"
     form = to_sympy([x])[0]
     for at in (-3, Fraction(1, 3), 2, 40):

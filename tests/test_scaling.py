@@ -10,7 +10,7 @@ from eomgen.symbolic.expression.functions import sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.scaling import monomial, scaled, solved
+from eomgen.symbolic.solve.scaling import monomial, scaled_solution, without_common_factors
 
 
 def values(scalars):
@@ -35,7 +35,7 @@ def test_lengths_and_heights_leave_plain_numbers():
     g = Graph()
     a, h = g.symbol("a"), g.symbol("h")
     L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
-    found = scaled([{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, 1], {a, h})
+    found = without_common_factors([{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, 1], {a, h})
     assert all(type(x) is not Node for row in found.rows for x in row.values())
 
 
@@ -44,7 +44,7 @@ def test_a_root_of_a_quotient_is_two_roots():
     g = Graph()
     a, h = g.symbol("a"), g.symbol("h")
     f = 3 * a * a + h * h
-    found = scaled([{0: -3 * a / sqrt(f), 1: a * sqrt(3 / f)}, {0: h, 1: a}], [0, 0], {a, h})
+    found = without_common_factors([{0: -3 * a / sqrt(f), 1: a * sqrt(3 / f)}, {0: h, 1: a}], [0, 0], {a, h})
     assert all("sqrt(3*a^2" not in to_text(x) for row in found.rows for x in row.values())
     assert monomial(g.sqrt(5 * a)).powers == monomial(g.sqrt(5) * g.sqrt(a)).powers
 
@@ -55,7 +55,7 @@ def test_the_solution_is_that_of_the_equations_as_given():
     a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
     L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
     rows, right = [{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, -P]
-    x = solved(rows, right, 2, values, sure_symbols={a, h}).constants
+    x = scaled_solution(rows, right, 2, values, sure_symbols={a, h}).constants
     pairs = [(sum((c * x[j] for j, c in row.items()), start=0), b) for row, b in zip(rows, right, strict=True)]
     assert equal_at_random_states(pairs).equal
 
@@ -64,7 +64,7 @@ def test_shares_of_free_unknowns_are_those_of_the_unscaled_ones():
     """a x0 + h x1 = P: x0 = P/a - (h/a) x1."""
     g = Graph()
     a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
-    solution = solved([{0: a, 1: h}], [P], 2, values, sure_symbols={a, h})
+    solution = scaled_solution([{0: a, 1: h}], [P], 2, values, sure_symbols={a, h})
     (free,) = solution.free
     j = 1 - free
     total = (a, h)[j] * (solution.constants[j] - solution.shares[j][free] * P) + (a, h)[free] * P
@@ -75,5 +75,5 @@ def test_what_may_vanish_is_not_divided_by():
     """sin(theta) of a coordinate stays in its column."""
     g = Graph()
     theta, a = g.symbol("theta"), g.symbol("a")
-    found = scaled([{0: a * sin(theta)}], [1], {a})
+    found = without_common_factors([{0: a * sin(theta)}], [1], {a})
     assert equal_at_random_states([(found.rows[0][0], sin(theta))]).equal

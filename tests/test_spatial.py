@@ -14,9 +14,9 @@ from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
-    Inertia,
     Matrix,
     Pose,
+    SpatialInertia,
     Twist,
     Vector,
     Wrench,
@@ -222,13 +222,13 @@ def tensor(particles: list[Particle], about: Vector) -> Matrix:
     return I
 
 
-def inertia_of(particles: list[Particle]) -> Inertia:
+def inertia_of(particles: list[Particle]) -> SpatialInertia:
     """The inertia from mass, mass centre and the tensor about it."""
     total = sum((m for m, _ in particles), start=0)
     com = ZERO
     for m, place in particles:
         com = plus(com, times(m / total, place))
-    return Inertia.about_center(total, com, tensor(particles, com))
+    return SpatialInertia.about_center(total, com, tensor(particles, com))
 
 
 def test_the_parallel_axes_theorem_moves_an_inertia_to_the_origin(world):

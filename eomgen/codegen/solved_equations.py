@@ -81,6 +81,6 @@ def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -
     rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
     right = [inner(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
     entries = [x for row in rows for x in row.values()]
-    solution = linear.solved(rows, right, len(kept), values_at_a_state(system, entries))
+    solution = linear.sparse_solution(rows, right, len(kept), values_at_a_state(system, entries))
     found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
     return {x: found.get(x, 0) for x in system.symbols.lam}

@@ -6,7 +6,7 @@ from fractions import Fraction
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.expressions import Expression
 
-Number = int | Fraction | float
+AnyNumber = int | Fraction | float
 
 
 def in_order(parameters: Mapping[str, Expression | None]) -> tuple[list[str], list[list[str]]]:
@@ -36,7 +36,7 @@ def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[
     return iter(sorted(value.names & parameters.keys())) if value is not None else iter(())
 
 
-def number_of(expression: Expression, values: Mapping[str, Number]) -> Number | None:
+def value_of(expression: Expression, values: Mapping[str, AnyNumber]) -> AnyNumber | None:
     """What an expression is worth with these values (`pi` among them); None with names besides, or without value."""
     if not expression.names <= values.keys():
         return None

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Equation, Leaf
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expression.expressions import Expression
 
@@ -27,7 +27,7 @@ class Catalog:
         return tuple(leaves_of(self.model, ()))
 
     @cached_property
-    def broken(self) -> frozenset[Path]:
+    def broken(self) -> frozenset[DocumentPath]:
         """The paths of what could not be read, and of all that it stands in."""
         return frozenset(f.path[:k] for f in self.found for k in range(1, len(f.path) + 1))
 
@@ -95,7 +95,7 @@ class Catalog:
         return tuple(f"{name}.{node}" for name, truss in trusses if truss for node in truss.nodes or {})
 
 
-def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+def findings_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
     """Exactly one of these fields is given."""
     given = [key for key in keys if getattr(part, key) is not None]
     listed = " and ".join(f"'{key}'" for key in keys)
@@ -105,7 +105,7 @@ def one_of(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> It
         yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
 
 
-def not_in_the_plane(catalog: Catalog, path: Path, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+def not_in_the_plane(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
     """Fields for space that are given in the plane."""
     for key in keys if catalog.model.space == "plane" else ():
         if getattr(part, key) is not None:

@@ -18,9 +18,9 @@ from eomgen.symbolic.expression.functions import cos, over, sin
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import (
     ZERO,
-    Inertia,
     Matrix,
     Pose,
+    SpatialInertia,
     Vector,
     added,
     minus,
@@ -72,16 +72,16 @@ def composite_of(pieces: Sequence[Any], mass: Any, value: Value) -> Composite:
     com = _center(placed, _weights(pieces, masses, value))
     I: Matrix = (ZERO, ZERO, ZERO)
     for part in placed:
-        I = added(I, scaled(part.sign, about(part.mass, com)))
+        I = added(I, matrix_times(part.sign, about(part.mass, com)))
     return Composite(placed, MassProperties(m, com, I))
 
 
 def about(mass: MassProperties, point: Vector) -> Matrix:
     """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
-    return Inertia.about_center(mass.m, minus(mass.com, point), mass.I).I
+    return SpatialInertia.about_center(mass.m, minus(mass.com, point), mass.I).I
 
 
-def scaled(k: Any, A: Matrix) -> Matrix:
+def matrix_times(k: Any, A: Matrix) -> Matrix:
     """k A"""
     return (times(k, A[0]), times(k, A[1]), times(k, A[2]))
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Decimal, Finding, Path, shown
+from eomgen.model.findings import Decimal, DocumentPath, Finding, shown
 from eomgen.model.table import Table
 
 
@@ -18,7 +18,7 @@ class ListRule:
     most: int | None = None
     single: bool = False
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> tuple | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> tuple | None:
         if self.single and not isinstance(raw, (list, tuple)):
             one = self.item.read(raw, path, found)
             return None if one is None else (one,)
@@ -33,7 +33,7 @@ class ListRule:
         items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
         return None if None in items else tuple(items)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         for i, x in enumerate(value):
             yield from self.item.leaves(x, path if self.single and len(value) == 1 else (*path, i), part)
 
@@ -51,13 +51,13 @@ class TableRule:
     item: Any
     what: str
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Table | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Table | None:
         if not isinstance(raw, Mapping):
             found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
             return None
         return Table({str(name): self.item.read(x, (*path, name), found) for name, x in raw.items()})
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         for name, x in value.items():
             if x is not None:
                 yield from self.item.leaves(x, (*path, name), part)
@@ -76,10 +76,10 @@ class EitherRule:
     def _rule(self, value: Any) -> Any:
         return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         return self._rule(raw).read(raw, path, found)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield from self._rule(value).leaves(value, path, part)
 
     def schema(self, definitions: dict) -> dict:

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.findings import Decimal, Finding, Path, article, nearest, shown, unknown_keys
+from eomgen.model.findings import Decimal, DocumentPath, Finding, article, nearest, shown, unknown_keys
 from eomgen.symbolic.expression.expressions import Expression, as_expression, parse_equation
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
@@ -28,7 +28,7 @@ EVERYTHING = "all names, accelerations and functions of the motion"
 class Leaf:
     """A value that a rule reads at once (an expression, a vector, a name), and where it stands."""
 
-    path: Path
+    path: DocumentPath
     rule: Any
     value: Any
     part: Any = None
@@ -54,14 +54,14 @@ class FormulaRule:
     also: tuple[str, ...] = ()
     functions: tuple[str, ...] = ()
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if isinstance(raw, Mapping):
             return self._quantity(raw, path, found)
         if isinstance(raw, str) and raw in self.words:
             return str(raw)
         return _expression(raw, path, found, references=bool(self.functions))
 
-    def _quantity(self, raw: Mapping, path: Path, found: list[Finding]) -> Expression | None:
+    def _quantity(self, raw: Mapping, path: DocumentPath, found: list[Finding]) -> Expression | None:
         unknown_keys(raw, ("value", "unit"), path, found, "a quantity")
         if "value" not in raw:
             found.append(Finding(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
@@ -75,7 +75,7 @@ class FormulaRule:
             found.append(mixed(value, unit, (*path, "value")))
         return in_si(value, unit)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -99,13 +99,13 @@ def is_mixed(value: Expression, unit: Unit) -> bool:
     return bool(value.names - {"pi", "t"}) and (unit.factor, unit.pi_power) != (1, 0)
 
 
-def mixed(value: Expression, unit: Unit, path: Path) -> Finding:
+def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Finding:
     """What is wrong with a value that is_mixed."""
     what = f"'{value.text}' has names in it, which are in SI, but the unit '{unit.text}' is not"
     return Finding(path, what, "leave the unit out, or give it to the numbers")
 
 
-def _expression(raw: Any, path: Path, found: list[Finding], references: bool = False) -> Expression | None:
+def _expression(raw: Any, path: DocumentPath, found: list[Finding], references: bool = False) -> Expression | None:
     if isinstance(raw, bool) or not isinstance(raw, (int, float, str, Fraction, Expression)):
         found.append(Finding(path, f"a number or an expression is needed here, not {shown(raw)}"))
         return None
@@ -122,10 +122,10 @@ class OutputRule:
 
     scope: str = EVERYTHING
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Expression | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Expression | None:
         return _expression(raw, path, found, references=True)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -147,7 +147,7 @@ class EquationRule:
 
     scope: str = EVERYTHING
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Equation | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Equation | None:
         if isinstance(raw, Equation):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
@@ -159,7 +159,7 @@ class EquationRule:
             found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -177,7 +177,7 @@ class AtRest:
 class InstantRule(EquationRule):
     """An equation that says when, or the word "equilibrium"."""
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if isinstance(raw, AtRest) or raw == AtRest.text:
             return AtRest()
         return EquationRule.read(self, raw, path, found)
@@ -202,7 +202,7 @@ class VectorRule:
     point: bool = False
     nonzero: bool = False
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if self.point and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):
@@ -212,7 +212,7 @@ class VectorRule:
         items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
         return None if None in items else tuple(items)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
         if not isinstance(value, str):
             for i, x in enumerate(value):
@@ -236,14 +236,14 @@ class AxialRule:
     item: FormulaRule
     lengths: tuple[int, ...] = (3,)
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if not isinstance(raw, (list, tuple)):
             value = self.item.read(raw, path, found)
             return None if value is None else (value,)
         items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
         return None if None in items else tuple(items)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
         for i, x in enumerate(value):
             yield from self.item.leaves(x, path if len(value) == 1 else (*path, i), part)
@@ -265,7 +265,7 @@ class NameRule:
 
     of: str
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> str | None:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
         mend = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
@@ -278,7 +278,7 @@ class NameRule:
         )
         return None
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -291,7 +291,7 @@ class TextRule:
 
     options: tuple[str, ...] = ()
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> str | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> str | None:
         if not isinstance(raw, str) or isinstance(raw, Decimal):
             found.append(Finding(path, f"a text is needed here, not {shown(raw)}"))
             return None
@@ -302,7 +302,7 @@ class TextRule:
             return None
         return str(raw)
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -313,13 +313,13 @@ class TextRule:
 class FlagRule:
     """true or false."""
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> bool | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> bool | None:
         if isinstance(raw, bool):
             return raw
         found.append(Finding(path, f"true or false is needed here, not {shown(raw)}"))
         return None
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:
@@ -330,7 +330,7 @@ class FlagRule:
 class UnitRule:
     """The text of a unit: `kg*m^2`."""
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Unit | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Unit | None:
         if isinstance(raw, Unit):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
@@ -342,7 +342,7 @@ class UnitRule:
             found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict) -> dict:

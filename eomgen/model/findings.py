@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from itertools import islice
 from typing import Any
 
-Path = tuple[str | int, ...]
+DocumentPath = tuple[str | int, ...]
 
 
 class Decimal(str):
@@ -28,7 +28,7 @@ class Finding:
         raw: what could not be read (names in it count as used).
     """
 
-    path: Path
+    path: DocumentPath
     what: str
     mend: str = ""
     column: int | None = None
@@ -90,7 +90,7 @@ def one_of(table: str) -> str:
     return f"{'an' if TABLES[table][0] in 'aeiou' else 'a'} {TABLES[table]}"
 
 
-def whereabouts(path: Path, what: str = "") -> str:
+def whereabouts(path: DocumentPath, what: str = "") -> str:
     """A part in words: "the joint of body 'hand'", "parameter 'm'"."""
     if len(path) < 2 or path[0] not in TABLES:
         return f"[{path[0]}]" if path else what or "the model"
@@ -101,7 +101,7 @@ def whereabouts(path: Path, what: str = "") -> str:
     return " of ".join([*(f"the {key}" for key in reversed(inner)), owner])
 
 
-def unknown_keys(raw: Mapping, known: Iterable[str], path: Path, found: list[Finding], what: str) -> None:
+def unknown_keys(raw: Mapping, known: Iterable[str], path: DocumentPath, found: list[Finding], what: str) -> None:
     """Every key of a table that nobody reads is a finding."""
     strange = [key for key in raw if key not in known]
     listed = ", ".join(f"'{name}'" for name in known)

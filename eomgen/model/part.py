@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, in_si
-from eomgen.model.findings import Finding, Path, nearest, shown, unknown_keys, whereabouts
+from eomgen.model.findings import DocumentPath, Finding, nearest, shown, unknown_keys, whereabouts
 from eomgen.symbolic.expression.expressions import Expression
 
 
@@ -116,7 +116,7 @@ class PartRule:
 
     cls: Any
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if isinstance(raw, self.cls):
             return raw
         if not isinstance(raw, Mapping):
@@ -126,18 +126,18 @@ class PartRule:
             return self._shorthand(raw, path, found)
         return read_part(self.cls, raw, path, found)
 
-    def _shorthand(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def _shorthand(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         (slot,) = (s for s in slots_of(self.cls) if s.name == self.cls.shorthand)
         return made(self.cls, {slot.name: slot.rule.read(raw, path, found)})
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)
 
     def schema(self, definitions: dict) -> dict:
         return part_schema(self.cls, definitions)
 
 
-def read_part(cls: Any, raw: Mapping, path: Path, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
+def read_part(cls: Any, raw: Mapping, path: DocumentPath, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
     """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
     slots = slots_of(cls)
     inline = next((slot for slot in slots if slot.inline), None)
@@ -163,7 +163,7 @@ def altered(part: Any, **changes: Any) -> Any:
     return made(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
 
 
-def leaves_of(part: Any, path: Path) -> Iterator[Leaf]:
+def leaves_of(part: Any, path: DocumentPath) -> Iterator[Leaf]:
     """Every value of a part and of the parts in it, with its path and its rule."""
     for slot in slots_of(type(part)):
         value = getattr(part, slot.name)
@@ -183,7 +183,7 @@ class SeamRule:
     what: str
     members: tuple[Any, ...]
 
-    def read(self, raw: Any, path: Path, found: list[Finding], beside: tuple[str, ...] = ()) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding], beside: tuple[str, ...] = ()) -> Any:
         """A member of the seam; the keys `beside` its own are read already, and are known here."""
         if isinstance(raw, self.members):
             return raw
@@ -202,7 +202,7 @@ class SeamRule:
             return None
         return read_part(kinds[kind], raw, path, found, known=("kind", *beside))
 
-    def leaves(self, value: Any, path: Path, part: Any) -> Iterator[Leaf]:
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)
 
     def schema(self, definitions: dict) -> dict:

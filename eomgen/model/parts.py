@@ -15,7 +15,7 @@ from eomgen.model.kinds import (
     Coordinates,
     Flag,
     Formula,
-    Inertia,
+    InertiaTensor,
     Mass,
     MotionLaw,
     MovingPlace,
@@ -134,7 +134,7 @@ class Piece(Part):
 
 
 Pieces = Annotated[tuple[Piece, ...], ListRule(PartRule(Piece))]
-Points = Annotated[Table[tuple[Expression, ...]], TableRule(MovingPlace.__metadata__[0], "point")]
+PointTable = Annotated[Table[tuple[Expression, ...]], TableRule(MovingPlace.__metadata__[0], "point")]
 GroundPoints = Annotated[Table[tuple[Expression, ...]], TableRule(Place.__metadata__[0], "point")]
 
 
@@ -155,9 +155,9 @@ class Body(Part):
     shape: ShapeField | None = None
     mass: Mass | None = None
     center: Place | None = None
-    inertia: Inertia | None = None
+    inertia: InertiaTensor | None = None
     parts: Pieces | None = None
-    points: Points = Table()
+    points: PointTable = Table()
     line: TwoOwnPoints | None = None
     joint: JointField | None = None
     measured: Flag = False
@@ -182,7 +182,7 @@ class Linearize(Part):
     coordinates: Coordinates | None = None
 
 
-Equations = Annotated[tuple[Equation, ...], ListRule(EquationRule(), single=True)]
+OutputEquations = Annotated[tuple[Equation, ...], ListRule(EquationRule(), single=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,8 +190,8 @@ class Given(Part):
     """Kinematics at one instant: known velocities and accelerations as equations."""
 
     title: ClassVar[str] = "[given]"
-    velocity: Equations | None = None
-    acceleration: Equations | None = None
+    velocity: OutputEquations | None = None
+    acceleration: OutputEquations | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

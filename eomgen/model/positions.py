@@ -5,7 +5,7 @@ from bisect import bisect_right
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-Path = tuple[str | int, ...]
+DocumentPath = tuple[str | int, ...]
 
 DEEPEST = 16  # pieces of a dotted key
 MOST_DOTS = 5000
@@ -43,9 +43,9 @@ class Index:
     """
 
     text: str
-    keys: dict[Path, Span] = field(default_factory=dict)
-    values: dict[Path, Span] = field(default_factory=dict)
-    twice: list[tuple[Path, Span, Span | None]] = field(default_factory=list)
+    keys: dict[DocumentPath, Span] = field(default_factory=dict)
+    values: dict[DocumentPath, Span] = field(default_factory=dict)
+    twice: list[tuple[DocumentPath, Span, Span | None]] = field(default_factory=list)
     deep: Span | None = None
     _lines: list[int] = field(default_factory=list)
 
@@ -63,7 +63,7 @@ class Index:
         end = self.text.find("\n", start)
         return self.text[start : end if end >= 0 else len(self.text)]
 
-    def nearest(self, path: Path, key: bool = False) -> Span:
+    def nearest(self, path: DocumentPath, key: bool = False) -> Span:
         """The span of the value at a path (or of its key), else of what it is in."""
         if key and path in self.keys:
             return self.keys[path]
@@ -73,7 +73,7 @@ class Index:
             path = path[:-1]
         return Span(0, 0)
 
-    def within(self, path: Path, column: int, length: int) -> Span:
+    def within(self, path: DocumentPath, column: int, length: int) -> Span:
         """The span of some characters of the string that is the value at a path."""
         whole = self.nearest(path)
         offsets = _offsets(self.text[whole.start : whole.end])
@@ -112,11 +112,11 @@ class _Scanner:
 
     def __init__(self, text: str) -> None:
         self.text, self.at, self.index = text, 0, Index(text)
-        self.counts: dict[Path, int] = {}
-        self.headers: set[Path] = set()
+        self.counts: dict[DocumentPath, int] = {}
+        self.headers: set[DocumentPath] = set()
 
     def document(self) -> None:
-        table: Path = ()
+        table: DocumentPath = ()
         self.match(_BLANK)
         while self.at < len(self.text):
             if self.text.startswith("[", self.at):
@@ -137,12 +137,12 @@ class _Scanner:
             raise _Lost
         self.at += len(sign)
 
-    def header(self) -> Path:
+    def header(self) -> DocumentPath:
         start, many = self.at, self.text.startswith("[[", self.at)
         self.take("[[" if many else "[")
         keys = self.dotted()
         self.take("]]" if many else "]")
-        path: Path = ()
+        path: DocumentPath = ()
         for k, (name, _) in enumerate(keys):
             path = (*path, name)
             if many and k == len(keys) - 1:
@@ -175,7 +175,7 @@ class _Scanner:
                 raise _Lost
             self.at += 1
 
-    def pair(self, table: Path, whole_line: bool = False) -> None:
+    def pair(self, table: DocumentPath, whole_line: bool = False) -> None:
         start, keys = self.at, self.dotted()
         self.take("=")
         self.match(_SPACE)
@@ -192,7 +192,7 @@ class _Scanner:
         if again:
             self.index.twice.append((path, span, Span(start, self.at) if whole_line else None))
 
-    def value(self, path: Path) -> None:
+    def value(self, path: DocumentPath) -> None:
         start = self.at
         sign = self.text[self.at : self.at + 1]
         if sign == "{":
@@ -206,7 +206,7 @@ class _Scanner:
             self.at -= len(word) - len(word.rstrip())
         self.index.values.setdefault(path, Span(start, self.at))
 
-    def inline_table(self, path: Path) -> None:
+    def inline_table(self, path: DocumentPath) -> None:
         self.take("{")
         self.match(_BLANK)
         while not self.text.startswith("}", self.at):
@@ -219,7 +219,7 @@ class _Scanner:
                 raise _Lost
         self.take("}")
 
-    def array(self, path: Path) -> None:
+    def array(self, path: DocumentPath) -> None:
         self.take("[")
         self.match(_BLANK)
         count = 0

@@ -7,7 +7,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.fields import FormulaRule, TextRule
-from eomgen.model.findings import Finding, Path, shown, unknown_keys
+from eomgen.model.findings import DocumentPath, Finding, shown, unknown_keys
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.scalar_operations import is_exact
 from eomgen.symbolic.expression.splines import ENDS, WAYS, Sampled, spline_of
@@ -27,12 +27,12 @@ class TimeLawRule(FormulaRule):
 
     ways: tuple[str, ...] = WAYS
 
-    def read(self, raw: Any, path: Path, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if isinstance(raw, Mapping) and "samples" in raw:
             return self._sampled(raw, path, found)
         return FormulaRule.read(self, raw, path, found)
 
-    def _sampled(self, raw: Mapping, path: Path, found: list[Finding]) -> Expression | None:
+    def _sampled(self, raw: Mapping, path: DocumentPath, found: list[Finding]) -> Expression | None:
         unknown_keys(raw, KEYS, path, found, "samples")
         way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
         ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
@@ -83,7 +83,7 @@ def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
-def _pairs(raw: Any, path: Path, found: list[Finding]) -> list[tuple[Fraction, Fraction]] | None:
+def _pairs(raw: Any, path: DocumentPath, found: list[Finding]) -> list[tuple[Fraction, Fraction]] | None:
     """The samples as exact numbers, times ascending."""
     if not isinstance(raw, (list, tuple)) or not 2 <= len(raw) <= MOST:
         told = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
@@ -105,7 +105,7 @@ def _pairs(raw: Any, path: Path, found: list[Finding]) -> list[tuple[Fraction, F
     return pairs
 
 
-def _number(raw: Any, path: Path, found: list[Finding]) -> Fraction | None:
+def _number(raw: Any, path: DocumentPath, found: list[Finding]) -> Fraction | None:
     value: Any = None
     try:
         value = None if isinstance(raw, bool) else as_expression(raw).evaluate({})

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from eomgen.errors import DerivationError
-from eomgen.model.findings import Path
+from eomgen.model.findings import DocumentPath
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.expressions import Expression
@@ -14,7 +14,7 @@ EFFORTS = ("torque", "force")
 """Loads at a joint."""
 
 
-def uses(model: Model) -> Iterator[tuple[Path, str]]:
+def uses(model: Model) -> Iterator[tuple[DocumentPath, str]]:
     """(path, unknown) of every place in which an unknown stands, but where it is asked for."""
     if not model.unknowns:
         return
@@ -55,5 +55,5 @@ def refuse_motion(model: Model) -> None:
         )
 
 
-def _is_load(path: Path) -> bool:
+def _is_load(path: DocumentPath) -> bool:
     return path[0] == "forces" or (path[0] == "bodies" and "joint" in path and path[-1] in EFFORTS)

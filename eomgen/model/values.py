@@ -5,14 +5,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, MissingValues, ModelError
-from eomgen.model.arithmetic import Number, in_order
+from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 
 
-def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, Number]:
+def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
     """The parameters that have values: exact where they can be, a float where pi or a root comes in.
 
     Raises:
@@ -20,7 +20,7 @@ def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -
     """
     given = {name: part.value for name, part in model.parameters.items() if part is not None}
     given |= _overridden(model, overrides or {})
-    values: dict[str, Number] = {"pi": math.pi}
+    values: dict[str, AnyNumber] = {"pi": math.pi}
     for name in in_order(given)[0]:
         expression = given[name]
         if expression is not None and expression.names <= values.keys():
@@ -124,7 +124,7 @@ def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Express
     return read
 
 
-def _value(expression: Expression, values: Mapping[str, Any], where: str) -> Number:
+def _value(expression: Expression, values: Mapping[str, Any], where: str) -> AnyNumber:
     try:
         return expression.evaluate(values)
     except ExpressionError as error:

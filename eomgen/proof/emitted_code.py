@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.constraints.closure import number as precise
+from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.proof.check import Check, checked, unchecked

@@ -21,7 +21,7 @@ from typing import Any
 
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import body_wrench, weights
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
@@ -113,7 +113,7 @@ class _Bodies:
     state: State
 
     @property
-    def links(self) -> tuple[Link, ...]:
+    def links(self) -> tuple[BodyLink, ...]:
         return self.system.motion.links
 
     def at(self, scalars: Sequence[Scalar]) -> list[Any]:

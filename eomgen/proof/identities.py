@@ -13,10 +13,10 @@ from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import powered_forces, total
+from eomgen.mechanics.equations.work import powered_forces, summed
 from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.reactions.inverse import residual
+from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
@@ -65,7 +65,7 @@ def routes(system: System, assembly: Assembly) -> Iterable[Check]:
         ]
         yield _compared(f"M a, c and Q agree with those by {formulation.title}", pairs, labels)
     left = [x - b + f for x, b, f in zip(Ma, assembly.forcing, friction, strict=True)]
-    pairs = [*zip(left, residual(system), strict=True)]
+    pairs = [*zip(left, inverse_residual(system), strict=True)]
     pairs += [(b, x - y) for b, x, y in zip(assembly.forcing, assembly.Q, assembly.c, strict=True)]
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
     yield _compared("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
@@ -116,7 +116,7 @@ def energy_function(assembly: Assembly) -> Scalar:
 def given_power(system: System, assembly: Assembly) -> Scalar:
     """dH/dt but for the ties' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
     speeds = assembly.symbols.u
-    powered = total([powered_forces(system.loads), assembly.friction or (0,) * len(speeds)], len(speeds))
+    powered = summed([powered_forces(system.loads), assembly.friction or (0,) * len(speeds)], len(speeds))
     power = tangent((assembly.V - assembly.T,), _own_motion(system.scope))[0] + _carried_power(system)
     return sum((u * Q for u, Q in zip(speeds, powered, strict=True)), start=power)
 

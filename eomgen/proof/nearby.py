@@ -18,7 +18,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.numeric.dense import follows
+from eomgen.symbolic.numeric.dense import follows_in_digits
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import MET_AT_50, ZERO_AT_50
 
@@ -195,7 +195,7 @@ def _first(rows: Sequence[Sequence[Any]], n: int) -> Numbers | None:
         return found[:n]
     kept, independent = list(range(n)), list[Sequence[Any]]()
     for r, row in enumerate(rows[n:], start=n):
-        if not follows(independent, row[:n]):
+        if not follows_in_digits(independent, row[:n]):
             independent.append(row[:n])
             kept.append(r)
     found = solved([[*(rows[i][j] for j in kept), rows[i][-1]] for i in kept]) if len(kept) < len(rows) else None

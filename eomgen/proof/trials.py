@@ -11,10 +11,10 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError, ModelError
-from eomgen.mechanics.balance.friction import frictions, rubbing_contacts, sizes_of
+from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
 from eomgen.mechanics.bodies.contact_modes import CLOSED
 from eomgen.mechanics.bodies.kinematics import spin_between
-from eomgen.mechanics.constraints.closure import generic_state, on_spheres
+from eomgen.mechanics.constraints.closure import generic_state, on_unit_spheres
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
@@ -25,7 +25,7 @@ from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of
-from eomgen.symbolic.numeric.dense import independent, scaled_condition, solution, weighted, without_rounding
+from eomgen.symbolic.numeric.dense import dense_solution, independent, scaled_condition, weighted, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LEAST_CHANGE, REFINED_AT_50
 
@@ -64,7 +64,7 @@ def real_state(system: System, rng: Random) -> State:
     state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
     state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
-    return state | on_spheres(system.scope.quaternions, state)
+    return state | on_unit_spheres(system.scope.quaternions, state)
 
 
 def closed_state(system: System, rng: Random) -> tuple[State, str]:
@@ -161,7 +161,7 @@ def friction(system: System, assembly: Assembly) -> Check:
 
     What holds on all sides rubs with F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the balance of the bodies.
     """
-    laws = _laws_of_round(system) if sizes_of(system) else []
+    laws = _laws_of_round(system) if push_sizes(system) else []
 
     def check(state: State) -> str:
         for name, law in laws:
@@ -259,7 +259,7 @@ def exact_accelerations(assembly: Assembly, state: State) -> list[Any]:
         if size == 0:
             return list(x[:n])
         left = (right / size).astype(float)
-        step = solution(bordered, left, regular=regular, smallest=LEAST_CHANGE).astype(object) * size
+        step = dense_solution(bordered, left, regular=regular, smallest=LEAST_CHANGE).astype(object) * size
         x = x + step
         right = right - np.concatenate([wide[:n] @ step[:n] - wide[n:].T @ step[n:], wide[n:] @ step[:n]])
         if max(map(abs, step[:n])) <= REFINED_AT_50 * max(map(abs, x[:n])):

@@ -19,7 +19,7 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
-from eomgen.mechanics.first_integrals.constants_of_motion import stays
+from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
@@ -314,7 +314,7 @@ class _Solver:
         if moment.phase is not phase or not motion.start:
             return None
         asked = phase.eliminated(phase.raw(output.value))
-        if not stays(phase.system, phase.assembly, (asked,))[0]:
+        if not stay_constant(phase.system, phase.assembly, (asked,))[0]:
             return None
         return substituted((asked,), motion.start)[0]
 

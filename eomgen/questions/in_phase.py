@@ -19,7 +19,7 @@ from eomgen.errors import MissingValues
 from eomgen.mechanics.balance.balance_solution import values_at_a_state
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.balance.unknown_loads import still
-from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import freedoms
@@ -238,14 +238,14 @@ class PhaseEquations:
             entries, needed = (readable_all(x, Work.ANSWER, self.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
-        solution = linear.solved(rows, needed, len(right), values_at_a_state(self.system, entries))
+        solution = linear.sparse_solution(rows, needed, len(right), values_at_a_state(self.system, entries))
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # what holds one is no answer
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 
 
-def phase_equations_of(model: Model, modes: Modes | None = None) -> PhaseEquations:
+def phase_equations_of(model: Model, modes: ContactModes | None = None) -> PhaseEquations:
     """The equations of a model in one configuration of its contacts."""
     return PhaseEquations(system_of(model, modes))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.bodies.kinematics import GROUND, Link
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.composite import pose_of
@@ -58,7 +58,7 @@ class Sketch:
         """Where a place of a body is."""
         return self.place(self.system.motion.position(place))
 
-    def lines(self, link: Link) -> list[np.ndarray]:
+    def lines(self, link: BodyLink) -> list[np.ndarray]:
         """A body: the outlines of its shape or its parts; without them the line through its points, in their order."""
         part = self.system.scope.model.bodies.get(link.name)
         if part is None:
@@ -72,7 +72,7 @@ class Sketch:
             points[:0] = [] if any(math.dist(seat, p) < COMPUTED for p in points) else [seat]
         return [_straightened(np.array(points))] if len(points) > 1 else []
 
-    def outlines(self, link: Link) -> list[tuple[np.ndarray, str]]:
+    def outlines(self, link: BodyLink) -> list[tuple[np.ndarray, str]]:
         """The outlines of a body's shape or parts, each with the colour inside: of a hole that of the paper."""
         part = self.system.scope.model.bodies.get(link.name)
         if part is None:
@@ -145,7 +145,7 @@ def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mappin
 # -- bodies ----------------------------------------------------------------------------------------
 
 
-def _body(panel: Any, sketch: Sketch, link: Link, named: bool, color: str) -> None:
+def _body(panel: Any, sketch: Sketch, link: BodyLink, named: bool, color: str) -> None:
     lines = sketch.lines(link)
     insides = [inside for _, inside in sketch.outlines(link)] or [FILL] * len(lines)
     for line, inside in zip(lines, insides, strict=True):
@@ -309,7 +309,7 @@ def _tie(panel: Any, sketch: Sketch, rows: Sequence[Any]) -> None:
         hinge(panel, sketch.symbol, at)
 
 
-def _joint(panel: Any, sketch: Sketch, link: Link) -> None:
+def _joint(panel: Any, sketch: Sketch, link: BodyLink) -> None:
     at = sketch.position((link.name, link.point))
     turning = [w for w, v in link.S if not all(is_zero(x) for x in w)]
     sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]

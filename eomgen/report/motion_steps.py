@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from eomgen.mechanics.bodies.inertia import BodyEnergy, mass_properties
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import PointForce
@@ -46,7 +46,7 @@ def positions_step(system: System, reader: Reader) -> Step:
     return Step("positions", "Positions", (Prose((f"The mass centres{angles}:",)), *page(reader, formulas)))
 
 
-def _turns(link: Link) -> bool:
+def _turns(link: BodyLink) -> bool:
     return isinstance(link.angle, Node)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from eomgen.mechanics.bodies.contact_modes import Mode
+from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
@@ -23,7 +23,7 @@ class Configuration:
         pieces: the piece of the path on which each body on a path is, from 0.
     """
 
-    modes: Table[Mode] = field(default_factory=Table)
+    modes: Table[ContactMode] = field(default_factory=Table)
     pieces: Table[int] = field(default_factory=Table)
 
     @property
@@ -86,7 +86,7 @@ def _moved_on(model: Model, body: str, k: int) -> str:
     return f"the body '{body}' comes to " + (f"the piece '{named}'" if named else f"piece {k + 1}") + " of its path"
 
 
-def _phrases(contact: Contact, old: Mode, new: Mode) -> Iterable[str]:
+def _phrases(contact: Contact, old: ContactMode, new: ContactMode) -> Iterable[str]:
     if old.closed and not new.closed:
         yield f"{contact.words} goes slack" if contact.pulls else f"{contact.words} opens"
     elif new.closed and not old.closed:

@@ -20,9 +20,9 @@ REACHES = (1.0, 10.0, 100.0)  # how far the leading coordinate is followed, in s
 NEARER = 1 - COMPUTED  # what the second sense must undercut: of two mirror images the first one is taken
 ASIDE = 0.1
 
-Vector = Callable[[np.ndarray], np.ndarray]
-Number = Callable[[np.ndarray], float]
-Condition = Callable[[np.ndarray, int], float]
+VectorFunction = Callable[[np.ndarray], np.ndarray]
+NumberFunction = Callable[[np.ndarray], float]
+SensedCondition = Callable[[np.ndarray, int], float]
 """(q, sense of motion) -> a number."""
 
 
@@ -37,13 +37,13 @@ class Configurations:
         sought: indices of those that the gaps fix.
     """
 
-    direction: Vector
-    gaps: Vector
+    direction: VectorFunction
+    gaps: VectorFunction
     leading: int
     sought: tuple[int, ...]
 
     def first(
-        self, g: Condition, y: Number, q: np.ndarray, senses: Sequence[int], near: np.ndarray
+        self, g: SensedCondition, y: NumberFunction, q: np.ndarray, senses: Sequence[int], near: np.ndarray
     ) -> tuple[Arrival, int]:
         """(the nearest configuration with g(q, sense) = 0, the sense of motion).
 
@@ -71,7 +71,9 @@ class Configurations:
                 return arrival, sense
         raise reasons[-1]
 
-    def _one_way(self, g: Condition, y: Number, q: np.ndarray, sense: int, near: np.ndarray, within: float) -> Arrival:
+    def _one_way(
+        self, g: SensedCondition, y: NumberFunction, q: np.ndarray, sense: int, near: np.ndarray, within: float
+    ) -> Arrival:
         regular = self.is_regular(q)
         s = 0.0
         if not regular:

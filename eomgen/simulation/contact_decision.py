@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
-from eomgen.mechanics.bodies.contact_modes import Mode
+from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.table import Table
 from eomgen.simulation.configuration import Configuration, on_pieces
@@ -25,7 +25,7 @@ from eomgen.simulation.phase_models import OPEN, PhaseModels
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_TRIED = 2000  # configurations at one instant
-STICKS = Mode(sense=0)
+STICKS = ContactMode(sense=0)
 
 
 def settled(
@@ -71,8 +71,8 @@ def settled(
     return last
 
 
-def _closed(contact: Contact) -> Mode:
-    return STICKS if contact.mu is not None else Mode()
+def _closed(contact: Contact) -> ContactMode:
+    return STICKS if contact.mu is not None else ContactMode()
 
 
 def _made(phase_models: PhaseModels, tried: Configuration, refused: list[DerivationError]) -> PhaseModel | None:
@@ -103,7 +103,7 @@ def _sliding(
     """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
     if all(contact.mu is None for contact in contacts):
         return {}
-    closed = Configuration(Table({c.name: OPEN if c.name in apart else Mode() for c in contacts}), Table(pieces))
+    closed = Configuration(Table({c.name: OPEN if c.name in apart else ContactMode() for c in contacts}), Table(pieces))
     found, still = phase_models.slides(closed).at(t, values), smallest_speed(values)
     least = {c.name: max(still, 2 * stopped_below(c)) for c in contacts}
     return {name: 0 if abs(v) <= least[name] else 1 if v > 0 else -1 for name, v in found.items()}
@@ -111,7 +111,7 @@ def _sliding(
 
 def _choices(
     contacts: tuple[Contact, ...], apart: frozenset[str], sliding: Mapping[str, int], before: Configuration | None
-) -> Iterator[dict[str, Mode]]:
+) -> Iterator[dict[str, ContactMode]]:
     """The modes that positions and velocities allow, those that hold before those that let go."""
     offered = []
     for contact in contacts:
@@ -121,19 +121,19 @@ def _choices(
         yield dict(choice)
 
 
-def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[Mode]:
+def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[ContactMode]:
     if contact.friction is None:
-        return [Mode(), OPEN]
+        return [ContactMode(), OPEN]
     old = None if before is None else before.modes.get(contact.name)
     first = 1 if old is None else old.push
     pushes = (1,) if contact.unilateral or contact.round else (first, -first)
     if contact.mu is None:
-        modes = [Mode(push=push) for push in pushes]
+        modes = [ContactMode(push=push) for push in pushes]
     elif sense:
-        modes = [Mode(sense=sense, push=push) for push in pushes]
+        modes = [ContactMode(sense=sense, push=push) for push in pushes]
     else:
         senses = (1,) if contact.surface else (1, -1)
-        modes = [STICKS, *(Mode(sense=s, push=push) for s in senses for push in pushes)]
+        modes = [STICKS, *(ContactMode(sense=s, push=push) for s in senses for push in pushes)]
     return [*modes, OPEN] if contact.unilateral else modes
 
 
@@ -168,7 +168,7 @@ def _standing(
 
 
 def _signs(
-    mode: Mode, contact: Contact, found: Mapping[tuple[str, str], float], sense: int
+    mode: ContactMode, contact: Contact, found: Mapping[tuple[str, str], float], sense: int
 ) -> Iterator[tuple[float, float]]:
     """(force, acceleration) that must not be negative (0 where there is nothing to ask)."""
     name = contact.name

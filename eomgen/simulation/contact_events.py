@@ -17,9 +17,9 @@ from typing import Any, Literal
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
-from eomgen.mechanics.bodies.contact_modes import Mode
+from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.mechanics.constraints.freedom import redundant_rows
-from eomgen.mechanics.constraints.ties import Row, rows_of
+from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.contacts import Contact
@@ -127,7 +127,7 @@ class ContactEvents:
         apart = (contact for contact in self.contacts if not self.mode(contact).closed)
         return tuple(contact.name for contact in apart if self._of_open(contact)[0].value is None)
 
-    def mode(self, contact: Contact) -> Mode:
+    def mode(self, contact: Contact) -> ContactMode:
         return self.configuration.modes[contact.name]
 
     def _bounds(self, contact: Contact, signals: Mapping[str, Any]) -> list[EventFunction]:
@@ -159,7 +159,7 @@ class ContactEvents:
         return found
 
     def _of_open(self, contact: Contact) -> list[Signal]:
-        row, scope = rows_of(self.system.motion, contact.name)[0], self.system.scope
+        row, scope = rows_of_tie(self.system.motion, contact.name)[0], self.system.scope
         gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
         return [
             Signal(contact.name, "gap", gap),

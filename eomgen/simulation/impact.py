@@ -18,7 +18,7 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.ties import Row, rows_of
+from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.simulation.phase_model import Values, slack_name
@@ -74,7 +74,7 @@ class Loose:
     @cached_property
     def _rows(self) -> dict[str, tuple[Row, ...]]:
         """The rows of every contact that can end, the one that can end first."""
-        return {name: rows_of(self.system.motion, name) for name in self.contacts}
+        return {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
 
     @cached_property
     def _gaps(self) -> RightHandSide:

@@ -16,7 +16,7 @@ from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 
 
 @dataclass(frozen=True)
-class Step:
+class BodyBalance:
     """Rows that give columns, once `known` columns are.
 
     Args:
@@ -28,7 +28,7 @@ class Step:
     known: np.ndarray
 
 
-def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]]) -> tuple[Step, ...]:
+def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]]) -> tuple[BodyBalance, ...]:
     """The order for matrices of one pattern.
 
     Args:
@@ -37,12 +37,12 @@ def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]])
         groups: the rows of each body.
     """
     left, open_ = [np.array(group) for group in groups], np.ones(A.shape[1], dtype=bool)
-    steps: list[Step] = []
+    steps: list[BodyBalance] = []
     while (k := next((k for k, group in enumerate(left) if _gives(A, stands, group, open_)), None)) is not None:
         steps.append(_step(stands, left.pop(k), open_))
         open_[steps[-1].columns] = False
     core = np.concatenate([np.zeros(0, dtype=int), *left])
-    return (*steps, Step(core, np.flatnonzero(open_), np.flatnonzero(stands[core].any(axis=0) & ~open_)))
+    return (*steps, BodyBalance(core, np.flatnonzero(open_), np.flatnonzero(stands[core].any(axis=0) & ~open_)))
 
 
 def _gives(A: np.ndarray, stands: np.ndarray, group: np.ndarray, open_: np.ndarray) -> bool:
@@ -54,12 +54,12 @@ def _gives(A: np.ndarray, stands: np.ndarray, group: np.ndarray, open_: np.ndarr
     return bool(_regular(np.asarray(np.linalg.qr(block, mode="r"))[None], block[None])[0])
 
 
-def _step(stands: np.ndarray, rows: np.ndarray, open_: np.ndarray) -> Step:
+def _step(stands: np.ndarray, rows: np.ndarray, open_: np.ndarray) -> BodyBalance:
     touched = stands[rows].any(axis=0)
-    return Step(rows, np.flatnonzero(touched & open_), np.flatnonzero(touched & ~open_))
+    return BodyBalance(rows, np.flatnonzero(touched & open_), np.flatnonzero(touched & ~open_))
 
 
-def solved(A: np.ndarray, b: np.ndarray, steps: Iterable[Step]) -> tuple[np.ndarray, np.ndarray]:
+def balanced_from_leaves(A: np.ndarray, b: np.ndarray, steps: Iterable[BodyBalance]) -> tuple[np.ndarray, np.ndarray]:
     """(rho, whether every block was regular) of m systems A rho = b."""
     rho, regular = np.zeros((len(A), A.shape[2])), np.ones(len(A), dtype=bool)
     for step in steps:

@@ -13,8 +13,8 @@ import numpy as np
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
-from eomgen.mechanics.bodies.contact_modes import Mode
-from eomgen.mechanics.equations.stabilization import Rates
+from eomgen.mechanics.bodies.contact_modes import ContactMode
+from eomgen.mechanics.equations.stabilization import PullBack
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
@@ -75,7 +75,7 @@ class Course:
 
     def _stopped(self, phase: PhaseModel, name: str, t: float, values: dict[str, float]) -> dict[str, float]:
         """The state in which a contact does not slide: on a surface a speed comes near to 0, and stops there."""
-        modes = Table({**phase.configuration.modes, name: Mode(sense=0)})
+        modes = Table({**phase.configuration.modes, name: ContactMode(sense=0)})
         try:
             held = self.phase_models.of(replace(phase.configuration, modes=modes))
         except DerivationError:  # nothing can hold it: the next phase says so
@@ -85,7 +85,7 @@ class Course:
         return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
-def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: Rates | None = None) -> Course:
+def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: PullBack | None = None) -> Course:
     """The phases of a model, none of them made yet; rates: of Baumgarte's rows."""
     return Course(model, PhaseModels(model, p, target, rates))
 
@@ -131,7 +131,7 @@ def _closed_or_open(
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
     """Some contacts open, all others closed, sliding without a sense yet."""
     contacts = contacts_of(on_pieces(model, pieces))
-    return Configuration(Table({c.name: Mode(closed=c.name not in away) for c in contacts}), Table(pieces))
+    return Configuration(Table({c.name: ContactMode(closed=c.name not in away) for c in contacts}), Table(pieces))
 
 
 def _apart(gap: float, rate: float, values: Values) -> bool:
@@ -202,7 +202,7 @@ def _jammed(standing: Configuration) -> str:
     return f"no forces of the contacts {names} agree with their state (rigid bodies with so much friction jam)"
 
 
-def modes_at_start(model: Model) -> dict[str, Mode]:
+def modes_at_start(model: Model) -> dict[str, ContactMode]:
     """The contacts that the start values leave open, their gaps not 0, and those that push against their normals there.
 
     What the coordinates satisfy by themselves is closed, whatever its force; without coordinates what is rough sticks.
@@ -219,6 +219,6 @@ def modes_at_start(model: Model) -> dict[str, Mode]:
         gaps = course.loose.gaps(0.0, here.values) if here.configuration.open else {}
     except EomgenError:  # a missing value, a start that does not hold: said by whoever needs them
         return {}
-    away = {name: Mode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
+    away = {name: ContactMode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
     modes = here.configuration.modes.items()
-    return away | {name: Mode(push=mode.push) for name, mode in modes if mode.closed and mode.push < 0}
+    return away | {name: ContactMode(push=mode.push) for name, mode in modes if mode.closed and mode.push < 0}

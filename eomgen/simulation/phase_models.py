@@ -13,9 +13,9 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.balance.release import released, stays_straight
-from eomgen.mechanics.bodies.contact_modes import Mode, Modes
+from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.constraints.freedom import freedoms, redundant_rows
-from eomgen.mechanics.equations.stabilization import Rates, stabilized
+from eomgen.mechanics.equations.stabilization import PullBack, stabilized
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.contacts import Contact, contacts_of
@@ -26,7 +26,7 @@ from eomgen.simulation.impact import Loose
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression.graph import Scalar
 
-OPEN = Mode(closed=False)
+OPEN = ContactMode(closed=False)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class PhaseModels:
         rates: alpha and beta of Baumgarte's rows; None: they do not pull.
     """
 
-    def __init__(self, model: Model, p: np.ndarray, target: str | None, rates: Rates | None = None) -> None:
+    def __init__(self, model: Model, p: np.ndarray, target: str | None, rates: PullBack | None = None) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
         self._made: dict[Configuration, PhaseModel] = {}
         self._slides: dict[Configuration, Slides] = {}
@@ -131,13 +131,13 @@ class PhaseModels:
         return k > 0, system.scope.value(end - start) if k + 1 < len(bounds) else None
 
 
-def _opened(model: Model, modes: Modes) -> System:
+def _opened(model: Model, modes: ContactModes) -> System:
     """The system with its contacts in these modes: those that are open released, one after the other.
 
     Raises:
         DerivationError: nothing can leave a contact that has ended.
     """
-    closed: Mapping[str, Mode] = {name: mode for name, mode in modes.items() if mode.closed}
+    closed: Mapping[str, ContactMode] = {name: mode for name, mode in modes.items() if mode.closed}
     system = system_of(model, closed)
     for name, mode in modes.items():
         if not mode.closed:

@@ -22,7 +22,7 @@ from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.simulation.first_slide import begun
-from eomgen.simulation.leaf_to_root_balance import Step, solved, steps_of
+from eomgen.simulation.leaf_to_root_balance import BodyBalance, balanced_from_leaves, steps_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import balanced
@@ -106,7 +106,7 @@ class ReactionColumns:
             rows.setdefault(equation.body, []).append(i)
         return [*rows.values(), *([i] for i in range(len(self._equations), len(self._places[1])))]
 
-    def _steps(self, A: np.ndarray) -> tuple[Step, ...]:
+    def _steps(self, A: np.ndarray) -> tuple[BodyBalance, ...]:
         """The order in which the bodies are solved, for all states that of the first one."""
         if not self._found:
             stands = np.zeros(A.shape[1:], dtype=bool)
@@ -115,7 +115,7 @@ class ReactionColumns:
         return self._found[0]
 
     @cached_property
-    def _found(self) -> list[tuple[Step, ...]]:
+    def _found(self) -> list[tuple[BodyBalance, ...]]:
         return []
 
     @cached_property
@@ -140,7 +140,7 @@ class ReactionColumns:
 
 
 def _solutions(
-    A: np.ndarray, b: np.ndarray, C: np.ndarray, order: Callable[[np.ndarray], tuple[Step, ...]]
+    A: np.ndarray, b: np.ndarray, C: np.ndarray, order: Callable[[np.ndarray], tuple[BodyBalance, ...]]
 ) -> np.ndarray:
     """C rho at every state, A rho = b; rows and columns of A are brought to one size first, for their units.
 
@@ -155,7 +155,7 @@ def _solutions(
     A = np.where(np.abs(A) > SUMMED * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
-    rho, regular = solved(A[sound], b[sound], order(A[sound]))
+    rho, regular = balanced_from_leaves(A[sound], b[sound], order(A[sound]))
     at = np.flatnonzero(sound)
     found[at[regular]] = (C[at[regular]] @ rho[regular, :, None])[:, :, 0]
     for i in at[~regular]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eomgen.mechanics.initial_state.assembly_modes import Branch, Branches
+from eomgen.mechanics.initial_state.assembly_modes import AssemblyMode, Branches
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.verbs.outcome import listed
@@ -32,7 +32,7 @@ def _sided(branches: Branches) -> tuple[str, ...]:
     return tuple(tie for tie, left in here.items() if any(each.get(tie, left) != left for each in others))
 
 
-def _told(branch: Branch, sided: tuple[str, ...]) -> str:
+def _told(branch: AssemblyMode, sided: tuple[str, ...]) -> str:
     """beta = 0.48, gamma = 1.57 (-), 'B' on the left"""
     sides = [f"'{s.tie}' on the {'left' if s.left else 'right'}" for s in branch.sides if s.tie in sided]
     return ", ".join([str(branch), *sides])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import EomgenError, MissingValues, ModelError
-from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.constraints.freedom import Freedom, freedom_of
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.assembly_modes import Branches, branches_of_loops
@@ -96,7 +96,7 @@ def checked(model: Model) -> Checked:
     )
 
 
-def _start_of_loops(model: Model, modes: Modes, freedom: Freedom) -> LoopStart:
+def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> LoopStart:
     """How loops close at the start.
 
     Raises:

@@ -12,7 +12,7 @@ import eomgen
 from eomgen.errors import NotYet
 from eomgen.mechanics.bodies.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, total
+from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, summed
 from eomgen.mechanics.formulations import projection
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
@@ -177,7 +177,7 @@ def applied(system: System):
 
 def work_row(loads: Loads, force) -> tuple[Scalar, ...]:
     """Q by virtual work of the loads, whether or not there is a potential."""
-    return total([load_row(loads, load) for load in force.loads], len(loads.motion.scope.symbols.u))
+    return summed([load_row(loads, load) for load in force.loads], len(loads.motion.scope.symbols.u))
 
 
 def test_every_kind_of_force_has_examples_here():

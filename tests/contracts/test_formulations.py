@@ -139,7 +139,7 @@ def test_every_formulation_gives_the_same_energies(formulation, system):
 def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(system):
     """a by O(n) elimination = M^-1 (Q - c), where no row closes and every speed belongs to one joint."""
     branches = branches_of(system.motion)
-    if system.ties.closing or not articulated.applies(system.motion, branches):
+    if system.ties.closing or not articulated.is_articulated(system.motion, branches):
         return
     a = articulated.accelerations(system.loads, branches)
     state = state_of(system)
@@ -149,7 +149,7 @@ def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(system):
 def test_articulated_bodies_apply_to_chains_with_a_speed_for_each_joint():
     """The O(n) way is taken where it can be."""
     systems = [system_named(name) for name in ("chain20", "arm7", "arm3")]
-    assert all(articulated.applies(s.motion, branches_of(s.motion)) for s in systems if s is not None)
+    assert all(articulated.is_articulated(s.motion, branches_of(s.motion)) for s in systems if s is not None)
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "arm3", "parallelogram_reactions", "cart_pole"])

@@ -8,7 +8,7 @@ from moving import at, equal, rate, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
-from eomgen.mechanics.bodies.kinematics import Link, spin_between
+from eomgen.mechanics.bodies.kinematics import BodyLink, spin_between
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.model.joints import ALL
 from eomgen.model.joints.orientation import SEQUENCES
@@ -138,7 +138,7 @@ UNBUILT = [case for case in CASES if not works(*case)]
 built = pytest.mark.parametrize(("kind", "space", "fields"), BUILT, ids=[f"{k}-{s}-{f[:40]}" for k, s, f in BUILT])
 
 
-def system_with(kind: str, space: str, fields: str) -> tuple[System, Link]:
+def system_with(kind: str, space: str, fields: str) -> tuple[System, BodyLink]:
     system = written(text(kind, space, fields), space)
     return system, system.motion.link("child")
 

@@ -243,13 +243,13 @@ def test_a_four_bar_follows_in_closed_form():
 @cases
 def test_a_wrong_rate_turns_the_certificate_red(monkeypatch, name):
     """A with the other sign: the free bodies and the eliminated rows do not follow it."""
-    right = cramer.solved
+    right = cramer.solution_by_minors
 
     def wrong(rows, right_side, **options):
         solution, blocks = right(rows, right_side, **options)
         return tuple(tuple(-x for x in row) for row in solution), blocks
 
-    monkeypatch.setattr(elimination.cramer, "solved", wrong)
+    monkeypatch.setattr(elimination.cramer, "solution_by_minors", wrong)
     equations = eomgen.derive(model(name))
     assert not certificate.certify(equations.system, equations.graph).ok
 

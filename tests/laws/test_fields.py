@@ -17,7 +17,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.field import (
-    Field,
+    VelocityField,
     acceleration_pole,
     curvature_radius,
     field_of,
@@ -210,11 +210,11 @@ def test_two_ways_to_the_motion_of_a_point_agree(model):
 # -- centres, poles, slowest points ----------------------------------------------------------------
 
 
-def exact_field(seed: int) -> Field:
+def exact_field(seed: int) -> VelocityField:
     """A plane field with exact entries."""
     rng = Random(seed)
     p, v, a = ((rng.randint(-9, 9), rng.randint(-9, 9), 0) for _ in range(3))
-    return Field(p, v, a, (0, 0, rng.randint(1, 9)), (0, 0, rng.randint(-9, 9)))
+    return VelocityField(p, v, a, (0, 0, rng.randint(1, 9)), (0, 0, rng.randint(-9, 9)))
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -243,7 +243,7 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
     def vector() -> Vector:
         return (rng.randint(-9, 9), rng.randint(-9, 9), 0 if seed % 2 else rng.randint(-9, 9))
 
-    field = exact_field(seed) if seed % 2 else Field(*(vector() for _ in range(5)))
+    field = exact_field(seed) if seed % 2 else VelocityField(*(vector() for _ in range(5)))
     start, end = vector(), vector()
     least = float(evaluate((least_speed(field, start, end, lambda x: x),), {}, fifty_digits())[0])
     speeds = []
@@ -257,8 +257,8 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
 
 def test_a_bar_that_does_not_turn_has_one_speed():
     """omega = 0 divides nothing: |v| of all its points."""
-    assert least_speed(Field(v=(3, 4, 0)), (0, 0, 0), (1, 0, 0), lambda x: x) == 5
-    assert least_speed(Field(v=(3, 4, 12)), (0, 0, 0), (1, 0, 2), lambda x: x) == 13
+    assert least_speed(VelocityField(v=(3, 4, 0)), (0, 0, 0), (1, 0, 0), lambda x: x) == 5
+    assert least_speed(VelocityField(v=(3, 4, 12)), (0, 0, 0), (1, 0, 2), lambda x: x) == 13
 
 
 def test_a_ladder_is_slowest_at_the_foot_of_the_perpendicular():

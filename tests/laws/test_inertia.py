@@ -12,7 +12,7 @@ from scipy.integrate import dblquad
 import eomgen
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
-from eomgen.mechanics.masses.principal import principal_of, values_of
+from eomgen.mechanics.masses.principal import numbers_in, principal_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 
@@ -276,7 +276,7 @@ def test_principal_axes_are_the_rows_of_a_rotation_that_makes_the_tensor_diagona
     motion = system.motion
     I = tensor_about(motion, motion.position(motion.place("P")), list(motion.index))
     found = principal_of(I, system.scope)
-    moments = values_of(found.moments, system.scope)
+    moments = numbers_in(found.moments, system.scope)
     assert moments is not None and found.sorted
     assert moments == pytest.approx(list(np.linalg.eigvalsh(matrix(I))), rel=1e-9)
     assert sum(moments) == pytest.approx(np.trace(matrix(I)))

@@ -14,8 +14,8 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.components import Component, components_of
-from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, joint_effects, turned
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, in_turned_axes, joint_effects
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.ties import holds_identically, slide_power
 from eomgen.mechanics.equations.system import System
@@ -148,7 +148,7 @@ def _pushes_along(system: System, power: Scalar) -> bool:
     return any(not holds_identically(x) for x in gradient(power, system.symbols.u))
 
 
-def _seat_moves_others(system: System, link: Link) -> bool:
+def _seat_moves_others(system: System, link: BodyLink) -> bool:
     """Whether a free coordinate moves the seat of a joint and something else: what joins the two acts at no place."""
     given = driven_coordinates(system.scope.model)
     free = [q for q in system.symbols.q if q.name not in given]
@@ -188,7 +188,7 @@ def _inertia(axes: Axes) -> list[tuple[Scalar, ...]]:
     for i, (link, mass) in enumerate(zip(axes.motion.links, axes.masses, strict=True)):
         wd, w = vector_of(spins[3 * i : 3 * i + 3]), link.twist.w
         n = plus(apply(mass.I, wd), cross(w, apply(mass.I, w)))
-        rows.append((*times(mass.m, accelerations[i]), *turned(axes.of_body(link), n)))
+        rows.append((*times(mass.m, accelerations[i]), *in_turned_axes(axes.of_body(link), n)))
     return rows
 
 

@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
-from eomgen.symbolic.solve.scaling import solved
+from eomgen.symbolic.solve.scaling import scaled_solution
 
 TRIES = 20
 Combination = dict[int, Scalar]
@@ -37,7 +37,7 @@ def solution_of_balance(
 
     Args:
         at: what stands in place of coordinates, speeds, accelerations and t; {}: as functions of them.
-        sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.solved`).
+        sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.sparse_solution`).
         work: products of terms by which an entry is made readable.
     """
     coefficients, needed = with_unknowns(balance)
@@ -63,7 +63,7 @@ def solution_of_balance(
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return solved(
+    return scaled_solution(
         rows,
         needed,
         len(balance.names),
@@ -76,7 +76,7 @@ def solution_of_balance(
     )
 
 
-def combined(balance: Balance, solution: Solution, combination: Combination, name: str) -> Scalar:
+def combined_reaction(balance: Balance, solution: Solution, combination: Combination, name: str) -> Scalar:
     """sum of k_j x_j.
 
     Raises:

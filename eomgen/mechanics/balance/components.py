@@ -7,9 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_at_joint, effects_of_load, scaled, turned
+from eomgen.mechanics.balance.unit_wrenches import (
+    Axes,
+    Effect,
+    effects_at_joint,
+    effects_of_load,
+    in_turned_axes,
+    scaled_axes,
+)
 from eomgen.mechanics.bodies.contact_modes import CLOSED, friction_factor
-from eomgen.mechanics.bodies.kinematics import Link, Motion
+from eomgen.mechanics.bodies.kinematics import BodyLink, Motion
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.system import System
 from eomgen.model.driven import driven_coordinates
@@ -96,7 +103,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             continue
         pushes = _basis(axes, link, system)
         factor = joint_friction(system, link)
-        along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled(axes, link.name, 0, 1)))
+        along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, 0, 1)))
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
             friction = (Rubbing("t", factor, along),) if label == "n" and factor is not None else ()
@@ -105,7 +112,7 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
             found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, rubs=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
-                effects = tuple(effects_at_joint(axes, link, *scaled(axes, link.name, k, 1)))
+                effects = tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, 1)))
                 found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driver))
     return found
 
@@ -132,7 +139,7 @@ def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
     return found
 
 
-def _refuse_spread(joints: Sequence[Link], follow: Sequence[Scalar], free: Sequence[Node], driver: Node) -> None:
+def _refuse_spread(joints: Sequence[BodyLink], follow: Sequence[Scalar], free: Sequence[Node], driver: Node) -> None:
     """Refuse what follows a driver and a free coordinate that moves other joints too."""
     for q in free:
         moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
@@ -146,7 +153,7 @@ def _refuse_spread(joints: Sequence[Link], follow: Sequence[Scalar], free: Seque
             )
 
 
-def _basis(axes: Axes, link: Link, system: System) -> list[tuple[str, Vector, Vector]]:
+def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector, Vector]]:
     """(label, force, couple) of each reaction of a joint, child's axes: the complement of its freedom."""
     columns = link.joint.complement(link.s, axes.motion.scope.value)
     forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
@@ -170,15 +177,15 @@ def _numbered(name: str, count: int) -> list[str]:
     return [name] if count == 1 else [f"{name} {k}" for k in range(1, count + 1)]
 
 
-def _forces(axes: Axes, link: Link, forces: list[Vector], most: int) -> list[tuple[str, Vector, Vector]]:
+def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list[tuple[str, Vector, Vector]]:
     """The forces of a joint: along the equations' axes where it can carry any, else normal to its motion."""
     if len(forces) == most:
         R_CE = transposed(axes.of_body(link))
-        return [("xyz"[k], turned(R_CE, EACH_AXIS[k]), ZERO) for k in range(most)]
+        return [("xyz"[k], in_turned_axes(R_CE, EACH_AXIS[k]), ZERO) for k in range(most)]
     return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
 
 
-def _is_idle(axes: Axes, link: Link, system: System) -> bool:
+def _is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
     """Whether nothing can turn the body against its joint: a particle with all that acts on it at its mass."""
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape
@@ -190,7 +197,7 @@ def _is_idle(axes: Axes, link: Link, system: System) -> bool:
     return all(is_zero(effect.six[5]) for load in mine for effect in effects_of_load(axes, load))
 
 
-def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Vector]]:
+def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str, Vector]]:
     """The forces that a guide can carry; in the plane the one along the left normal of its motion."""
     sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]
     if axes.plane and len(forces) == 1 and len(sliding) == 1:
@@ -199,7 +206,7 @@ def _normals(axes: Axes, link: Link, forces: list[Vector]) -> list[tuple[str, Ve
     return list(zip(_numbered("n", len(forces)), forces, strict=True))
 
 
-def joint_friction(system: System, link: Link) -> Scalar | None:
+def joint_friction(system: System, link: BodyLink) -> Scalar | None:
     """What a unit of the normal reaction of a path rubs with along the path; None without friction, and elsewhere."""
     pieces = getattr(link.joint, "pieces", ())
     value, mode = system.scope.value, system.modes.get(link.name, CLOSED)

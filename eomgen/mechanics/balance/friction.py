@@ -15,7 +15,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
-from eomgen.mechanics.balance.balance_solution import combined, solution_of_balance, values_at_a_state
+from eomgen.mechanics.balance.balance_solution import combined_reaction, solution_of_balance, values_at_a_state
 from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, rubbing_of
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
@@ -79,7 +79,7 @@ def with_friction(system: System, assembly: Assembly) -> Assembly:
     )
 
 
-def sizes_of(system: System) -> dict[str, Scalar]:
+def push_sizes(system: System) -> dict[str, Scalar]:
     """|N| of every contact that rubs and holds on all sides, as a function of q, u and t; {} where there is none.
 
     Raises:
@@ -221,7 +221,7 @@ class _Rubbing:
 
     def _by_balance(self, j: int) -> Scalar:
         """Component j, linear in the accelerations."""
-        return combined(self._balance, self._solution, {j: 1}, self._balance.components[j].name)
+        return combined_reaction(self._balance, self._solution, {j: 1}, self._balance.components[j].name)
 
     def _linear(self, j: int) -> tuple[dict[int, Scalar], Scalar]:
         """(-m, n) of N = n + m a: the coefficients of the accelerations in N - m a = n, and its right side."""
@@ -248,9 +248,9 @@ def _multiplier(system: System, component: Component, name: str, kept: Sequence[
 def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) -> list[Scalar]:
     """The unknowns: by determinants where they are few, else by elimination."""
     if len(right) <= cramer.LARGEST_BLOCK:
-        return [x for (x,) in cramer.solved(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
+        return [x for (x,) in cramer.solution_by_minors(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
     entries = [x for row in rows for x in row.values()]
-    solution = linear.solved(rows, right, len(right), values_at_a_state(system, entries))
+    solution = linear.sparse_solution(rows, right, len(right), values_at_a_state(system, entries))
     if solution.free:
         raise DerivationError("the equations with friction have no single solution")
     return [solution.constants[i] for i in range(len(right))]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from eomgen.mechanics.balance.balance import Balance
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -37,7 +37,7 @@ def _held_by_ties_alone(balance: Balance, i: int) -> bool:
     return kinds == {"tie"}
 
 
-def _turn(link: Link, three: Sequence[int], rows: list[SparseRow], needed: list[Scalar]) -> None:
+def _turn(link: BodyLink, three: Sequence[int], rows: list[SparseRow], needed: list[Scalar]) -> None:
     """The three equations times R, where the coefficients then take fewer operations."""
     own = sorted({j for n in three for j in rows[n]})
     columns = {j: [rows[n].get(j, 0) for n in three] for j in own}

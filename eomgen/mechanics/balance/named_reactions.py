@@ -22,7 +22,7 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, plus
 FORCE, COUPLE = "N", "N*m"
 OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too
 
-Part = Callable[[Effect], Vector]
+WrenchPart = Callable[[Effect], Vector]
 
 
 @dataclass(frozen=True)
@@ -54,11 +54,11 @@ def name_of(call: Call, names: Container[str]) -> str:
     """The name in a table by which it is asked for: the ends of a member in either order."""
     ends = ends_asked(call) if call.name == "tension" and call.args else None
     either = () if ends is None else (ends, ends[::-1])
-    written = (f"tension({named(call.args[0])}, {a}-{b})" for a, b in either)
+    written = (f"tension({argument_name(call.args[0])}, {a}-{b})" for a, b in either)
     return next((name for name in written if name in names), str(call))
 
 
-def named(argument: Reference | Expression) -> str:
+def argument_name(argument: Reference | Expression) -> str:
     """An argument of a call as it was written."""
     return argument.name if isinstance(argument, Reference) else argument.text
 
@@ -88,7 +88,7 @@ def _vector(
 ) -> Iterable[NamedReaction]:
     """Force or couple on the first-named body, or on `side`, in the ground's axes."""
     motion = balance.system.motion
-    part: Part = (lambda e: e.couple) if unit == COUPLE else (lambda e: e.force)
+    part: WrenchPart = (lambda e: e.couple) if unit == COUPLE else (lambda e: e.force)
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     on = motion.index[side] if side else next(c for _, c in mine if c.kind != "drive").effects[0].link
     units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.rubbing))) for j, c in mine}
@@ -100,7 +100,7 @@ def _vector(
         yield NamedReaction(f"reaction_{prefix}{'xyz'[k]}({place})", owner, unit, combination, given[k])
 
 
-def _sum(part: Part, on: int, effects: Sequence[Effect]) -> Vector:
+def _sum(part: WrenchPart, on: int, effects: Sequence[Effect]) -> Vector:
     total = ZERO
     for effect in effects:
         if effect.link == on:

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.contact_modes import Mode, Modes
-from eomgen.mechanics.bodies.kinematics import GROUND, Link
+from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
 from eomgen.mechanics.constraints.ties import Row, holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import PointForce
@@ -29,7 +29,7 @@ DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip", "s": "slip"}
 """What a body can do along a row of forces that has ended."""
 
 
-def released(system: System, tie: str) -> tuple[Model, Modes]:
+def released(system: System, tie: str) -> tuple[Model, ContactModes]:
     """The model and the modes of the phase after the tie has ended; the coordinates keep their names.
 
     The tie stays in the model, open. New coordinates, if they are needed, start at 0 and stand last.
@@ -43,7 +43,7 @@ def released(system: System, tie: str) -> tuple[Model, Modes]:
         if row.identical and row.component in DISPLACEMENTS:
             model = _freed(system, model, row)
     modes = {name: mode for name, mode in system.modes.items() if name != tie}
-    return model, {**modes, tie: Mode(closed=False)}
+    return model, {**modes, tie: ContactMode(closed=False)}
 
 
 def _with_free_coordinates(model: Model, names: list[str]) -> Model:
@@ -71,7 +71,7 @@ class Leave:
         turns: it must turn as well.
     """
 
-    link: Link
+    link: BodyLink
     direction: Vector
     straight: bool
     turns: bool = False
@@ -137,7 +137,7 @@ def _placed(system: System, row: Row) -> Leave:
     )
 
 
-def _pushed(system: System, row: Row) -> list[tuple[Link, Vector]]:
+def _pushed(system: System, row: Row) -> list[tuple[BodyLink, Vector]]:
     """The placed bodies that the row pushes, or that carry those, and the forces on them, their parents' axes."""
     found = []
     for push in row.pushes:
@@ -166,7 +166,7 @@ def _across(n: Vector, others: list[Vector]) -> Vector:
     return vector
 
 
-def _root(system: System, link: Link) -> Link | None:
+def _root(system: System, link: BodyLink) -> BodyLink | None:
     """The body itself, or the nearest one that carries it, that is placed by expressions."""
     current: Any = link
     while current is not None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion
 from eomgen.mechanics.bodies.loads import JointEffort, in_ground_axes
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import Couple, PointForce
@@ -73,11 +73,11 @@ class Axes:
     def rows(self) -> tuple[int, ...]:
         return PLANE_ROWS if self.plane else SPACE_ROWS
 
-    def of_body(self, link: Link) -> Matrix:
+    def of_body(self, link: BodyLink) -> Matrix:
         """From body axes to those of the equations."""
         return link.pose.R if self.plane else IDENTITY
 
-    def of_ground(self, link: Link, vector: Vector) -> Vector:
+    def of_ground(self, link: BodyLink, vector: Vector) -> Vector:
         """A vector of ground axes."""
         return vector if self.plane else apply(transposed(link.pose.R), vector)
 
@@ -88,21 +88,21 @@ class Axes:
     def arm(self, i: int, place: Vector) -> Vector:
         """From the mass centre to a place given in body axes."""
         link = self.motion.links[i]
-        return turned(self.of_body(link), minus(place, self.masses[i].com))
+        return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
 
 
-def turned(R: Matrix, a: Vector) -> Vector:
+def in_turned_axes(R: Matrix, a: Vector) -> Vector:
     return a if R is IDENTITY else apply(R, a)
 
 
-def effects_at_joint(axes: Axes, link: Link, force: Vector, couple: Vector) -> list[Effect]:
+def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) -> list[Effect]:
     """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
     i = axes.motion.index[link.name]
     R = axes.of_body(link)
-    effects = [Effect(i, turned(R, force), turned(R, couple), axes.arm(i, link.point), link.point)]
+    effects = [Effect(i, in_turned_axes(R, force), in_turned_axes(R, couple), axes.arm(i, link.point), link.point)]
     if link.parent != GROUND:
         to_parent = R if axes.plane else link.local.R
-        f, n = times(-1, turned(to_parent, force)), times(-1, turned(to_parent, couple))
+        f, n = times(-1, in_turned_axes(to_parent, force)), times(-1, in_turned_axes(to_parent, couple))
         effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
     return effects
 
@@ -121,21 +121,21 @@ def efforts_of(system: System, body: str) -> list[Effect]:
     link = axes.motion.link(body)
     for k, armature in _armatures(axes.motion, link):
         rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
-        effects += effects_at_joint(axes, link, *scaled(axes, body, k, -armature * rate))
+        effects += effects_at_joint(axes, link, *scaled_axes(axes, body, k, -armature * rate))
     return effects
 
 
 def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:
     link = axes.motion.link(effort.body)
-    return effects_at_joint(axes, link, *scaled(axes, effort.body, effort.variable, effort.effort))
+    return effects_at_joint(axes, link, *scaled_axes(axes, effort.body, effort.variable, effort.effort))
 
 
-def _armatures(motion: Motion, link: Link) -> list[tuple[int, Scalar]]:
+def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
     efforts = () if link.joint is None else link.joint.efforts()
     return [(k, motion.scope.value(e.armature)) for k, e in enumerate(efforts) if e is not None and e.armature]
 
 
-def scaled(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
+def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
     """(force, couple) along a joint's variable that do the work magnitude * s', child's axes."""
     w, v = axes.motion.link(body).S[variable]
     if not all(is_zero(x) for x in w):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from eomgen.mechanics.bodies.kinematics import Link, Motion
+from eomgen.mechanics.bodies.kinematics import BodyLink, Motion
 from eomgen.symbolic.expression.derivative import derivative, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -35,7 +35,7 @@ def armature_bias(motion: Motion, size: int) -> list[Scalar]:
     return c
 
 
-def _armatures(motion: Motion) -> Iterator[tuple[Link, int, Scalar]]:
+def _armatures(motion: Motion) -> Iterator[tuple[BodyLink, int, Scalar]]:
     for link in motion.links:
         if link.joint is None:
             continue

@@ -17,7 +17,7 @@ from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)
-class Mode:
+class ContactMode:
     """How one contact is.
 
     Args:
@@ -31,13 +31,13 @@ class Mode:
     push: int = 1
 
 
-Modes = Mapping[str, Mode]
+ContactModes = Mapping[str, ContactMode]
 """By the name of the tie, or of the body on a path. What is not named is closed and slides by the law."""
 
-CLOSED = Mode()
+CLOSED = ContactMode()
 
 
-def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: Mode) -> tuple[TieRow, ...]:
+def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -> tuple[TieRow, ...]:
     """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two)."""
     if not mode.closed:
         return ()
@@ -51,7 +51,7 @@ def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: Mode) -> tuple
 
 
 def friction_factor(
-    law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar, mode: Mode
+    law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar, mode: ContactMode
 ) -> Scalar | None:
     """What a unit of N rubs with along the tangent; None without friction, or while it sticks."""
     if law is None:

@@ -21,7 +21,7 @@ from eomgen.symbolic.expression.functions import combined, inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.solve import cramer
 
-Rows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
+SpeedRows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def with_declared_speeds(
     speeds = (*kept, *map(graph.symbol, scope.model.speeds))
     rates = (*(graph.symbol(f"{x.name}'") for x in kept), *(graph.symbol(f"{name}'") for name in scope.model.speeds))
     place = {x.name: k for k, x in enumerate(speeds)}
-    rows: Rows = {x: (_unit(place[x.name], len(speeds)), 0) for x in kept}
+    rows: SpeedRows = {x: (_unit(place[x.name], len(speeds)), 0) for x in kept}
     solved, blocks = _rates_solved(scope, declared, replaced, place, vanishes, shorter)
     rows |= solved
     rows |= _quaternion_rates(scope, place)
@@ -82,7 +82,7 @@ def _rates_solved(
     place: dict[str, int],
     vanishes: Callable[[Scalar], bool],
     shorter: Callable[[Scalar], Scalar],
-) -> tuple[Rows, tuple[Solved, ...]]:
+) -> tuple[SpeedRows, tuple[Solved, ...]]:
     """u = Y^-1 (w - y) of the rates that stand in declared speeds, by determinants."""
     formulas = tuple(scope.names[name] for name in declared)
     Y = jacobian(formulas, replaced)
@@ -94,7 +94,7 @@ def _rates_solved(
     system = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in Y]
     right = [[*_unit(place[name], len(place)), -bias] for name, bias in zip(declared, y, strict=True)]
     try:
-        X, blocks = cramer.solved(system, right, vanishes=vanishes, shorter=shorter)
+        X, blocks = cramer.solution_by_minors(system, right, vanishes=vanishes, shorter=shorter)
         singular = any(vanishes(cramer.determinant(block.matrix)) for block in blocks)
     except (DerivationError, ZeroDivisionError, StopIteration):
         singular = True
@@ -108,9 +108,9 @@ def _rates_solved(
     return {x: (tuple(row[:-1]), row[-1]) for x, row in zip(replaced, X, strict=True)}, found
 
 
-def _quaternion_rates(scope: Scope, place: dict[str, int]) -> Rows:
+def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
     """e' = 1/2 e o (0, w), one row for each of its rates."""
-    rows: Rows = {}
+    rows: SpeedRows = {}
     for four, each in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
         for e, factors in zip(four, rate_matrix_of(four), strict=True):
             row: list[Scalar] = [0] * len(place)
@@ -120,7 +120,7 @@ def _quaternion_rates(scope: Scope, place: dict[str, int]) -> Rows:
     return rows
 
 
-def _over(old: Scope, new: Scope, u: Sequence[Node], rows: Rows) -> Scope:
+def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
     """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
     N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
     nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from eomgen.errors import ModelError
 from eomgen.mechanics.bodies.composition import made_of
-from eomgen.mechanics.bodies.kinematics import Link, Motion, spin_between
+from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, spin_between
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.graph import Scalar
@@ -90,7 +90,7 @@ def body_energies(motion: Motion) -> tuple[BodyEnergy, ...]:
     return tuple(energies)
 
 
-def _by_twist(link: Link, mass: MassProperties) -> BodyEnergy:
+def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
     """The same from the twist: v_C = v + w x c in body axes."""
     w = link.twist.w
     v = link.twist.at(mass.com).v
@@ -98,24 +98,24 @@ def _by_twist(link: Link, mass: MassProperties) -> BodyEnergy:
     return BodyEnergy(link.name, apply(link.pose.R, v), w, translation, HALF * dot(w, apply(mass.I, w)))
 
 
-def _orientation(link: Link) -> tuple[Scalar, ...]:
+def _orientation(link: BodyLink) -> tuple[Scalar, ...]:
     """What tells how a body stands: its angle in the plane, its rotation matrix in space."""
     return (link.angle,) if link.angle is not None else tuple(x for row in link.pose.R for x in row)
 
 
-def _spin(link: Link, rates: list[Scalar]) -> Vector:
+def _spin(link: BodyLink, rates: list[Scalar]) -> Vector:
     """Angular velocity in body axes from the rates of the orientation [rad/s]."""
     if link.angle is not None:
         return (0, 0, rates[0])
     return spin_between(link.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
 
 
-def spin_of(motion: Motion, link: Link) -> Vector:
+def spin_of(motion: Motion, link: BodyLink) -> Vector:
     """Angular velocity of one body in body axes, from the derivative of its pose [rad/s]."""
     return _spin(link, list(motion.scope.time_derivative(_orientation(link))))
 
 
-def armature_energy(motion: Motion, link: Link) -> Scalar:
+def armature_energy(motion: Motion, link: BodyLink) -> Scalar:
     """Energy of rotors behind gears: armature * s'^2 / 2 [J]."""
     if link.joint is None:
         return 0

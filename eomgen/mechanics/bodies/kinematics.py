@@ -44,7 +44,7 @@ GROUND = -1
 
 
 @dataclass(frozen=True)
-class Link:
+class BodyLink:
     """One body in the tree.
 
     Args:
@@ -85,14 +85,14 @@ class Motion:
     """Poses and twists of all bodies, parents before children."""
 
     scope: Scope
-    links: tuple[Link, ...]
+    links: tuple[BodyLink, ...]
 
     @cached_property
     def index(self) -> dict[str, int]:
         """The place of each body in `links`."""
         return {link.name: i for i, link in enumerate(self.links)}
 
-    def link(self, body: str) -> Link:
+    def link(self, body: str) -> BodyLink:
         return self.links[self.index[body]]
 
     @cached_property
@@ -139,7 +139,7 @@ def motion_of(scope: Scope) -> Motion:
         DerivationError: a joint whose place depends on an input.
         NotYet: a joint kind that this version does not derive.
     """
-    links: list[Link] = []
+    links: list[BodyLink] = []
     index: dict[str, int] = {}
     for name in parents_first(scope.model):
         link = _link(scope, name, links, index)
@@ -182,13 +182,13 @@ def body_points(scope: Scope, body: str) -> dict[str, Vector]:
     return points
 
 
-def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> Link:
+def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int]) -> BodyLink:
     joint = scope.model.bodies[name].joint
     if joint is not None and not joint.works_in(scope.model.space):
         raise NotYet(f"the joint '{joint.kind}' is not derived yet", f"bodies.{name}.joint")
     plane = scope.model.space == "plane"
     if joint is None:
-        return Link(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
+        return BodyLink(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
     parent_name = parent_of(scope.model, name)
     parent = GROUND if parent_name is None else index[parent_name]
     above = None if parent == GROUND else links[parent]
@@ -205,10 +205,10 @@ def _link(scope: Scope, name: str, links: list[Link], index: dict[str, int]) -> 
         angle = collected((above.angle if above else 0) + turned)
     pose = _pose(above, local, angle, point)
     twist = _twist(scope, above, before, local, s_rate, S, point)
-    return Link(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+    return BodyLink(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
 
 
-def _pose(above: Link | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
+def _pose(above: BodyLink | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
     """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
     joint = (above.pose if above else Pose()).then(local)
     R = joint.R if angle is None else rotation(Z, cos(angle), sin(angle))
@@ -217,7 +217,7 @@ def _pose(above: Link | None, local: Pose, angle: Scalar | None, point: Vector) 
 
 def _twist(
     scope: Scope,
-    above: Link | None,
+    above: BodyLink | None,
     before: Pose,
     local: Pose,
     s_rate: tuple[Scalar, ...],
@@ -234,10 +234,10 @@ def _twist(
     moved = at_joint.at(times(-1, point))
     drift = scope.rate_of(point)  # a joint that slides along its own body
     twist = Twist(moved.w, minus(moved.v, drift))
-    return shortened(twist) if scope.combines else twist
+    return shortened_twist(twist) if scope.combines else twist
 
 
-def shortened(twist: Twist) -> Twist:
+def shortened_twist(twist: Twist) -> Twist:
     """A twist in its shorter form: declared speeds often are its components, once the rates are put in."""
     return Twist(vector_of(map(shorter, twist.w)), vector_of(map(shorter, twist.v)))
 

@@ -103,14 +103,14 @@ def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: 
     return {node: simplest(value, Work.VALUE, located.positive) for node, value in known.items()}
 
 
-Step = tuple[Node, Scalar, int]
+ChainStep = tuple[Node, Scalar, int]
 
 
 def _held(x: Scalar, unknowns: Collection[Node]) -> list[Node]:
     return [q for q in unknowns if depends_on(x, (q,))]
 
 
-def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
+def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> ChainStep | None:
     """An equation in one unknown, solved."""
     for i, equation in enumerate(left):
         held = _held(equation, unknowns)
@@ -119,13 +119,13 @@ def _single(left: Sequence[Scalar], unknowns: Collection[Node], located: Located
     return None
 
 
-def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> Step | None:
+def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> ChainStep | None:
     """An equation solved for one of its unknowns; the one in which it has a single root first.
 
     Only of an equation of less than a page; where there is a loop such a one alone: a cos q + b sin q + r has two
     roots.
     """
-    several: Step | None = None
+    several: ChainStep | None = None
     in_loop = any(True for _ in _loops(left, unknowns))
     for i, equation in enumerate(left):
         if text_size(equation) > PAGE:
@@ -172,10 +172,10 @@ def _joined(left: list[Scalar], unknowns: Collection[Node], located: Located) ->
     return True
 
 
-Waves = tuple[Scalar, Scalar, Scalar]
+WaveSum = tuple[Scalar, Scalar, Scalar]
 
 
-def _without_angle(first: Waves, second: Waves, located: Located) -> Scalar:
+def _without_angle(first: WaveSum, second: WaveSum, located: Located) -> Scalar:
     """cos^2 + sin^2 = 1 of the waves that two equations fix."""
     (a1, b1, r1), (a2, b2, r2) = first, second
     below = a1 * b2 - a2 * b1
@@ -183,7 +183,7 @@ def _without_angle(first: Waves, second: Waves, located: Located) -> Scalar:
     return simplest(cosine * cosine + sine * sine - below * below, Work.VALUE, located.positive)
 
 
-def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple[int, int, Node, Waves, Waves]]:
+def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple[int, int, Node, WaveSum, WaveSum]]:
     """Two equations a cos q + b sin q + r = 0 of one unknown q that fix both waves, with other unknowns in them."""
     for i, j in combinations(range(len(left)), 2):
         for q in _held(left[i], unknowns):
@@ -194,7 +194,7 @@ def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple
                 yield i, j, q, first, second
 
 
-def _waves(equation: Scalar, q: Node) -> Waves | None:
+def _waves(equation: Scalar, q: Node) -> WaveSum | None:
     """(a, b, r) of an equation a cos q + b sin q + r = 0, from its values at 0, pi/2 and pi; None for any other."""
     pi = q.graph.pi
     try:

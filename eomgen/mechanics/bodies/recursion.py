@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from eomgen.mechanics.bodies.kinematics import GROUND
 from eomgen.mechanics.bodies.loads import Loads, body_wrench, in_ground_axes
-from eomgen.mechanics.bodies.tree import Branch, Column, Moments, origin_of
+from eomgen.mechanics.bodies.tree import Branch, Moments, MotionColumn, origin_of
 from eomgen.model.forces.load import PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (
@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
 )
 
-Rates = tuple[Vector, Matrix, Vector]
+InertiaSums = tuple[Vector, Matrix, Vector]
 
 
 def rate_matrix(w: Vector, wd: Vector) -> Matrix:
@@ -80,21 +80,21 @@ def bias_forces(
         for k, (w, v) in branch.columns.items():
             forces[k] = forces[k] + dot(w, wrench.tau) + dot(v, wrench.f)
         if branch.parent != GROUND:
-            wrenches[branch.parent] = wrenches[branch.parent].plus(carried(branch, wrench))
+            wrenches[branch.parent] = wrenches[branch.parent].plus(wrench_on_parent(branch, wrench))
     return forces
 
 
-def carried(branch: Branch, wrench: Wrench) -> Wrench:
+def wrench_on_parent(branch: Branch, wrench: Wrench) -> Wrench:
     """A wrench on a branch as its parent feels it, about the parent's origin in the parent's axes."""
     turned = wrench if branch.E is IDENTITY else wrench.turned(transposed(branch.E))
     return turned.moved(branch.p)
 
 
 def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector, a: Sequence[Scalar]) -> list[Wrench]:
-    rates: list[Rates] = []
+    rates: list[InertiaSums] = []
     accelerations: list[Vector] = []
     wrenches = []
-    still: Rates = (ZERO, (ZERO, ZERO, ZERO), ZERO)
+    still: InertiaSums = (ZERO, (ZERO, ZERO, ZERO), ZERO)
     for branch in branches:
         w_p, U_p, wd_p = still if branch.parent == GROUND else rates[branch.parent]
         acc_p = base_acceleration if branch.parent == GROUND else accelerations[branch.parent]
@@ -120,7 +120,7 @@ def _turned(E: Matrix, a: Vector) -> Vector:
     return a if E is IDENTITY else apply(E, a)
 
 
-def mass_matrix(branches: tuple[Branch, ...], size: int) -> list[list[Scalar]]:
+def composite_mass_matrix(branches: tuple[Branch, ...], size: int) -> list[list[Scalar]]:
     """M by composite bodies: the wrench that a unit acceleration of a joint takes, felt down the tree."""
     composite = [branch.moments for branch in branches]
     for i in reversed(range(len(branches))):
@@ -142,7 +142,7 @@ def _polar(moments: Moments, plane: bool) -> Moments:
     return Moments(moments.m, moments.h, ((moments.J[0][0] + moments.J[1][1], 0, 0), ZERO, ZERO))
 
 
-def _unit_wrench(body: Moments, column: Column) -> Wrench:
+def _unit_wrench(body: Moments, column: MotionColumn) -> Wrench:
     """I S: the wrench that accelerates a body by the column (w, v): U = w~, acc = v."""
     w, v = column
     U = ((0, -w[2], w[1]), (w[2], 0, -w[0]), (-w[1], w[0], 0))
@@ -164,7 +164,7 @@ def _fill(M: list[list[Scalar]], k: int, branches: tuple[Branch, ...], i: int, w
                 M[j][k] = M[j][k] + entry
         if branches[i].parent == GROUND:
             return
-        wrench = carried(branches[i], wrench)
+        wrench = wrench_on_parent(branches[i], wrench)
         i, own = branches[i].parent, False
 
 

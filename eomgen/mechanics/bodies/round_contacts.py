@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.expression.derivative import gradient, substituted
-from eomgen.symbolic.expression.functions import chosen, function, inner, over, sqrt
+from eomgen.symbolic.expression.functions import function, inner, over, selected, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.solve.cramer import components
@@ -25,22 +25,22 @@ STEPS = 6  # of Newton's method; each doubles the number of right digits
 REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding
 LEAST = Fraction(1, 10**30)  # an N below it is none [N]
 
-Pair = tuple[Scalar, ...]
-Values = Callable[[Sequence[Scalar]], Sequence[Any]]
+EqualPushes = tuple[Scalar, ...]
+ValuesAt = Callable[[Sequence[Scalar]], Sequence[Any]]
 
 
 @dataclass(frozen=True)
 class _Pressed:
     """Contacts that press one another: N_r = n_r + sum G_rs P_s."""
 
-    n: tuple[Pair, ...]
-    G: tuple[tuple[Pair, ...], ...]
+    n: tuple[EqualPushes, ...]
+    G: tuple[tuple[EqualPushes, ...], ...]
 
-    def normals(self, P: Sequence[Scalar]) -> list[Pair]:
+    def normals(self, P: Sequence[Scalar]) -> list[EqualPushes]:
         return [_carried(n, zip(row, P, strict=True)) for n, row in zip(self.n, self.G, strict=True)]
 
 
-def sizes(pairs: Mapping[Node, Pair], values: Values) -> dict[Node, Scalar]:
+def sizes(pairs: Mapping[Node, EqualPushes], values: ValuesAt) -> dict[Node, Scalar]:
     """The value of each |N|, by its symbol.
 
     Args:
@@ -59,7 +59,7 @@ def sizes(pairs: Mapping[Node, Pair], values: Values) -> dict[Node, Scalar]:
     return {symbol: found[r] for r, symbol in enumerate(symbols)}
 
 
-def _slopes(pairs: Mapping[Node, Pair], symbols: tuple[Node, ...], values: Values) -> list[list[Pair]]:
+def _slopes(pairs: Mapping[Node, EqualPushes], symbols: tuple[Node, ...], values: ValuesAt) -> list[list[EqualPushes]]:
     """G_rs, what vanishes at a generic state left out."""
     rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
     flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
@@ -68,14 +68,14 @@ def _slopes(pairs: Mapping[Node, Pair], symbols: tuple[Node, ...], values: Value
     return [list(zip(*row, strict=True)) for row in kept]
 
 
-def _carried(n: Pair, shares: Any) -> Pair:
+def _carried(n: EqualPushes, shares: Any) -> EqualPushes:
     """n + sum g P"""
     for g, P in shares:
         n = tuple(x if is_zero(y) else x + y * P for x, y in zip(n, g, strict=True))
     return n
 
 
-def _alone(n: Pair, g: Pair) -> Scalar:
+def _alone(n: EqualPushes, g: EqualPushes) -> Scalar:
     """P = |n + g P|; no value where |g| >= 1."""
     square, along, rest = inner(n, n), inner(n, g), 1 - inner(g, g)
     if is_zero(along):
@@ -116,4 +116,4 @@ def _reached(pressed: _Pressed, P: Sequence[Scalar]) -> list[Scalar]:
     """The values where they are |N|; elsewhere they are divided by 0, and there are none."""
     allowed = REACHED * sum((function("abs", p) for p in P), start=LEAST)
     off = [function("abs", p - sqrt(inner(N, N))) for p, N in zip(P, pressed.normals(P), strict=True)]
-    return [over(p, chosen(x, allowed, 1, 0)) for p, x in zip(P, off, strict=True)]
+    return [over(p, selected(x, allowed, 1, 0)) for p, x in zip(P, off, strict=True)]

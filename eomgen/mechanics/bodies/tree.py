@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion, shortened
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.symbolic.expression.derivative import symbols_of, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import (
@@ -32,7 +32,7 @@ from eomgen.symbolic.expression.spatial import (
     vector_of,
 )
 
-Column = tuple[Vector, Vector]
+MotionColumn = tuple[Vector, Vector]
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Branch:
         axes: from body axes to working axes.
     """
 
-    link: Link
+    link: BodyLink
     parent: int
     E: Matrix
     p: Vector
@@ -85,7 +85,7 @@ class Branch:
     p_bias: Vector
     w: Vector
     w_bias: Vector
-    columns: dict[int, Column]
+    columns: dict[int, MotionColumn]
     moments: Moments
     axes: Matrix
 
@@ -101,18 +101,18 @@ def branches_of(motion: Motion) -> tuple[Branch, ...]:
     return tuple(branches)
 
 
-def origin_of(motion: Motion, link: Link) -> Vector:
+def origin_of(motion: Motion, link: BodyLink) -> Vector:
     """A branch's origin in body axes: the joint point, or the body's own origin where the joint slides along it."""
     return ZERO if motion.moves(link.point) else link.point
 
 
-def offset_of(motion: Motion, link: Link) -> Vector:
+def offset_of(motion: Motion, link: BodyLink) -> Vector:
     """From the parent's origin to this branch's, in the parent's body axes."""
     place = link.local.point(minus(origin_of(motion, link), link.point))
     return place if link.parent == GROUND else minus(place, origin_of(motion, motion.links[link.parent]))
 
 
-def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane: bool) -> Branch:
+def _branch(motion: Motion, link: BodyLink, offset: Vector, moments: Moments, plane: bool) -> Branch:
     scope = motion.scope
     parent_axes = IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
     axes = link.pose.R if plane else IDENTITY
@@ -128,7 +128,7 @@ def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane:
         w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
     own_rate = apply(parent_axes, rate)
     if scope.combines:
-        w = shortened(Twist(w)).w
+        w = shortened_twist(Twist(w)).w
         w_bias = scope.rate_of(w)
     return Branch(
         link,
@@ -145,7 +145,7 @@ def _branch(motion: Motion, link: Link, offset: Vector, moments: Moments, plane:
     )
 
 
-def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, Column]:
+def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, MotionColumn]:
     """The branch's twist against its parent per unit of each speed on which it depends."""
     speeds = {u: k for k, u in enumerate(motion.scope.symbols.u)}
     columns = {}
@@ -185,7 +185,7 @@ def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Momen
     ]
 
 
-def _own_moments(motion: Motion, link: Link, plane: bool) -> Moments:
+def _own_moments(motion: Motion, link: BodyLink, plane: bool) -> Moments:
     body = mass_properties(motion.scope, link.name)
     half_trace = Fraction(1, 2) * (body.I[0][0] + body.I[1][1] + body.I[2][2])
     J = matrix_of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
@@ -203,7 +203,7 @@ def _flat(moments: Moments, plane: bool) -> Moments:
     return Moments(moments.m, moments.h, ((polar, 0, 0), ZERO, ZERO))
 
 
-def _hinge_axis(motion: Motion, link: Link, offset: Vector) -> int | None:
+def _hinge_axis(motion: Motion, link: BodyLink, offset: Vector) -> int | None:
     """The coordinate axis about which a single hinge turns at a place fixed in its parent, else None."""
     if len(link.S) != 1 or any(type(x) is not int or x != 0 for x in link.S[0][1]):
         return None

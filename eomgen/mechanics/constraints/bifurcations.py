@@ -76,7 +76,7 @@ def leads_on(ties: Ties, fork: Fork, state: State) -> bool:
     return bool(_Search(ties, fork, state, ()).size(np.zeros(0)) <= CARRIED)
 
 
-def at_rest(ties: Ties, state: State) -> bool:
+def is_at_rest(ties: Ties, state: State) -> bool:
     """Whether all speeds are 0 there."""
     return all(abs(state[u]) <= SOLVED for u in ties.motion.scope.symbols.u)
 

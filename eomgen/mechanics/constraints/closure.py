@@ -62,7 +62,7 @@ def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dic
         p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
     given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
     given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
-    state = {node: number(value) for node, value in given.items()}
+    state = {node: of_50_digits(value) for node, value in given.items()}
     for name, node in symbols.inputs.items():
         state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
     return state, start_values(model, p)[0] | first_guesses(model, p)
@@ -71,12 +71,12 @@ def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dic
 def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -> State:
     """Coordinates that lie about those given, soon after t = 0."""
     symbols = ties.motion.scope.symbols
-    shifted = {node: number(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
-    shifted |= on_spheres(ties.motion.scope.quaternions, shifted)
-    return shifted | {symbols.t: number(rng.uniform(0, spread))}
+    shifted = {node: of_50_digits(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
+    shifted |= on_unit_spheres(ties.motion.scope.quaternions, shifted)
+    return shifted | {symbols.t: of_50_digits(rng.uniform(0, spread))}
 
 
-def on_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
+def on_unit_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
     """The symbols whose squares add up to 1, over their norm."""
     found: State = {}
     for symbols in spheres:
@@ -85,7 +85,7 @@ def on_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
     return found
 
 
-def number(value: float) -> Any:
+def of_50_digits(value: float) -> Any:
     """A float as a number of 50 digits."""
     return fifty_digits().number(1) * value
 

@@ -31,7 +31,7 @@ Label = tuple[str, int]
 
 
 @dataclass(frozen=True)
-class Block:
+class DependentBlock:
     """Dependent coordinates that some rows determine together.
 
     Args:
@@ -61,7 +61,7 @@ class Elimination:
 
     scope: Scope
     used: dict[Label, str]
-    blocks: tuple[Block, ...]
+    blocks: tuple[DependentBlock, ...]
 
 
 def dependent_coordinates(scope: Scope) -> tuple[str, ...]:
@@ -69,12 +69,12 @@ def dependent_coordinates(scope: Scope) -> tuple[str, ...]:
     return tuple(name for name, part in scope.model.coordinates.items() if part.dependent)
 
 
-def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[Block, ...]:
+def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[DependentBlock, ...]:
     """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
     moving = (*scope.symbols.q, scope.symbols.t)
     rates = {q.name: rate for q, rate in zip(scope.symbols.q, scope.rates, strict=True)}
 
-    def divided(block: Block) -> bool:
+    def divided(block: DependentBlock) -> bool:
         nodes = order([rates[name] for name in block.coordinates])
         return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
 
@@ -184,7 +184,7 @@ def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple
     """(A, b, blocks) of u_d = A u_i + b."""
     system = [{j: ties.J[i][k] for j, k in enumerate(dependent)} for i in rows]
     right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
-    solution, blocks = cramer.solved(system, right, vanishes=holds_identically, shorter=shorter)
+    solution, blocks = cramer.solution_by_minors(system, right, vanishes=holds_identically, shorter=shorter)
     return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
 
 
@@ -206,6 +206,6 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
     return with_speeds_named(replace(reduced, names={**scope.names, **names}))
 
 
-def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> Block:
+def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> DependentBlock:
     owners = dict.fromkeys(ties.closing[rows[i]].tie for i in block.equations)
-    return Block(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))
+    return DependentBlock(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.errors import EomgenError, NotYet
-from eomgen.mechanics.bodies.contact_modes import Modes
-from eomgen.mechanics.bodies.kinematics import Link, Motion, motion_of
+from eomgen.mechanics.bodies.contact_modes import ContactModes
+from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, motion_of
 from eomgen.mechanics.bodies.scope import scope_of
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
@@ -29,7 +29,7 @@ from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE
 
-Columns = tuple[tuple[Vector, Vector], ...]
+TwistColumns = tuple[tuple[Vector, Vector], ...]
 RowName = tuple[str, int]  # of a tie, from 1
 
 
@@ -83,7 +83,7 @@ class Freedom:
         return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
 
 
-def freedom_of(model: Model, modes: Modes | None = None) -> Freedom:
+def freedom_of(model: Model, modes: ContactModes | None = None) -> Freedom:
     """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
 
     Args:
@@ -132,18 +132,18 @@ def counted(ties: Ties) -> tuple[int, str]:
     return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
 
 
-def is_particle(motion: Motion, link: Link) -> bool:
+def is_particle(motion: Motion, link: BodyLink) -> bool:
     """A point mass that its joint does not turn."""
     shape = motion.scope.model.bodies[link.name].shape
     turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
     return shape is not None and shape.is_point and (_is_placed(link) or not turns)
 
 
-def _is_placed(link: Link) -> bool:
+def _is_placed(link: BodyLink) -> bool:
     return link.joint is None or not link.joint.carries_reaction
 
 
-def _components(ties: Ties, link: Link, free: int, columns: Columns) -> int:
+def _components(ties: Ties, link: BodyLink, free: int, columns: TwistColumns) -> int:
     """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
 
     A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
@@ -155,14 +155,14 @@ def _components(ties: Ties, link: Link, free: int, columns: Columns) -> int:
     return free - len(columns) + max(0, constant - satisfied)
 
 
-def _ways(motion: Motion, link: Link) -> Columns:
+def _ways(motion: Motion, link: BodyLink) -> TwistColumns:
     """The columns of S along which the joint moves."""
     if len(link.S) != len(link.s):  # of a quaternion
         return link.S
     return tuple(column for column, s in zip(link.S, link.s, strict=True) if motion.moves((s,)))
 
 
-def _sliding(columns: Columns) -> Columns:
+def _sliding(columns: TwistColumns) -> TwistColumns:
     """Those that turn nothing."""
     return tuple((w, v) for w, v in columns if all(is_zero(x) for x in w))
 

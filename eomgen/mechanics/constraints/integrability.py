@@ -38,7 +38,7 @@ from eomgen.symbolic.solve import linear
 
 LONGEST = 400  # characters of a form that is integrated in closed form
 
-Form = tuple[Scalar, ...]
+DifferentialForm = tuple[Scalar, ...]
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class _Forms:
 
     ties: Ties
     y: tuple[Node, ...]
-    held: tuple[Form, ...]
-    moving: tuple[tuple[Row, Form], ...]
+    held: tuple[DifferentialForm, ...]
+    moving: tuple[tuple[Row, DifferentialForm], ...]
     state: State
 
     def values(self, scalars: Sequence[Scalar]) -> list[Any]:
@@ -93,14 +93,14 @@ class _Forms:
     def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
         return np.array([float(x) for x in self.values(scalars)])
 
-    def allowed(self, forms: Sequence[Form]) -> np.ndarray:
+    def allowed(self, forms: Sequence[DifferentialForm]) -> np.ndarray:
         """A basis of what these forms and the held ones allow, one in each column."""
         rows = [self.numbers(form) for form in (*self.held, *forms)]
         A = np.array([row / (np.linalg.norm(row) or 1) for row in rows])
         _, sizes, V = np.linalg.svd(A)
         return V[int(np.sum(sizes > RANK)) :].T
 
-    def closes(self, form: Form, allowed: np.ndarray) -> bool:
+    def closes(self, form: DifferentialForm, allowed: np.ndarray) -> bool:
         """dw(X, Y) = 0 of all that is allowed."""
         n = len(self.y)
         slopes = self.numbers([x for row in jacobian(form, self.y) for x in row]).reshape(n, n)
@@ -128,7 +128,7 @@ def integrability_of(ties: Ties) -> Integrability | None:
     return Integrability(tuple(rows), reached - 1)
 
 
-def _judged(forms: _Forms, row: Row, form: Form, complete: bool) -> VelocityRow:
+def _judged(forms: _Forms, row: Row, form: DifferentialForm, complete: bool) -> VelocityRow:
     alone = forms.closes(form, forms.allowed([form]))
     return VelocityRow(row.tie, row.number, alone or complete, integral_of(forms.ties, form) if alone else None)
 
@@ -138,7 +138,7 @@ def _forms_of(ties: Ties, state: State) -> _Forms:
     q, t = scope.symbols.q, scope.symbols.t
     free = [k for k, x in enumerate(q) if not scope.model.coordinates[x.name].driven]
 
-    def form(entries: dict[int, Scalar], at_rest: Scalar) -> Form:
+    def form(entries: dict[int, Scalar], at_rest: Scalar) -> DifferentialForm:
         return (*(entries.get(k, 0) for k in range(len(q))), at_rest)
 
     rows = [
@@ -170,18 +170,18 @@ def _reached(forms: _Forms) -> int:
     return len(found)
 
 
-def _fields(forms: _Forms) -> list[Form]:
+def _fields(forms: _Forms) -> list[DifferentialForm]:
     """Fields that span what all rows allow, as functions of y."""
     n = len(forms.y)
     rows = [{k: x for k, x in enumerate(w) if not is_zero(x)} for w in (*forms.held, *(w for _, w in forms.moving))]
-    solution = linear.solved(rows, [0] * len(rows), n, forms.values, last=(n - 1,))
+    solution = linear.sparse_solution(rows, [0] * len(rows), n, forms.values, last=(n - 1,))
     return [
         tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
         for f in solution.free
     ]
 
 
-def _bracket(y: Sequence[Node], X: Form, Y: Form) -> Form:
+def _bracket(y: Sequence[Node], X: DifferentialForm, Y: DifferentialForm) -> DifferentialForm:
     """[X, Y] = (dY/dy) X - (dX/dy) Y"""
     along_X, along_Y = tangent(Y, dict(zip(y, X, strict=True))), tangent(X, dict(zip(y, Y, strict=True)))
     return tuple(a - b for a, b in zip(along_X, along_Y, strict=True))
@@ -195,7 +195,7 @@ def _rank(rows: Sequence[np.ndarray]) -> int:
 # -- in closed form --------------------------------------------------------------------------------
 
 
-def integral_of(ties: Ties, form: Form) -> Scalar | None:
+def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
     """phi(q, t), 0 at the start, with dphi = k w for a factor k among 1, 1/w_i and 1/(w_i w_j); None: none found."""
     scope = ties.motion.scope
     y = (*scope.symbols.q, scope.symbols.t)

@@ -16,8 +16,8 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, NotYet
-from eomgen.mechanics.bodies.contact_modes import CLOSED, Mode, Modes, friction_factor, rows_in_mode
-from eomgen.mechanics.bodies.kinematics import GROUND, Link, Motion, slide_of
+from eomgen.mechanics.bodies.contact_modes import CLOSED, ContactMode, ContactModes, friction_factor, rows_in_mode
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, slide_of
 from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.mechanics.bodies.simplify import shorter_row
 from eomgen.model.constraints.row import TieRow
@@ -122,7 +122,9 @@ class Ties:
         return tuple(row.gap for row in self.closing)
 
 
-def ties_of(motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: Modes | None = None) -> Ties:
+def ties_of(
+    motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: ContactModes | None = None
+) -> Ties:
     """The rows of every constraint of the model.
 
     Args:
@@ -147,14 +149,14 @@ def ties_of(motion: Motion, used: Mapping[tuple[str, int], str] | None = None, m
     return Ties(motion, tuple(rows))
 
 
-def rows_of(motion: Motion, name: str) -> tuple[Row, ...]:
+def rows_of_tie(motion: Motion, name: str) -> tuple[Row, ...]:
     """The rows that a tie has while it is closed, whether it is so or not: how far an open contact is open."""
     constraint = motion.scope.model.constraints[name]
     rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
     return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
 
 
-def _held_on_path(motion: Motion, link: Link) -> TieRow:
+def _held_on_path(motion: Motion, link: BodyLink) -> TieRow:
     """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
     _, v = link.S[0]
     along = apply(link.pose.R, v)
@@ -209,7 +211,7 @@ def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
     return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
 
 
-def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: Mode) -> Row:
+def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -> Row:
     """The row with its friction, where it has any."""
     law = getattr(constraint, "friction", None)
     if law is None or not row.tangent:

@@ -41,7 +41,7 @@ Matrix6 = list[list[Scalar]]
 
 
 @dataclass(frozen=True)
-class Elimination:
+class JointElimination:
     """What is left of one eliminated column: speed index k, column s, I s, d and r."""
 
     k: int
@@ -51,7 +51,7 @@ class Elimination:
     r: Scalar
 
 
-def applies(motion: Motion, branches: tuple[Branch, ...]) -> bool:
+def is_articulated(motion: Motion, branches: tuple[Branch, ...]) -> bool:
     """Every speed belongs to one joint alone, and no rotor couples two of them."""
     size = len(motion.scope.symbols.u)
     owned = [k for branch in branches for k in branch.columns]
@@ -62,7 +62,7 @@ def applies(motion: Motion, branches: tuple[Branch, ...]) -> bool:
 def with_accelerations(system: System, assembly: Assembly) -> Assembly:
     """The assembly with explicit accelerations, where articulated bodies give them."""
     branches = branches_of(system.motion)
-    if assembly.J or assembly.friction or not applies(system.motion, branches):
+    if assembly.J or assembly.friction or not is_articulated(system.motion, branches):
         return assembly
     return replace(assembly, accelerations=accelerations(system.loads, branches))
 
@@ -105,11 +105,11 @@ def _velocity_terms(branches: tuple[Branch, ...]) -> tuple[list[Six], list[Six]]
 
 def _inward(
     branches: tuple[Branch, ...], joints: tuple[list[Scalar], list[Scalar]], biases: list[Six], p: list[Six]
-) -> list[list[Elimination]]:
+) -> list[list[JointElimination]]:
     """Eliminate every column, leaves first; joints: (effort, rotor inertia) of each speed."""
     effort, rotors = joints
     inertia = [_matrix(branch) for branch in branches]
-    eliminated: list[list[Elimination]] = [[] for _ in branches]
+    eliminated: list[list[JointElimination]] = [[] for _ in branches]
     for i in reversed(range(len(branches))):
         branch, I, force = branches[i], inertia[i], p[i]
         shifted = list(force)
@@ -120,7 +120,7 @@ def _inward(
             r = effort[k] - _dot(s, shifted)
             g = over(1, d)
             scaled = [g * x for x in Is]
-            eliminated[i].append(Elimination(k, s, Is, d, r))
+            eliminated[i].append(JointElimination(k, s, Is, d, r))
             I = _downdated(I, Is, scaled)
             shifted = [x + y * r for x, y in zip(shifted, scaled, strict=True)]
         if branch.parent != GROUND:
@@ -130,7 +130,7 @@ def _inward(
 
 
 def _outward(
-    branches: tuple[Branch, ...], eliminated: list[list[Elimination]], biases: list[Six], base: Six, size: int
+    branches: tuple[Branch, ...], eliminated: list[list[JointElimination]], biases: list[Six], base: Six, size: int
 ) -> tuple[Scalar, ...]:
     """a, root first."""
     a: list[Scalar] = [0] * size

@@ -29,7 +29,7 @@ def by_determinants(assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scala
     """
     symbols, n = assembly.symbols, len(assembly.M)
     rows, right = bordered_rows(assembly, kept)
-    values = [x for (x,) in cramer.solved(rows, [(x,) for x in right])[0]]
+    values = [x for (x,) in cramer.solution_by_minors(rows, [(x,) for x in right])[0]]
     multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
     return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
 

@@ -17,10 +17,10 @@ from eomgen.errors import UsageError
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 
-Rates = tuple[float, float]
+PullBack = tuple[float, float]
 
 
-def stabilized(system: System, assembly: Assembly, rates: Rates) -> Assembly:
+def stabilized(system: System, assembly: Assembly, rates: PullBack) -> Assembly:
     """The equations of motion with rows that pull.
 
     Args:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from eomgen.mechanics.bodies.contact_modes import Modes
+from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.declared_speeds import Solved, with_declared_speeds
 from eomgen.mechanics.bodies.kinematics import Motion, motion_of
 from eomgen.mechanics.bodies.loads import Loads, loads_of
@@ -33,7 +33,7 @@ class System:
     motion: Motion
     loads: Loads
     ties: Ties
-    modes: Modes = field(default_factory=dict)
+    modes: ContactModes = field(default_factory=dict)
     elimination: Elimination | None = None
     free: System | None = None
     declared: tuple[Solved, ...] = ()
@@ -55,7 +55,7 @@ class System:
         return replace(symbols, lam=lam)
 
 
-def system_of(model: Model, modes: Modes | None = None) -> System:
+def system_of(model: Model, modes: ContactModes | None = None) -> System:
     """Motion, loads and ties of a model, dependent coordinates eliminated.
 
     Args:
@@ -65,16 +65,16 @@ def system_of(model: Model, modes: Modes | None = None) -> System:
         DerivationError: what the model says cannot be derived.
     """
     free = free_system_of(model, modes)
-    return reduced(free) if dependent_coordinates(free.scope) or model.speeds else free
+    return reduced_system(free) if dependent_coordinates(free.scope) or model.speeds else free
 
 
-def free_system_of(model: Model, modes: Modes | None = None) -> System:
+def free_system_of(model: Model, modes: ContactModes | None = None) -> System:
     """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
     motion = motion_of(scope_of(model))
     return System(motion, loads_of(motion), ties_of(motion, modes=modes), modes or {})
 
 
-def reduced(free: System) -> System:
+def reduced_system(free: System) -> System:
     """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
 
     Raises:

@@ -8,8 +8,8 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import Link
-from eomgen.mechanics.constraints.closure import generic_state, number, scattered_state
+from eomgen.mechanics.bodies.kinematics import BodyLink
+from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import from_potential
@@ -88,7 +88,7 @@ def _is_full(system: System) -> bool:
     return own and not any(_is_lean(system, link) for link in system.motion.links)
 
 
-def _is_lean(system: System, link: Link) -> bool:
+def _is_lean(system: System, link: BodyLink) -> bool:
     """Whether a body has motions without kinetic energy, as far as zeros on the diagonal of its inertia tell."""
     mass = mass_properties(system.scope, link.name)
     axes = (2,) if system.scope.model.space == "plane" else range(3)
@@ -134,8 +134,8 @@ def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Prob
     return Problem("coordinates", f"{what}: nothing determines their accelerations", mend=mend)
 
 
-def _spin(link: Link, u: Mapping[Node, float], state: State) -> list[float]:
+def _spin(link: BodyLink, u: Mapping[Node, float], state: State) -> list[float]:
     """The part of a body's angular velocity that is linear in u, at these speeds."""
-    ways = [state | {node: number(k * x) for node, x in u.items()} for k in (1, 0)]
+    ways = [state | {node: of_50_digits(k * x) for node, x in u.items()} for k in (1, 0)]
     with_u, without = (evaluate(link.twist.w, way, fifty_digits()) for way in ways)
     return [float(x - y) for x, y in zip(with_u, without, strict=True)]

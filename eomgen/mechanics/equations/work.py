@@ -15,7 +15,7 @@ from eomgen.symbolic.expression.spatial import ZERO, dot, vector_of
 def generalized_forces(loads: Loads) -> ScalarRow:
     """Q_k of everything applied: -dV/dq_k where there is a potential, else the virtual work per unit of q_k."""
     rows = [force_row(loads, force) for force in loads.applied] + [effort_row(loads.motion, e) for e in loads.efforts]
-    return total(rows, len(loads.motion.scope.symbols.u))
+    return summed(rows, len(loads.motion.scope.symbols.u))
 
 
 def powered_forces(loads: Loads) -> ScalarRow:
@@ -23,10 +23,10 @@ def powered_forces(loads: Loads) -> ScalarRow:
     motion = loads.motion
     rows = [force_row(loads, force) for force in loads.applied if force.potential is None]
     rows += [drive_row(motion, effort) for effort in loads.efforts]
-    return total(rows, len(motion.scope.symbols.u))
+    return summed(rows, len(motion.scope.symbols.u))
 
 
-def total(rows: list[ScalarRow], size: int) -> ScalarRow:
+def summed(rows: list[ScalarRow], size: int) -> ScalarRow:
     """The sum of rows, entry by entry."""
     sums: list[Scalar] = [0] * size
     for row in rows:
@@ -39,7 +39,7 @@ def force_row(loads: Loads, force: Applied) -> ScalarRow:
     if force.potential is not None:
         return from_potential(loads.motion, force.potential)
     size = len(loads.motion.scope.symbols.u)
-    return total([load_row(loads, load) for load in force.loads], size)
+    return summed([load_row(loads, load) for load in force.loads], size)
 
 
 def effort_row(motion: Motion, effort: JointEffort) -> ScalarRow:
@@ -74,7 +74,7 @@ def load_row(loads: Loads, load: Load) -> ScalarRow:
         row = tuple(load.value if q.name == load.coordinate else 0 for q in symbols.q)
         return per_speed(motion, row)
     if isinstance(load, UniformField):
-        return total([load_row(loads, weight) for weight in weights(loads)], len(symbols.u))
+        return summed([load_row(loads, weight) for weight in weights(loads)], len(symbols.u))
     if isinstance(load, Couple):
         spin = jacobian(spin_of(motion, motion.link(load.body)), symbols.u)
         couple = in_body_axes(motion, load.body, load.couple, load.axes)
@@ -96,7 +96,7 @@ def placeless_forces(loads: Loads) -> ScalarRow:
     energies = [force.potential for force in loads.applied if force.placeless]
     rows += [from_potential(loads.motion, V) for V in energies if V is not None]
     rows += [_sliding_row(loads.motion, load) for load in loads.placed if isinstance(load, PointForce)]
-    return total(rows, size)
+    return summed(rows, size)
 
 
 def _sliding_row(motion: Motion, force: PointForce) -> ScalarRow:
@@ -116,4 +116,4 @@ def joint_forces(loads: Loads) -> ScalarRow:
     for effort in loads.efforts:
         rate = motion.link(effort.body).s_rate[effort.variable]
         rows.append(tuple(effort.effort * d for d in gradient(rate, motion.scope.symbols.u)))
-    return total(rows, size)
+    return summed(rows, size)

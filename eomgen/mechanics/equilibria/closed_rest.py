@@ -27,7 +27,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import solved
+from eomgen.symbolic.solve.linear import sparse_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
@@ -133,7 +133,7 @@ class ClosedForms:
             if not all(map(_is_nothing, phi)):
                 return None
             entries = readable_all([x for row in rows for x in row], Work.VALUE) if rows and statics.lam else ()
-            solution = solved(
+            solution = sparse_solution(
                 [{j: entries[len(statics.lam) * k + j] for j in range(len(statics.lam))} for k in range(len(rows))],
                 readable_all(right, Work.VALUE),
                 len(statics.lam),

@@ -56,7 +56,7 @@ def unheld(statics: StaticEquations) -> tuple[Node, ...]:
     return tuple(q for q, column in zip(statics.q, slopes, strict=False) if all(map(vanishes, column)))
 
 
-def chosen(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Chosen:
+def chosen_coordinates(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Chosen:
     """The coordinates that may be chosen near the place of rest that is reached from a guess.
 
     Args:

@@ -26,7 +26,7 @@ from eomgen.symbolic.numeric.tolerances import ASIDE_STEP, DEGENERATE
 LEFT = 1e-3  # of the largest force nearby: a moment that is left
 
 
-def is_balanced(statics: StaticEquations, place: State) -> bool:
+def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
     """Whether no moment is left where angles lock; True where none do.
 
     Args:

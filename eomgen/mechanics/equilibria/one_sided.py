@@ -16,7 +16,7 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
-def pulling(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
+def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
     """The one-sided ties whose reaction is negative at a state.
 
     Args:

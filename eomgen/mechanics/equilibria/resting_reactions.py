@@ -37,7 +37,7 @@ def system_at_rest(place: Equilibrium) -> System:
     return system if system.free is None or system.elimination is not None else system.free
 
 
-def state_of(place: Equilibrium) -> dict[Node, Scalar]:
+def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
     """Everything that moves, at rest there: exact, or the exact numbers that its floats are."""
     system = system_at_rest(place)
     symbols = system.symbols
@@ -53,7 +53,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
     Raises:
         DerivationError: a force acts at no place, so that reactions do not follow.
     """
-    system, state = system_at_rest(place), state_of(place)
+    system, state = system_at_rest(place), state_at_rest(place)
     reactions = reactions_of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
     positive = positive_parameters(system.scope)
     found = []

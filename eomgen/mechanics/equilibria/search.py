@@ -22,11 +22,11 @@ from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
-from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen, holds_velocities, unheld
+from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibria.families import each_once, nearest_first
 from eomgen.mechanics.equilibria.guesses import Guess
-from eomgen.mechanics.equilibria.locked import is_balanced
-from eomgen.mechanics.equilibria.one_sided import pulling
+from eomgen.mechanics.equilibria.locked import is_balanced_in_locked
+from eomgen.mechanics.equilibria.one_sided import pulling_contacts
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, static_equations
@@ -67,7 +67,7 @@ class Equilibrium:
         state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
         state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
         values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
-        return pulling(system, state, values)
+        return pulling_contacts(system, state, values)
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,9 @@ class _Search:
         statics = self._held_by_forces
         if not self._slides:
             return Chosen()
-        return replace(chosen(statics, self.values, self._guess.of(statics.q)), indifferent=self._indifferent)
+        return replace(
+            chosen_coordinates(statics, self.values, self._guess.of(statics.q)), indifferent=self._indifferent
+        )
 
     @cached_property
     def _slides(self) -> bool:
@@ -222,7 +224,7 @@ class _Search:
         """Where the forces balance, the nearest to the guess first."""
         first = self._guess.of(self.statics.q)
         places = places_of_rest(self.statics, self.values, first)
-        found = [z for z in places.found if is_balanced(self.whole, self._at(z))]
+        found = [z for z in places.found if is_balanced_in_locked(self.whole, self._at(z))]
         return replace(places, found=tuple(nearest_first(self.statics, found, first)))
 
     def _at(self, z: np.ndarray) -> dict[Node, float]:

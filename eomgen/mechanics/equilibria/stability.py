@@ -216,7 +216,7 @@ class _Place:
         Z: list[list[Scalar]] = [[int(k == a) for a in along] for k in range(n)]
         values = self.values or values_of_parameters(self.statics.system.scope, Random(3))
         for column, a in enumerate(along):
-            solution = linear.solved(
+            solution = linear.sparse_solution(
                 [{j: row[k] for j, k in enumerate(others)} for row in J],
                 [-row[a] for row in J],
                 len(others),

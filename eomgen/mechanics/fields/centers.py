@@ -12,7 +12,7 @@ relative centres: c_ij = c_0j - c_0i, and any three centres c_ij, c_jk, c_ik are
 from __future__ import annotations
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.fields.field import Field, rotation_center
+from eomgen.mechanics.fields.field import VelocityField, rotation_center
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 from eomgen.symbolic.solve.solving import vanishes
 
@@ -20,13 +20,13 @@ Homogeneous = Vector
 """(x : y : w), a point of the plane; w = 0 at infinity."""
 
 
-def homogeneous_center(field: Field) -> Homogeneous:
+def homogeneous_center(field: VelocityField) -> Homogeneous:
     """c = (-v_0y : v_0x : w) of a field."""
     v = field.velocity(ZERO)
     return (-v[1], v[0], field.w[2])
 
 
-def finite_center(field: Field, whose: str) -> Vector:
+def finite_center(field: VelocityField, whose: str) -> Vector:
     """The centre of rotation where there is one in sight.
 
     Args:

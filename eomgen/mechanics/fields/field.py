@@ -23,7 +23,7 @@ UP: Vector = (0, 0, 1)
 
 
 @dataclass(frozen=True)
-class Field:
+class VelocityField:
     """The motion of one rigid body at a state, ground axes.
 
     Args:
@@ -53,34 +53,34 @@ class Field:
         """omega x (omega x r) [m/s^2]"""
         return cross(self.w, cross(self.w, minus(place, self.p)))
 
-    def at(self, state: Mapping[Node, Scalar]) -> Field:
+    def at(self, state: Mapping[Node, Scalar]) -> VelocityField:
         """The field with the state's values put in."""
         if not state:
             return self
         vectors = (self.p, self.v, self.a, self.w, self.e)
         flat = iter(substituted([x for vector in vectors for x in vector], state))
-        return Field(*(vector_of(next(flat) for _ in range(3)) for _ in vectors))
+        return VelocityField(*(vector_of(next(flat) for _ in range(3)) for _ in vectors))
 
-    def against(self, other: Field) -> Field:
+    def against(self, other: VelocityField) -> VelocityField:
         """The field of velocities that another body sees, in ground axes: v - v_other, omega - omega_other."""
         return replace(self, v=minus(self.v, other.velocity(self.p)), w=minus(self.w, other.w))
 
 
-def field_of(motion: Motion, body: str) -> Field:
+def field_of(motion: Motion, body: str) -> VelocityField:
     """The field of a body of the model; of the ground it is zero."""
     if body not in motion.index:
-        return Field()
+        return VelocityField()
     link, scope = motion.link(body), motion.scope
     v = scope.rate_of(link.pose.p)
     w = link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
     rates = scope.with_accelerations((*v, *w))
-    return Field(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
+    return VelocityField(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
 
 
 # -- points and lines of a field -------------------------------------------------------------------
 
 
-def rotation_center(field: Field) -> Vector:
+def rotation_center(field: VelocityField) -> Vector:
     """In the plane: the point of the body at rest, p_O + omega x v_O / omega^2.
 
     Raises:
@@ -92,7 +92,7 @@ def rotation_center(field: Field) -> Vector:
     return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
 
 
-def acceleration_pole(field: Field) -> Vector:
+def acceleration_pole(field: VelocityField) -> Vector:
     """In the plane: the point without acceleration, p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2).
 
     Raises:
@@ -105,12 +105,12 @@ def acceleration_pole(field: Field) -> Vector:
     return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
 
 
-def axis_point(field: Field) -> Vector:
+def axis_point(field: VelocityField) -> Vector:
     """In space: the point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega."""
     return plus(field.p, times(over(1, dot(field.w, field.w)), cross(field.w, field.v)))
 
 
-def least_speed(field: Field, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
+def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
     """The least speed of the points between two points of the body.
 
     Along the segment only the component of v along h = omega x (end - start) changes, linearly from a to b:
@@ -188,7 +188,7 @@ def _across(v: Vector, a: Vector) -> Scalar:
     return function("abs", n[2]) if vanishes(n[0]) and vanishes(n[1]) else sqrt(dot(n, n))
 
 
-def inflection_center(field: Field) -> Vector:
+def inflection_center(field: VelocityField) -> Vector:
     """The centre of the circle through the centre of rotation on which the points are whose path is straight there.
 
     In the plane, with r from the centre of rotation, whose acceleration is a_P:  r^2 = r . a_P / omega^2.

@@ -17,7 +17,7 @@ from functools import cached_property
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Constants, Curve, curve_of
-from eomgen.mechanics.fields.field import Field, axis_point, field_of
+from eomgen.mechanics.fields.field import VelocityField, axis_point, field_of
 from eomgen.mechanics.fields.possible import Possible
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -87,7 +87,7 @@ class Kinds:
             return self._about_one_direction(body, field)
         return self._in_all_directions(body, field)
 
-    def _about_one_direction(self, body: str, field: Field) -> Kind:
+    def _about_one_direction(self, body: str, field: VelocityField) -> Kind:
         """omega keeps its direction."""
         vanish, possible = self.possible.vanish, self.possible
         axis = self._direction(field.w)
@@ -102,7 +102,7 @@ class Kinds:
             return Kind(SLIDING, self._on_axis(center, field.w), axis)
         return Kind(HELICAL, self._on_axis(center, field.w), axis, self.constants.of(pitch))
 
-    def _in_all_directions(self, body: str, field: Field) -> Kind:
+    def _in_all_directions(self, body: str, field: VelocityField) -> Kind:
         """omega turns: a point of the body may still stay."""
         place = fixed_point(field)
         if self.possible.vanish(*field.velocity(place), *self.possible.rate(place)):
@@ -120,7 +120,7 @@ class Kinds:
         """The point of a fixed axis nearest to the ground's origin."""
         return self.constants.vector(minus(center, times(over(dot(center, w), dot(w, w)), w)))
 
-    def _named(self, body: str, field: Field) -> str:
+    def _named(self, body: str, field: VelocityField) -> str:
         """The body's first point that stays where it is: `bar.start`; "" where none has a name."""
         motion = self.system.motion
         for name, local in motion.points[body].items():
@@ -129,7 +129,7 @@ class Kinds:
         return ""
 
 
-def fixed_point(field: Field) -> Vector:
+def fixed_point(field: VelocityField) -> Vector:
     """The point of a body whose velocity and acceleration vanish together, where there is one and omega turns.
 
     v + omega x r = 0 gives r but for its part along omega, and a + epsilon x r + omega x (omega x r) = 0 that one.
@@ -145,7 +145,7 @@ def fixed_point(field: Field) -> Vector:
 # -- at one instant --------------------------------------------------------------------------------
 
 
-def instant_kind(field: Field) -> str:
+def instant_kind(field: VelocityField) -> str:
     """The kind of a field at one instant: rest, translation, rotation, helical motion."""
     if all(vanishes(x) for x in field.w):
         return REST if all(vanishes(x) for x in field.v) else TRANSLATION

@@ -16,7 +16,7 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import generic_state, number
+from eomgen.mechanics.constraints.closure import generic_state, of_50_digits
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -81,7 +81,7 @@ class Possible:
     def _state(self, rng: Random) -> State:
         ties, symbols = self.system.ties, self.system.symbols
         state = generic_state(ties, rng, shaken=self.shaken)
-        state |= {node: number(rng.uniform(-1, 1)) for node in self.jerks}
+        state |= {node: of_50_digits(rng.uniform(-1, 1)) for node in self.jerks}
         rows = tuple(row.velocity for row in ties.closing)
         J = tuple(x for row in ties.J for x in row)
         for unknowns in (symbols.u, symbols.a, self.jerks):

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.fields.field import Field, field_of
+from eomgen.mechanics.fields.field import VelocityField, field_of
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     Matrix,
@@ -42,7 +42,7 @@ class Composition:
     """
 
     place: Vector
-    carrier: Field
+    carrier: VelocityField
     R: Matrix
     relative: tuple[Vector, Vector, Vector]
 
@@ -97,7 +97,7 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
     scope = motion.scope
     owner, local = motion.place(point)
     place = motion.position((owner, local))
-    R = axes_of(motion, body)
+    R = body_axes(motion, body)
     if owner != body and body in motion.index:
         local = apply(transposed(R), minus(place, motion.link(body).pose.p))
     elif owner != body:
@@ -106,7 +106,7 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
     return Composition(place, field_of(motion, body), R, (local, v, vector_of(scope.with_accelerations(v))))
 
 
-def axes_of(motion: Motion, body: str) -> Matrix:
+def body_axes(motion: Motion, body: str) -> Matrix:
     """The body's axes in the ground; of the ground its own."""
     return motion.link(body).pose.R if body in motion.index else IDENTITY
 
@@ -133,4 +133,4 @@ MAGNITUDES = {
 def part_of_motion(motion: Motion, part: str, point: str, body: str, axes: str = "ground") -> Vector:
     """A part of the motion of a point, seen from a body, in the axes that are named."""
     vector = _VECTORS[part](composition_of(motion, point, body))
-    return apply(transposed(axes_of(motion, axes)), vector)
+    return apply(transposed(body_axes(motion, axes)), vector)

@@ -62,7 +62,7 @@ class Constant:
     expression: Scalar
 
 
-def stays(system: System, assembly: Assembly, functions: Sequence[Scalar]) -> tuple[bool, ...]:
+def stay_constant(system: System, assembly: Assembly, functions: Sequence[Scalar]) -> tuple[bool, ...]:
     """Of each function of q, u and t whether it stays constant along every motion.
 
     Where ties close or bodies rub none is said to be, nor where the prime field cannot tell.
@@ -82,7 +82,7 @@ def stays(system: System, assembly: Assembly, functions: Sequence[Scalar]) -> tu
 def _following(rows: Sequence[Sequence[Scalar]], asked: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
     """Of each row asked whether it follows from the rows, at random states: exact ones, or else of 50 digits."""
     flat = [x for row in (*rows, *asked) for x in row]
-    for follow, values_of in ((follows, _exact_values), (dense.follows, _real_values)):
+    for follow, values_of in ((follows, _exact_values), (dense.follows_in_digits, _real_values)):
         rng, found = Random(5), [True] * len(asked)
         try:
             for _ in range(STATES):
@@ -110,7 +110,7 @@ def jacobi(system: System, assembly: Assembly) -> Scalar | None:
     if depends_on(assembly.V, (symbols.t,)) or all(is_zero(x) for x in assembly.nu):
         return None
     found = inner(symbols.u, gradient(assembly.T, symbols.u)) - assembly.T + assembly.V
-    return found if stays(system, assembly, (found,))[0] else None
+    return found if stay_constant(system, assembly, (found,))[0] else None
 
 
 def momenta_of_the_whole(system: System, assembly: Assembly, known: Sequence[Scalar]) -> tuple[Constant, ...]:
@@ -125,7 +125,7 @@ def momenta_of_the_whole(system: System, assembly: Assembly, known: Sequence[Sca
         return ()
     heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
     P = _momentum(system, heavy)
-    constant = stays(system, assembly, P) if heavy else (False,) * 3
+    constant = stay_constant(system, assembly, P) if heavy else (False,) * 3
     places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
     moments = [_constant_moments(system, assembly, bodies, about, point) for about, point in places.items()]
     found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
@@ -141,7 +141,7 @@ def _constant_moments(
     in_space = system.scope.model.space == "space"
     axes = "xyz" if in_space else "z"
     L = angular_momentum(system.motion, point, bodies)[-len(axes) :]
-    constant = stays(system, assembly, L)
+    constant = stay_constant(system, assembly, L)
     found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
     if in_space and all(constant) and len(bodies) == 1:
         found.append(Constant("L", "", about, _square(system, point, bodies[0])))

@@ -15,19 +15,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.first_integrals.linear_motion import Constants, waves
+from eomgen.mechanics.first_integrals.linear_motion import MotionConstants, waves
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.solve.solving import vanishes
 
 Four = tuple[Scalar, ...]
-Waves = tuple[Scalar, Scalar, Scalar]  # E, O, G
-Part = tuple[Callable[[Four], Four], Waves]  # of f(M) x: what multiplies f or its derivative at an eigenvalue, and that
+WaveCoefficients = tuple[Scalar, Scalar, Scalar]  # E, O, G
+WavePart = tuple[
+    Callable[[Four], Four], WaveCoefficients
+]  # of f(M) x: what multiplies f or its derivative at an eigenvalue, and that
 
 
 @dataclass(frozen=True)
-class Pair:
+class CoupledEquations:
     """q'' = A q + B q' + b of two coordinates; all constants."""
 
     A: ScalarRows
@@ -51,7 +53,7 @@ class Pair:
 
 
 def pair_solution(
-    pair: Pair, q0: Sequence[Scalar], u0: Sequence[Scalar], of: Constants
+    pair: CoupledEquations, q0: Sequence[Scalar], u0: Sequence[Scalar], of: MotionConstants
 ) -> tuple[Scalar, Scalar] | None:
     """(q1, q2) as functions of t with q(0) = q0, q'(0) = u0; None where no closed form is known."""
     parts = _parts(pair, of)
@@ -66,7 +68,7 @@ def pair_solution(
     return found[0], found[1]
 
 
-def _parts(pair: Pair, of: Constants) -> list[Part] | None:
+def _parts(pair: CoupledEquations, of: MotionConstants) -> list[WavePart] | None:
     """f(M) = f(mu1) (M - mu2)/(mu1 - mu2) + f(mu2) (M - mu1)/(mu2 - mu1),  or  f(mu) + f'(mu) (M - mu)."""
     values = _eigenvalues(pair, of)
     each = [waves for mu in values if (waves := _waves(mu, of)) is not None]
@@ -82,7 +84,7 @@ def _parts(pair: Pair, of: Constants) -> list[Part] | None:
     return [(share(*values), each[0]), (share(*values[::-1]), each[1])]
 
 
-def _eigenvalues(pair: Pair, of: Constants) -> tuple[Scalar, ...]:
+def _eigenvalues(pair: CoupledEquations, of: MotionConstants) -> tuple[Scalar, ...]:
     """The eigenvalues of M where they are real, one where they coincide; else none.
 
     mu^2 + (B11 B22 - B12 B21 - A11 - A22) mu + A11 A22 - A12 A21 = 0
@@ -98,7 +100,7 @@ def _eigenvalues(pair: Pair, of: Constants) -> tuple[Scalar, ...]:
     return (of.simple(half + root), of.simple(half - root)) if sign == 1 else ()
 
 
-def _waves(mu: Scalar, of: Constants) -> Waves | None:
+def _waves(mu: Scalar, of: MotionConstants) -> WaveCoefficients | None:
     """E, O and G at mu."""
     found = waves(mu, of)
     if found is None:
@@ -107,7 +109,7 @@ def _waves(mu: Scalar, of: Constants) -> Waves | None:
     return even, over(odd, w), over(of.t * of.t, 2) if is_zero(mu) else over(even - 1, mu)
 
 
-def _derivatives(t: Node, mu: Scalar, at: Waves) -> Waves:
+def _derivatives(t: Node, mu: Scalar, at: WaveCoefficients) -> WaveCoefficients:
     """E' = t O/2,  O' = (t E - O)/(2 mu),  G' = (t O/2 - G)/mu;  at 0  t^2/2,  t^3/6,  t^4/24."""
     even, odd, gained = at
     if is_zero(mu):

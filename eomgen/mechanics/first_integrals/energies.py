@@ -99,7 +99,7 @@ def _is_constant(system: System, load: PointForce) -> bool:
     return load.axes is None and not any(depends_on(x, (*symbols.q, *symbols.u, symbols.t)) for x in load.force)
 
 
-def power(system: System, name: str | None = None) -> Scalar:
+def power_of_loads(system: System, name: str | None = None) -> Scalar:
     """Power of everything applied, of one force, or of all that is applied to one body [W].
 
     P = sum F . v + C . w; of what acts at no place, Q_k q_k' and -dV/dq . q'.

@@ -18,8 +18,8 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.integrals import energy_integral
-from eomgen.mechanics.first_integrals.linear_motion import Constants, LinearEquation, particular
-from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, at_start
+from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, particular
+from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, value_at_start
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
@@ -56,7 +56,7 @@ class FreeSpeed:
     def value(self) -> Scalar | None:
         """u_s as a function of the coordinates that are not in `at`; None where nothing gives it."""
         for energy in energy_integral(self.system, self.assembly):
-            difference = energy.expression - at_start(energy.expression, self.start, self.system.symbols)
+            difference = energy.expression - value_at_start(energy.expression, self.start, self.system.symbols)
             return self._root_of_energy(substituted((difference,), self.relations.speeds)[0])
         square = self._square_by_path()
         if square is None:
@@ -160,7 +160,7 @@ def _of_first_order(f: Scalar, k: Scalar, q: Node) -> tuple[Scalar, Scalar] | No
         return None
     growth = exponential_of(power)
     if not is_zero(k) and not depends_on(k, (q,)):
-        constants = Constants(q, lambda x: None, lambda x: simplest(x, Work.VALUE))
+        constants = MotionConstants(q, lambda x: None, lambda x: simplest(x, Work.VALUE))
         second = particular(LinearEquation(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
         return None if second is None else (growth, derivative(second, q))
     gained = primitive(over(f, growth), q)

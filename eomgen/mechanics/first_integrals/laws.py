@@ -16,8 +16,8 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.first_integrals.coupled_motion import Pair, pair_solution
-from eomgen.mechanics.first_integrals.linear_motion import Constants, LinearEquation, solution
+from eomgen.mechanics.first_integrals.coupled_motion import CoupledEquations, pair_solution
+from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -95,7 +95,7 @@ class _Laws:
             line = None if q is None or q in laws else self._line(substituted((a,), laws)[0], q, u)
             if q is None or line is None:
                 continue
-            law = solution(line, self.start[q], self.start[u], self._constants)
+            law = law_of_motion(line, self.start[q], self.start[u], self._constants)
             if law is not None:
                 return {q: law, u: derivative(law, self.system.symbols.t)}
         return {}
@@ -128,7 +128,7 @@ class _Laws:
         f = simplest(a - A * q - B * u, Work.VALUE, self.positive)
         return None if depends_on(f, self._moving) else LinearEquation(A, B, f)
 
-    def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> Pair | None:
+    def _pair(self, a: Sequence[Scalar], q: Sequence[Node], u: Sequence[Node]) -> CoupledEquations | None:
         """a as A q + B u + b with constants, or None."""
         slopes = [[derivative(x, y) for y in (*q, *u)] for x in a]
         rests = [[x, *(-k * y for k, y in zip(row, (*q, *u), strict=True))] for x, row in zip(a, slopes, strict=True)]
@@ -139,7 +139,11 @@ class _Laws:
         rest = [x - sum(derivative(x, y) * y for y in (*q, *u)) for x in a]
         b = [simplest(x, Work.VALUE, self.positive) for x in rest]
         constants = (*A[0], *A[1], *B[0], *B[1], *b)
-        return None if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants) else Pair(A, B, b)
+        return (
+            None
+            if any(depends_on(x, (*self._moving, self.system.symbols.t)) for x in constants)
+            else CoupledEquations(A, B, b)
+        )
 
     def _vary(self, sums: Sequence[Sequence[Scalar]]) -> bool:
         """Whether numbers at two states show that one of the sums of terms changes with what moves."""
@@ -167,8 +171,8 @@ class _Laws:
         return (*self.system.symbols.q, *self.system.symbols.u)
 
     @property
-    def _constants(self) -> Constants:
-        return Constants(self.system.symbols.t, self._sign, lambda x: simplest(x, Work.VALUE, self.positive))
+    def _constants(self) -> MotionConstants:
+        return MotionConstants(self.system.symbols.t, self._sign, lambda x: simplest(x, Work.VALUE, self.positive))
 
     def _sign(self, x: Scalar) -> int | None:
         """The sign of a constant: of its value, or the one that all of its terms have."""

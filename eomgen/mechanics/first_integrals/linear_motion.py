@@ -25,7 +25,7 @@ Sign = Callable[[Scalar], int | None]
 
 
 @dataclass(frozen=True)
-class Constants:
+class MotionConstants:
     """How constants are judged and written.
 
     Args:
@@ -48,7 +48,7 @@ class LinearEquation:
     f: Scalar
 
 
-def solution(line: LinearEquation, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
+def law_of_motion(line: LinearEquation, q0: Scalar, u0: Scalar, of: MotionConstants) -> Scalar | None:
     """q(t) with q(0) = q0, q'(0) = u0; None where no closed form is known."""
     found = particular(line, of)
     if found is None:
@@ -58,7 +58,7 @@ def solution(line: LinearEquation, q0: Scalar, u0: Scalar, of: Constants) -> Sca
     return None if free is None else found + free
 
 
-def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: Constants) -> Scalar | None:
+def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: MotionConstants) -> Scalar | None:
     """The solution of q'' = A q + B q': with d = B/2 and D = d^2 + A, e^(d t) times cos, cosh or 1 of sqrt(|D|) t."""
     t = of.t
     if is_zero(A):
@@ -71,7 +71,7 @@ def homogeneous(A: Scalar, B: Scalar, q0: Scalar, u0: Scalar, of: Constants) -> 
     return function("exp", d * t) * (of.simple(q0) * even + of.simple(over(u0 - d * q0, w)) * odd)
 
 
-def waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
+def waves(D: Scalar, of: MotionConstants) -> tuple[Scalar, Scalar, Scalar] | None:
     """(cosh(w t), sinh(w t), w) with w^2 = D; of a negative D (cos(w t), sin(w t), w) with w^2 = -D; of 0 (1, t, 1)."""
     t, sign = of.t, of.sign(D)
     if sign is None:
@@ -83,7 +83,7 @@ def waves(D: Scalar, of: Constants) -> tuple[Scalar, Scalar, Scalar] | None:
     return function(names[0], w * t), function(names[1], w * t), w
 
 
-def particular(line: LinearEquation, of: Constants) -> Scalar | None:
+def particular(line: LinearEquation, of: MotionConstants) -> Scalar | None:
     """One solution of q'' = A q + B q' + f(t)."""
     try:
         if is_zero(line.A) and is_zero(line.B):
@@ -99,7 +99,7 @@ def particular(line: LinearEquation, of: Constants) -> Scalar | None:
         return None
 
 
-def _of_term(A: Scalar, B: Scalar, g: Scalar, of: Constants) -> Scalar | None:
+def _of_term(A: Scalar, B: Scalar, g: Scalar, of: MotionConstants) -> Scalar | None:
     """One solution for f = g, g a polynomial in t or a g with g'' = mu g."""
     t = of.t
     second = derivative(derivative(g, t), t)

@@ -62,7 +62,7 @@ def relations_of(
             continue
         (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
         rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
-        right.append(at_start(integral.expression, start, symbols) - rest)
+        right.append(value_at_start(integral.expression, start, symbols) - rest)
     if at:
         rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
         right = list(substituted(tuple(right), at))
@@ -88,10 +88,10 @@ def _solved(
         state = generic_state(system.ties)
     except EomgenError:
         return None
-    return linear.solved(rows, right, unknowns, lambda entries: evaluate(entries, state, fifty_digits()))
+    return linear.sparse_solution(rows, right, unknowns, lambda entries: evaluate(entries, state, fifty_digits()))
 
 
-def at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:
+def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:
     """An integral's value at the start; where the speeds are 0 coefficients need not exist, as at a branch point.
 
     Raises:

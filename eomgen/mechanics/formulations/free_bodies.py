@@ -23,7 +23,7 @@ import numpy as np
 
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import body_wrench, weights
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
@@ -32,13 +32,13 @@ from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
-from eomgen.symbolic.numeric.dense import independent, solution, without_rounding
+from eomgen.symbolic.numeric.dense import dense_solution, independent, without_rounding
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 
 @dataclass(frozen=True)
-class Numbers:
+class BodyNumbers:
     """Values of expressions at a state, and along the motion through it."""
 
     system: System
@@ -100,7 +100,7 @@ def free_speeds(system: System, free: System, state: State) -> State:
 
 def _accelerations(system: System, state: State) -> np.ndarray:
     """a of a system in which every tie that closes has its multiplier."""
-    numbers = Numbers(system, state)
+    numbers = BodyNumbers(system, state)
     n, nu = len(system.motion.links), len(system.scope.symbols.u)
     k = len(system.ties.closing) + len(system.scope.quaternions)
     size = 12 * n + nu + k
@@ -117,10 +117,10 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     A[:, multipliers] *= np.any(J, axis=1)  # what says nothing pushes nothing
     A[multipliers, speeds] = J
     regular = independent(J, smallest=LEAST_CHANGE)
-    return solution(A, right, regular=regular, smallest=LEAST_CHANGE)[speeds]
+    return dense_solution(A, right, regular=regular, smallest=LEAST_CHANGE)[speeds]
 
 
-def _put_bodies(numbers: Numbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:
+def _put_bodies(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:
     """Into A and the right side: Newton and Euler for every body, and what its joint says of its motion."""
     links = numbers.system.motion.links
     n = len(links)
@@ -137,7 +137,7 @@ def _put_bodies(numbers: Numbers, A: np.ndarray, right: np.ndarray, speeds: slic
         A[speeds, wrench] = column.T
 
 
-def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
+def _body(numbers: BodyNumbers, link: BodyLink) -> tuple[np.ndarray, np.ndarray]:
     """(I, W - p) of a free body about its origin, body axes: W the applied wrench, p what velocity takes."""
     system = numbers.system
     mass = mass_properties(system.scope, link.name)
@@ -155,7 +155,7 @@ def _body(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
     return inertia, applied - p
 
 
-def _joint(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
+def _joint(numbers: BodyNumbers, link: BodyLink) -> tuple[np.ndarray, np.ndarray]:
     """(columns, b): the child's acceleration against its parent per unit of a, and at a = 0."""
     scope = numbers.system.scope
     parent = numbers.system.motion.links[link.parent] if link.parent >= 0 else None
@@ -172,12 +172,12 @@ def _joint(numbers: Numbers, link: Link) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack([turned[:3], R_CP @ turned[3:]]), bias
 
 
-def _origin(link: Link) -> Vector:
+def _origin(link: BodyLink) -> Vector:
     """The child's origin in the parent's axes."""
     return link.local.point(times(-1, link.point))
 
 
-def _relative_spin(link: Link) -> Vector:
+def _relative_spin(link: BodyLink) -> Vector:
     """Angular velocity of the child against its parent, child's axes."""
     spin = ZERO
     for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
@@ -185,13 +185,13 @@ def _relative_spin(link: Link) -> Vector:
     return spin
 
 
-def _transfer(numbers: Numbers, link: Link) -> np.ndarray:
+def _transfer(numbers: BodyNumbers, link: BodyLink) -> np.ndarray:
     """X: acceleration of the parent's origin, parent's axes -> of the child's origin if it were fixed in the parent."""
     R_CP = numbers.array(link.local.R).T
     return np.block([[R_CP, np.zeros((3, 3))], [-R_CP @ _tilde(numbers.array(_origin(link))), R_CP]])
 
 
-def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slice) -> None:
+def _close(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, multipliers: slice) -> None:
     """Columns of the closing rows' wrenches, and the rows W^T A + d/dt(W^T) xi ... = 0 as J a + gamma = 0."""
     system = numbers.system
     n = len(system.motion.links)
@@ -207,7 +207,7 @@ def _close(numbers: Numbers, A: np.ndarray, right: np.ndarray, multipliers: slic
     _hold_norms(numbers, A, right, multipliers.start + len(system.ties.closing))
 
 
-def _hold_norms(numbers: Numbers, A: np.ndarray, right: np.ndarray, place: int) -> None:
+def _hold_norms(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, place: int) -> None:
     """e . e'' + e' . e' = 0 of every quaternion, with a multiplier of its own."""
     scope, n = numbers.system.scope, len(numbers.system.motion.links)
     speeds = [u.name for u in scope.symbols.u]

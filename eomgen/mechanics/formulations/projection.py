@@ -17,7 +17,7 @@ from eomgen.mechanics.equations.work import placeless_forces
 from eomgen.symbolic.expression.derivative import pullback, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.expression.spatial import ZERO, Inertia, Twist, Wrench, cross, plus
+from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus
 
 name = "projection"
 title = "projection of Newton-Euler"
@@ -43,7 +43,7 @@ def along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     inertia, bias = [], []
     for i, link in enumerate(motion.links):
         mass = mass_properties(motion.scope, link.name)
-        body = Inertia.about_center(mass.m, mass.com, mass.I)
+        body = SpatialInertia.about_center(mass.m, mass.com, mass.I)
         inertia.append(body.momentum(_twist(pushed[6 * i : 6 * i + 6])))
         bias.append(_bias(body, link.twist, _twist(motion.alpha[i])))
     Ma = list(_projected(twists, inertia, u))
@@ -69,7 +69,7 @@ def inertia_side(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     c: list[Scalar] = [0] * size
     for i, link in enumerate(motion.links):
         mass = mass_properties(motion.scope, link.name)
-        inertia = Inertia.about_center(mass.m, mass.com, mass.I)
+        inertia = SpatialInertia.about_center(mass.m, mass.com, mass.I)
         columns = [column for column in zip(*motion.B[i], strict=True)]
         touched = [k for k, column in enumerate(columns) if not all(is_zero(x) for x in column)]
         bias = _bias(inertia, link.twist, _twist(motion.alpha[i]))
@@ -85,7 +85,7 @@ def inertia_side(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     return _with_armatures(motion, M, c)
 
 
-def _bias(inertia: Inertia, xi: Twist, alpha: Twist) -> Wrench:
+def _bias(inertia: SpatialInertia, xi: Twist, alpha: Twist) -> Wrench:
     """I alpha + xi x* (I xi): the wrench that the motion takes at a = 0, body axes, at the origin."""
     momentum = inertia.momentum(xi)
     turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))

@@ -6,7 +6,7 @@ from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import Loads
-from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces, mass_matrix
+from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces, composite_mass_matrix
 from eomgen.mechanics.bodies.tree import Branch, branches_of
 from eomgen.mechanics.equations.assembly import Assembly, assembled
 from eomgen.mechanics.equations.system import System
@@ -61,7 +61,7 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
 
 def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[ScalarRow, ...]:
     """M by composite bodies, armatures included."""
-    M = mass_matrix(branches, len(motion.scope.symbols.u))
+    M = composite_mass_matrix(branches, len(motion.scope.symbols.u))
     for i, j, value in armature_mass(motion):
         M[i][j] = M[i][j] + value
     return tuple(tuple(row) for row in M)

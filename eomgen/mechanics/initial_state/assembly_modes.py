@@ -20,7 +20,7 @@ from eomgen.mechanics.constraints.closure import gaps_of, movable
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.assembly_sides import Side, sides_of
+from eomgen.mechanics.initial_state.assembly_sides import AssemblySide, assembly_sides
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
@@ -44,7 +44,7 @@ STEPS = 40
 
 
 @dataclass(frozen=True)
-class Branch:
+class AssemblyMode:
     """One way to close the loops.
 
     Args:
@@ -57,7 +57,7 @@ class Branch:
     values: Mapping[str, float]
     sign: int
     words: str = ""
-    sides: tuple[Side, ...] = ()
+    sides: tuple[AssemblySide, ...] = ()
 
     def __str__(self) -> str:
         return self.words + {1: " (+)", -1: " (-)", 0: ""}[self.sign]
@@ -73,8 +73,8 @@ class Branches:
     """
 
     kept: tuple[str, ...]
-    here: Branch
-    others: tuple[Branch, ...]
+    here: AssemblyMode
+    others: tuple[AssemblyMode, ...]
 
 
 def branches_of_loops(system: System, start: Mapping[str, float]) -> Branches | None:
@@ -166,13 +166,13 @@ class _Search:
     def same(self, one: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.max(np.abs(self.apart(one, other))) < SAME_PLACE)
 
-    def branch(self, place: np.ndarray) -> Branch:
+    def branch(self, place: np.ndarray) -> AssemblyMode:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
         words = ", ".join(f"{name} = {in_own_unit(self.system.scope.model, name, x, 6)}" for name, x in values.items())
-        told = words, sides_of(self.system, self._state(place))
+        told = words, assembly_sides(self.system, self._state(place))
         if len(self.rows) < len(self.gaps):
-            return Branch(values, 0, *told)
-        return Branch(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1, *told)
+            return AssemblyMode(values, 0, *told)
+        return AssemblyMode(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1, *told)
 
 
 def _plain(x: float) -> float:

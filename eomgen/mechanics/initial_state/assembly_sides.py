@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import PointForce
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -19,7 +19,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 @dataclass(frozen=True)
-class Side:
+class AssemblySide:
     """Where a pin lies.
 
     Args:
@@ -34,32 +34,32 @@ class Side:
     left: bool
 
 
-def sides_of(system: System, state: Mapping[Node, Any]) -> tuple[Side, ...]:
+def assembly_sides(system: System, state: Mapping[Node, Any]) -> tuple[AssemblySide, ...]:
     """Of each tie that pins two turning bodies of a plane system together; () in space."""
     if system.scope.model.space != "plane":
         return ()
-    found: dict[str, Side] = {}
+    found: dict[str, AssemblySide] = {}
     for row in system.ties.rows:
         pushes = [push for push in row.pushes if isinstance(push, PointForce)]
         links = _joined(system, pushes)
         if row.identical or row.tie in found or len(links) != 2 or not all(map(_turns, links)):
             continue
         left = _is_left(system, state, links, pushes)
-        found |= {} if left is None else {row.tie: Side(row.tie, links[0].name, links[1].name, left)}
+        found |= {} if left is None else {row.tie: AssemblySide(row.tie, links[0].name, links[1].name, left)}
     return tuple(found.values())
 
 
-def _joined(system: System, pushes: list[PointForce]) -> list[Link]:
+def _joined(system: System, pushes: list[PointForce]) -> list[BodyLink]:
     """The bodies that a row pushes, the ground left out."""
     names = dict.fromkeys(push.place[0] for push in pushes)
     return [system.motion.link(name) for name in names if name is not None]
 
 
-def _turns(link: Link) -> bool:
+def _turns(link: BodyLink) -> bool:
     return len(link.S) == 1 and not is_zero(link.S[0][0][2])
 
 
-def _is_left(system: System, state: Mapping[Node, Any], links: list[Link], pushes: list[PointForce]) -> bool | None:
+def _is_left(system: System, state: Mapping[Node, Any], links: list[BodyLink], pushes: list[PointForce]) -> bool | None:
     """Whether R is on the left; None in line, and where the bodies are not pinned at one point."""
     ends = [link.pose.point(push.place[1]) for link in links for push in pushes if push.place[0] == link.name]
     hinges = [link.pose.point(link.point) for link in links]

@@ -16,14 +16,14 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.mechanics.bodies.tree import branches_of
-from eomgen.mechanics.constraints.bifurcations import Fork, at_rest, fork_at, leads_on, speeds_along
-from eomgen.mechanics.constraints.closure import closed, gaps_of, number
+from eomgen.mechanics.constraints.bifurcations import Fork, fork_at, is_at_rest, leads_on, speeds_along
+from eomgen.mechanics.constraints.closure import closed, gaps_of, of_50_digits
 from eomgen.mechanics.constraints.consistency import bilateral, is_guess, nearest_places, nearest_speeds
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.ties import Row, Ties
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.open_ties import excess, listed, refuse_open_gaps, refuse_open_rates
+from eomgen.mechanics.initial_state.open_ties import excess, quoted_names, refuse_open_gaps, refuse_open_rates
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
@@ -76,7 +76,7 @@ class Start:
         """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
         if not self.changes:
             return ""
-        names, how = listed(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
+        names, how = quoted_names(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
         hold = "holds" if len(self.ties) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
 
@@ -180,7 +180,7 @@ def _along_a_branch(
         fork = fork_at(system.ties, state)
     except EomgenError:  # the ties close nowhere near: there is but this place
         return state, None, ()
-    if fork is None or at_rest(system.ties, state) or leads_on(system.ties, fork, state):
+    if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
         return state, fork, ()
     found = speeds_along(system.ties, fork, state, _speeds(system, start))
     if found is None:
@@ -318,8 +318,8 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     used |= set(symbols_of(system.inputs.values()))
     needed = [name for name, node in symbols.parameters.items() if node in used]
     p = numeric_parameters(system.scope.model, parameters, needed=needed)
-    state = {symbols.parameters[name]: number(value) for name, value in p.items()} | {symbols.t: number(0)}
-    state |= {node: number(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    state = {symbols.parameters[name]: of_50_digits(value) for name, value in p.items()} | {symbols.t: of_50_digits(0)}
+    state |= {node: of_50_digits(values[node.name]) for node in (*symbols.q, *symbols.u)}
     for name, node in symbols.inputs.items():
         state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
     return state

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import number
+from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.system import System
@@ -48,7 +48,7 @@ def _nearest(system: System, state: State) -> str:
     there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
     if not miss.open:
         return f"; all ties close at {there}, farther than a start is moved"
-    stay = f"{listed(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
+    stay = f"{quoted_names(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
     return f"; wherever the coordinates go, {stay}: by {miss.open:.3g} at {there}, the least that was found"
 
 
@@ -58,14 +58,14 @@ def _mend(system: System, gap: Scalar) -> str:
     standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
     sought = [name for name in standing if name in dependent]
     if sought:
-        return f"give start values at which it can close, or another guess: `near` of {listed(sought)}"
+        return f"give start values at which it can close, or another guess: `near` of {quoted_names(sought)}"
     free = [name for name in standing if not system.scope.model.coordinates[name].driven]
     if not free:
         return "change the given motions"
-    return f"give start values that close it, or mark a coordinate as `dependent`: {listed(free)}"
+    return f"give start values that close it, or mark a coordinate as `dependent`: {quoted_names(free)}"
 
 
-def listed(names: Sequence[str]) -> str:
+def quoted_names(names: Sequence[str]) -> str:
     """Names in a sentence: 'pin', 'rod'."""
     return ", ".join(f"'{name}'" for name in names)
 
@@ -79,7 +79,7 @@ def refuse_open_rates(system: System, state: State) -> None:
     row, _, size = found
     speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
     what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
-    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {listed(speeds)}")
+    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {quoted_names(speeds)}")
 
 
 def _worst(
@@ -108,7 +108,9 @@ def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
     terms = {node: abs(value) for node, value in values.items()}
     for node in nodes:
         if node.op in _OF_TERMS:
-            terms[node] = _OF_TERMS[node.op](*(terms[a] if type(a) is Node else abs(number(a)) for a in node.args))
+            terms[node] = _OF_TERMS[node.op](
+                *(terms[a] if type(a) is Node else abs(of_50_digits(a)) for a in node.args)
+            )
     return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
 
 

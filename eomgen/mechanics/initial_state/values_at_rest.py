@@ -12,7 +12,7 @@ from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.constraints.closure import gaps_of, number
+from eomgen.mechanics.constraints.closure import gaps_of, of_50_digits
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
 from eomgen.model.arithmetic import in_order
@@ -83,9 +83,9 @@ def values_of_parameters(scope: Scope, rng: Random | None, *, shaken: bool = Fal
     for node in names.values():
         value = values.get(node)
         if value is None:
-            values[node] = number(rng.uniform(0.7, 1.3))
+            values[node] = of_50_digits(rng.uniform(0.7, 1.3))
         elif shaken:
-            values[node] = value * rng.uniform(0.8, 1.2) if value else number(rng.uniform(0.05, 0.2))
+            values[node] = value * rng.uniform(0.8, 1.2) if value else of_50_digits(rng.uniform(0.05, 0.2))
     return values
 
 
@@ -105,7 +105,7 @@ def values_for(
         rng = Random(seed)
         values = values_of_parameters(scope, rng, shaken=shaken)
         values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
-        values |= {x: number(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
+        values |= {x: of_50_digits(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
         try:
             evaluate(wanted, values, arithmetic)
         except (NoValue, ZeroDivisionError):

@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import (
-    Field,
+    VelocityField,
     acceleration_pole,
     field_of,
     inflection_center,
@@ -50,9 +50,9 @@ class Readable:
     def vector(self, x: Vector) -> Vector:
         return vector_of(map(self.scalar, x))
 
-    def field(self, field: Field) -> Field:
+    def field(self, field: VelocityField) -> VelocityField:
         """The field at the state."""
-        return Field(*map(self.vector, (field.p, field.v, field.a, field.w, field.e)))
+        return VelocityField(*map(self.vector, (field.p, field.v, field.a, field.w, field.e)))
 
 
 def readable_at(system: System, state: Mapping[Node, Scalar]) -> Readable:
@@ -74,7 +74,7 @@ class BodyMotion:
     """
 
     body: str
-    field: Field
+    field: VelocityField
     readable: Readable
     ends: tuple[tuple[str, Vector], ...] = ()
     plane: bool = True
@@ -122,7 +122,7 @@ class BodyMotion:
             return None
         return first, last, self.readable.scalar(least)
 
-    def _found(self, find: Callable[[Field], Vector]) -> Vector | None:
+    def _found(self, find: Callable[[VelocityField], Vector]) -> Vector | None:
         try:
             return self.readable.vector(find(self.field)) if self.plane else None
         except DerivationError:  # there is no such point

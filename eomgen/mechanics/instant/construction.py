@@ -23,7 +23,7 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import Vector, cross, plus, vector_of
 
-Pair = tuple[str, str]
+PointPair = tuple[str, str]
 POINT = "point"
 """The kind of line of a body that is a point, and does not turn."""
 
@@ -42,7 +42,7 @@ class LineOf:
     line: Vector
     owner: str = ""
     kind: str = ""
-    through: tuple[Pair, Pair] | None = None
+    through: tuple[PointPair, PointPair] | None = None
 
 
 @dataclass(frozen=True)
@@ -57,11 +57,11 @@ class Found:
         same: the two centres at this place, which the pair has with one and the same third body.
     """
 
-    pair: Pair
+    pair: PointPair
     point: Vector
     lines: tuple[LineOf, ...]
     agrees: bool
-    same: tuple[Pair, ...] = ()
+    same: tuple[PointPair, ...] = ()
 
     @property
     def hinge(self) -> str:
@@ -83,7 +83,7 @@ class _Search:
     mechanism: Mechanism
 
     def run(self) -> Iterator[Found]:
-        known: dict[Pair, Vector] = {}
+        known: dict[PointPair, Vector] = {}
         fresh = True
         while fresh:
             fresh = False
@@ -96,7 +96,7 @@ class _Search:
                     fresh = True
                     yield found
 
-    def _meeting(self, pair: Pair, known: dict[Pair, Vector]) -> Found | None:
+    def _meeting(self, pair: PointPair, known: dict[PointPair, Vector]) -> Found | None:
         """The first two different lines on which the centre of a pair is, or two centres that coincide."""
         field = self.mechanism.centers[pair].point
         for first_pair, second_pair in self._with_a_third(pair, known):
@@ -111,14 +111,14 @@ class _Search:
                 return Found(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
         return None
 
-    def _in_line(self, pair: Pair, known: dict[Pair, Vector]) -> Iterator[LineOf]:
+    def _in_line(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[LineOf]:
         """The lines through the centres that the two have with a third body."""
         for first, second in self._with_a_third(pair, known):
             line = cross(known[first], known[second])
             if not self.mechanism.is_zero(line):
                 yield LineOf(line, through=(first, second))
 
-    def _with_a_third(self, pair: Pair, known: dict[Pair, Vector]) -> Iterator[tuple[Pair, Pair]]:
+    def _with_a_third(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[tuple[PointPair, PointPair]]:
         """The centres that both have with a third body, where they are known."""
         for k in self.mechanism.blocks:
             if k not in pair:
@@ -126,14 +126,14 @@ class _Search:
                 if first in known and second in known:
                     yield first, second
 
-    def _ordered(self, i: str, j: str) -> Pair:
+    def _ordered(self, i: str, j: str) -> PointPair:
         order = list(self.mechanism.blocks)
         return (i, j) if order.index(i) < order.index(j) else (j, i)
 
     @cached_property
-    def own_lines(self) -> dict[Pair, list[LineOf]]:
+    def own_lines(self) -> dict[PointPair, list[LineOf]]:
         """The lines along which ties and joints push two blocks."""
-        found: dict[Pair, list[LineOf]] = {}
+        found: dict[PointPair, list[LineOf]] = {}
         axes = Axes(self.mechanism.system.motion)
         for component in components_of(self.mechanism.system, axes):
             if component.kind == "drive" or self._wanders(component):
@@ -168,7 +168,7 @@ class _Search:
         link = self.mechanism.system.motion.link(block)
         return is_particle(self.mechanism.system.motion, link) and all(is_zero(x) for x in link.twist.w)
 
-    def _line(self, axes: Axes, component: Component) -> tuple[Pair | None, Vector]:
+    def _line(self, axes: Axes, component: Component) -> tuple[PointPair | None, Vector]:
         """The two blocks on which it pushes with opposite wrenches, and the line; None where there are no such two."""
         wrenches: dict[str, Vector] = {}
         for effect in component.effects:

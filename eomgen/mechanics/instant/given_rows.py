@@ -24,7 +24,7 @@ from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import solved
+from eomgen.symbolic.solve.linear import sparse_solution
 
 UNSAID = ""  # what nobody wrote, as the norm of a quaternion
 
@@ -182,7 +182,7 @@ def solution_of(
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
-    found = solved(
+    found = sparse_solution(
         rows,
         [line.right for line in lines],
         len(unknowns),

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.bodies.kinematics import Link
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import is_particle
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.fields.field import Field, field_of
+from eomgen.mechanics.fields.field import VelocityField, field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
-from eomgen.mechanics.instant.construction import Found, Pair, constructed
+from eomgen.mechanics.instant.construction import Found, PointPair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
@@ -76,14 +76,14 @@ class KinematicState:
     # -- fields --------------------------------------------------------------------------------------
 
     @cached_property
-    def fields(self) -> dict[str, Field]:
+    def fields(self) -> dict[str, VelocityField]:
         """Of every body; nodes of trusses are points, not bodies."""
         motion = self.system.motion
         bodies = [link.name for link in motion.links if not is_node(link.name)]
         return {name: field_of(motion, name).at(self.state) for name in bodies}
 
     @property
-    def turning(self) -> dict[str, Field]:
+    def turning(self) -> dict[str, VelocityField]:
         """Of the bodies that are no points."""
         links = self.system.motion.links
         points = {link.name for link in links if is_particle(self.system.motion, link)}
@@ -103,7 +103,7 @@ class KinematicState:
                     home[0].append(name)
         return tuple((", ".join(names), r, v, a) for names, r, v, a in found)
 
-    def _named(self, link: Link) -> Iterable[tuple[str, Vector]]:
+    def _named(self, link: BodyLink) -> Iterable[tuple[str, Vector]]:
         motion = self.system.motion
         if is_node(link.name):
             return [(link.name, (0, 0, 0))]
@@ -163,7 +163,7 @@ class KinematicState:
         return Mechanism(self.system, self.moving, self.worth) if self.plane else None
 
     @cached_property
-    def found(self) -> dict[Pair, Found]:
+    def found(self) -> dict[PointPair, Found]:
         """The centres that a drawing finds, in its order."""
         return {} if self.mechanism is None else {each.pair: each for each in constructed(self.mechanism)}
 

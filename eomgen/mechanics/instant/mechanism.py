@@ -28,7 +28,7 @@ FIXED = "0"
 
 
 @dataclass(frozen=True)
-class Center:
+class RotationCenter:
     """The centre of rotation of a pair of blocks.
 
     Args:
@@ -99,12 +99,12 @@ class Mechanism:
     # -- centres -----------------------------------------------------------------------------------
 
     @cached_property
-    def centers(self) -> dict[tuple[str, str], Center]:
+    def centers(self) -> dict[tuple[str, str], RotationCenter]:
         """Of every pair of blocks; absolute ones first."""
         return {pair: self._center(pair) for pair in combinations(self.blocks, 2)}
 
-    def _center(self, pair: tuple[str, str]) -> Center:
-        return Center(pair, self.normal(self._simple(self._apart(pair[0], pair[1]))))
+    def _center(self, pair: tuple[str, str]) -> RotationCenter:
+        return RotationCenter(pair, self.normal(self._simple(self._apart(pair[0], pair[1]))))
 
     def normal(self, c: Homogeneous) -> Homogeneous:
         """A homogeneous point as (x, y, 1), or as (1, dy, 0) or (0, 1, 0) at infinity."""

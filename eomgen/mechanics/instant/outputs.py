@@ -18,7 +18,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.fields.centers import finite_center
 from eomgen.mechanics.fields.field import (
-    Field,
+    VelocityField,
     acceleration_pole,
     curvature_radius,
     field_of,
@@ -28,13 +28,13 @@ from eomgen.mechanics.fields.field import (
 )
 from eomgen.mechanics.fields.relative_motion import COMPONENTS as PARTS_OF_MOTION
 from eomgen.mechanics.fields.relative_motion import MAGNITUDES as SIZES_OF_PARTS
-from eomgen.mechanics.fields.relative_motion import axes_of, part_of_motion
-from eomgen.mechanics.first_integrals.energies import energy_of_force, energy_of_motion, power
+from eomgen.mechanics.fields.relative_motion import body_axes, part_of_motion
+from eomgen.mechanics.first_integrals.energies import energy_of_force, energy_of_motion, power_of_loads
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
 from eomgen.mechanics.masses.inertia_about import Asked
 from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS, AskedReactions, name_of
+from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS, AskedReactions, output_name
 from eomgen.model.forces.load import BodyPoint
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import derivative, substituted
@@ -126,7 +126,7 @@ class Quantities:
             return MOMENTS_OF_INERTIA[call.name](asked)
         if call.name not in _OF_NAMES:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
-        return _OF_NAMES[call.name](self, *(name_of(call, argument) for argument in call.args))
+        return _OF_NAMES[call.name](self, *(output_name(call, argument) for argument in call.args))
 
     @cached_property
     def _asked(self) -> AskedReactions:
@@ -151,7 +151,7 @@ class Quantities:
         seen = self._rate(place, order)
         if axes in ("", frame):
             return seen
-        return apply(transposed(axes_of(motion, axes)), apply(axes_of(motion, frame), seen))
+        return apply(transposed(body_axes(motion, axes)), apply(body_axes(motion, frame), seen))
 
     def along_the_path(self, law: Callable[[Vector, Vector], Scalar], *names: str) -> Scalar:
         """What depends on velocity and acceleration of a point, at the given state."""
@@ -166,10 +166,10 @@ class Quantities:
         flat = iter([simplest(x, Work.VALUE, positive) for x in values])
         return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
 
-    def _field(self, body: str) -> Field:
+    def _field(self, body: str) -> VelocityField:
         """The field of a body at the given state."""
         field = field_of(self.system.motion, body)
-        return Field(*self._here(field.p, field.v, field.a, field.w, field.e))
+        return VelocityField(*self._here(field.p, field.v, field.a, field.w, field.e))
 
     def center(self, body: str, other: str = GROUND) -> Vector:
         """The centre of rotation of a body against the ground or another body.
@@ -327,6 +327,6 @@ _OF_NAMES: dict[str, Callable[..., Scalar]] = {
     "momentum": Quantities.momentum,
     "kinetic_energy": lambda quantities, *names: energy_of_motion(quantities.system, *names),
     "potential_energy": lambda quantities, *names: energy_of_force(quantities.system, *names),
-    "power": lambda quantities, *names: power(quantities.system, *names),
+    "power": lambda quantities, *names: power_of_loads(quantities.system, *names),
 }
 """Functions of names: points, bodies, coordinates."""

@@ -24,7 +24,7 @@ SMALL = "xyz"  # the sequence of the three turns
 
 
 @dataclass(frozen=True, kw_only=True)
-class Displaced(Joint):
+class DisplacedJoint(Joint):
     """A body displaced from where it is placed; no file can name this joint, and it carries no reaction.
 
     s = (d, turns):  p = p_0 + d,  R = R_0 R(turns).
@@ -114,7 +114,7 @@ def _stands(model: Model, joint: Any) -> bool:
     return all(e.names <= constants for e in joint.variables(model.space))
 
 
-def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> Displaced:
+def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> DisplacedJoint:
     placed: Joint = made(Placed, {}) if joint is None else joint
     kept = {"on": placed.on, "point": placed.point, "turned": placed.turned}
-    return made(Displaced, {**kept, "placed": placed, "along": along, "about": about})
+    return made(DisplacedJoint, {**kept, "placed": placed, "along": along, "about": about})

@@ -16,7 +16,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.equations.system import System, free_system_of, reduced
+from eomgen.mechanics.equations.system import System, free_system_of, reduced_system
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
 from eomgen.mechanics.initial_state.values_at_rest import at_rest
 from eomgen.mechanics.instant.given_rows import (
@@ -296,7 +296,7 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
 
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
     """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
-    system = reduced(free)
+    system = reduced_system(free)
     sought, found = fixed_by_position(system), State()
     if not sought:
         return {}, {}

@@ -45,7 +45,7 @@ from eomgen.symbolic.expression.spatial import (
 
 HALF = Fraction(1, 2)
 AXES = {"x": 0, "y": 1, "z": 2}
-Here = Callable[[Sequence[Scalar]], Sequence[Scalar]]
+AtPlace = Callable[[Sequence[Scalar]], Sequence[Scalar]]
 """The scalars of the state at which something is asked."""
 
 
@@ -141,7 +141,7 @@ class Asked:
 
     call: Call
     motion: Motion
-    here: Here
+    here: AtPlace
 
     @property
     def point(self) -> Vector:

@@ -34,7 +34,7 @@ from eomgen.symbolic.solve.solving import roots, vanishes
 TERMS = 60  # of a sum that is made short; a longer one nobody reads
 LONGEST = 3_000  # characters of a tensor whose characteristic polynomial may have factors
 HALF = Fraction(1, 2)
-Moments = tuple[Scalar, Scalar, Scalar]
+PrincipalMoments = tuple[Scalar, Scalar, Scalar]
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ class Principal:
         equal: pairs (k, l) of moments that are equal: every axis in their plane is principal.
     """
 
-    moments: Moments
+    moments: PrincipalMoments
     axes: Matrix | None
     sorted: bool
     equal: tuple[tuple[int, int], ...]
 
 
-def principal_moments(I: Matrix, scope: Scope) -> Moments:
+def principal_moments(I: Matrix, scope: Scope) -> PrincipalMoments:
     """The principal moments, ascending; by min and max where their order depends on the values of the symbols."""
     tensor = _Tensor(I, scope)
     found = tensor.moments
@@ -107,7 +107,7 @@ class _Tensor:
         return [(i, j) for i, j in ((0, 1), (1, 2), (0, 2)) if not is_zero(self.tensor[i][j])]
 
     @cached_property
-    def moments(self) -> Moments:
+    def moments(self) -> PrincipalMoments:
         """The principal moments, in no order."""
         I = self.tensor
         if not self.linked:
@@ -127,7 +127,7 @@ class _Tensor:
     def _halves(self, total: Scalar, spread: Scalar) -> tuple[Scalar, Scalar]:
         return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
 
-    def _cubic(self, I: Matrix) -> Moments:
+    def _cubic(self, I: Matrix) -> PrincipalMoments:
         """The roots of J^3 - tr J^2 + minors J - det; without a determinant, as of masses in line, 0 is one."""
         is_long = sum(text_size(x) for row in I for x in row) > LONGEST
         short: Callable[[Scalar], Scalar] = (lambda x: x) if is_long else self.short
@@ -154,7 +154,7 @@ class _Tensor:
     def _minors(I: Matrix) -> Scalar:
         return sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
 
-    def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> Moments:
+    def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> PrincipalMoments:
         q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
         A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
         p = short(sqrt(short(over(sum(x * x for row in A for x in row), 6))))
@@ -221,7 +221,7 @@ class _Tensor:
     def _sign(self, x: Scalar) -> Scalar:
         """The sign of what does not vanish, as a formula where it is not known."""
         known = self.sign(x)
-        numbers = None if known else values_of((x,), self.scope)
+        numbers = None if known else numbers_in((x,), self.scope)
         return known or (function("sign", x) if numbers is None else (1 if numbers[0] > 0 else -1))
 
     def _by_rows(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
@@ -275,7 +275,7 @@ class _Tensor:
 def _ascending(tensor: _Tensor) -> list[int] | None:
     """The indices of the moments, ascending; None where nothing tells."""
     moments = tensor.moments
-    numbers = values_of(moments, tensor.scope)
+    numbers = numbers_in(moments, tensor.scope)
     if numbers is not None:
         return sorted(range(3), key=lambda k: numbers[k])
     signs = {(k, k): 0 for k in range(3)}
@@ -309,7 +309,9 @@ def _with_signs(x: Scalar) -> Scalar:
     return substituted((x,), known)[0] if known else x
 
 
-def values_of(scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None) -> list[float] | None:
+def numbers_in(
+    scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
+) -> list[float] | None:
     """What scalars are worth; None where they hold what has no value.
 
     Args:

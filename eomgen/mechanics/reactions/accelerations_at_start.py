@@ -42,13 +42,13 @@ def by_independent(system: System, assembly: Assembly, kept: Sequence[int]) -> d
     d = _dependent(system, J)
     i = [k for k in range(n) if k not in d]
     right = [(*(-row[k] for k in i), -assembly.gamma[m]) for m, row in zip(kept, J, strict=True)]
-    columns, _ = cramer.solved([_entries([row[k] for k in d]) for row in J], right)
+    columns, _ = cramer.solution_by_minors([_entries([row[k] for k in d]) for row in J], right)
     follows = dict(zip(d, columns, strict=True))
     Z = [follows[k][:-1] if k in follows else tuple(int(k == j) for j in i) for k in range(n)]
     X = [follows[k][-1] if k in follows else 0 for k in range(n)]
     a = _moved(assembly, Z, X)
     pull = [inner(assembly.M[k], a) - assembly.forcing[k] for k in d]
-    lam, _ = cramer.solved([_entries([row[k] for row in J]) for k in d], [(x,) for x in pull])
+    lam, _ = cramer.solution_by_minors([_entries([row[k] for row in J]) for k in d], [(x,) for x in pull])
     multipliers = {symbols.lam[m]: x for m, (x,) in zip(kept, lam, strict=True)}
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
 
@@ -60,7 +60,7 @@ def _moved(assembly: Assembly, Z: Sequence[Sequence[Scalar]], X: Sequence[Scalar
     moved = [[inner(row, column) for row in assembly.M] for column in columns]
     left = [force - inner(row, X) for force, row in zip(assembly.forcing, assembly.M, strict=True)]
     reduced = [_entries([inner(column, each) for each in moved]) for column in columns]
-    found, _ = cramer.solved(reduced, [(inner(column, left),) for column in columns])
+    found, _ = cramer.solution_by_minors(reduced, [(inner(column, left),) for column in columns])
     return [inner(row, [x for (x,) in found]) + x for row, x in zip(Z, X, strict=True)]
 
 

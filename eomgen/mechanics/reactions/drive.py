@@ -49,7 +49,7 @@ def drive(system: System, coordinate: str) -> Scalar:
     free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
     assembly = recursive.assemble(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
-    return _carried(residual(free, assembly, k), system) - _friction(system, free, k)
+    return _carried(drive_residual(free, assembly, k), system) - _friction(system, free, k)
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:
@@ -63,7 +63,7 @@ def _friction(system: System, free: System, k: int) -> Scalar:
     return sum((share * reactions.normal(name) for name, share in shares.items()), start=0)
 
 
-def residual(system: System, assembly: Assembly, k: int, without: Container[tuple[str, int]] = ()) -> Scalar:
+def drive_residual(system: System, assembly: Assembly, k: int, without: Container[tuple[str, int]] = ()) -> Scalar:
     """(M a + c - Q - J^T lam)_k, the multipliers of some rows left out."""
     symbols = system.symbols
     value = sum((m * a for m, a in zip(assembly.M[k], symbols.a, strict=True)), start=-assembly.forcing[k])
@@ -119,10 +119,10 @@ def _eliminated(system: System, own: Row) -> Scalar:
     speeds, assembly = [u.name for u in free.symbols.u], recursive.assemble(free)
     d = [speeds.index(f"{row.eliminates}'") for row in gone]
     J = {(row.tie, row.number): line for row, line in zip(free.ties.closing, assembly.J, strict=True)}
-    right = [(residual(free, assembly, k, names) - _friction(system, free, k),) for k in d]
+    right = [(drive_residual(free, assembly, k, names) - _friction(system, free, k),) for k in d]
     columns = [J[row.tie, row.number] for row in gone]
     lines = [{j: line[k] for j, line in enumerate(columns) if not is_zero(line[k])} for k in d]
-    lam, _ = cramer.solved(lines, right, vanishes=holds_identically)
+    lam, _ = cramer.solution_by_minors(lines, right, vanishes=holds_identically)
     known: dict[Node, Scalar] = {}
     for u, a in zip(free.symbols.u, free.symbols.a, strict=True):
         if u not in system.symbols.u:

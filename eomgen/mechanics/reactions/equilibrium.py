@@ -23,7 +23,7 @@ from eomgen.mechanics.balance.unit_wrenches import PLANE_ROWS, SPACE_ROWS, Effec
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.loads import in_ground_axes, weights
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations.free_bodies import Numbers
+from eomgen.mechanics.formulations.free_bodies import BodyNumbers
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -40,13 +40,13 @@ def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
     Raises:
         NoValue: a reaction has none at the state.
     """
-    numbers = Numbers(reactions.balance.system, state)
+    numbers = BodyNumbers(reactions.balance.system, state)
     x = _values(reactions, numbers, rng)
     wrenches = _Wrenches(reactions.balance, numbers)
     return _of_bodies(reactions.balance, numbers, x) or _of_pairs(wrenches) or _of_the_whole(wrenches, x)
 
 
-def _values(reactions: Reactions, numbers: Numbers, rng: Random) -> np.ndarray:
+def _values(reactions: Reactions, numbers: BodyNumbers, rng: Random) -> np.ndarray:
     """Every component: x_j = constant - sum of share * x_free."""
     solution = reactions.solution
     x = np.zeros(len(reactions.components))
@@ -59,7 +59,7 @@ def _values(reactions: Reactions, numbers: Numbers, rng: Random) -> np.ndarray:
     return x
 
 
-def _of_bodies(balance: Balance, numbers: Numbers, x: np.ndarray) -> str:
+def _of_bodies(balance: Balance, numbers: BodyNumbers, x: np.ndarray) -> str:
     entries = [(i, j, value) for i, e in enumerate(balance.equations) for j, value in e.coefficients.items()]
     given = numbers.array(tuple(y for e in balance.equations for y in (e.applied, e.inertia))).reshape(-1, 2)
     total, size = given[:, 0] - given[:, 1], 1 + np.abs(given).sum(axis=1)
@@ -78,7 +78,7 @@ class _Wrenches:
     """Forces, and moments about the ground's origin, in the ground's axes."""
 
     balance: Balance
-    numbers: Numbers
+    numbers: BodyNumbers
 
     @property
     def system(self) -> System:

@@ -72,7 +72,7 @@ class Inverse:
                 mend="take the generated code",
             )
         lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in self.rows]
-        values = [x for (x,) in cramer.solved(lines, [(x,) for x in self.right])[0]]
+        values = [x for (x,) in cramer.solution_by_minors(lines, [(x,) for x in self.right])[0]]
         return substituted(self.tau, dict(zip(self.unknowns, values, strict=True)))
 
 
@@ -98,7 +98,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
         raise UsageError("ties close loops, and nothing says which coordinates are actuated", mend=NAME)
     names = tuple(actuated) or tuple(_along(u, system) for u in symbols.u)
     own = {name: symbols.inputs[name] for name in names if name in symbols.inputs}
-    needed = residual(system)
+    needed = inverse_residual(system)
     columns = _columns(system, names, needed)
     _refuse_wrong_number(system, names, columns)
     r = substituted(needed, dict.fromkeys(own.values(), 0))
@@ -106,7 +106,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
     return _solved_for(Inverse(system, names, inputs, ()), columns, r)
 
 
-def residual(system: System) -> ScalarRow:
+def inverse_residual(system: System) -> ScalarRow:
     """M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground."""
     motion, loads, a = system.motion, system.loads, system.symbols.a
     branches = branches_of(motion)

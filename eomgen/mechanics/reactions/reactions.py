@@ -12,9 +12,9 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
-from eomgen.mechanics.balance.balance_solution import Combination, combined, solution_of_balance
+from eomgen.mechanics.balance.balance_solution import Combination, combined_reaction, solution_of_balance
 from eomgen.mechanics.balance.components import Component
-from eomgen.mechanics.balance.friction import round_symbols, sizes_of
+from eomgen.mechanics.balance.friction import push_sizes, round_symbols
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
 from eomgen.mechanics.balance.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
@@ -262,7 +262,7 @@ class Reactions:
         Raises:
             Indeterminate: it has no single value; `name` says what it is.
         """
-        return combined(self.balance, self.solution, combination, name)
+        return combined_reaction(self.balance, self.solution, combination, name)
 
 
 def reactions_of(
@@ -277,7 +277,7 @@ def reactions_of(
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    sizes = sizes_of(system)
+    sizes = push_sizes(system)
     balance = balance_of(system, sizes)
     if balance.unknowns:
         return _at_rest(balance, at or {}, work)

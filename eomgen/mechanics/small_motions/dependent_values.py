@@ -8,7 +8,7 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.reduction import dependent_speeds
-from eomgen.mechanics.small_motions.reference import Reference, in_closed_form
+from eomgen.mechanics.small_motions.reference import ReferenceMotion, in_closed_form
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -16,7 +16,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue
 MOST = 8  # dependent speeds that are taken out exactly
 
 
-def with_followers(first: FirstOrder, reference: Reference) -> Reference:
+def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
     """The reference with dependent coordinates by phi = 0 and dependent speeds by J u + sigma = 0, as far as these are
     determined by what is known in closed form; a wheel's place from its turning."""
     symbols, choice = first.system.symbols, choice_of(first, reference, ())

@@ -72,7 +72,7 @@ def _as_floats(A: Any, kind: type) -> np.ndarray:
 # -- zeros ---------------------------------------------------------------------------------------------------------
 
 
-def zeros_of(e: LinearEquations, polynomial: Polynomial | None, trial: Mapping[Node, Any]) -> int:
+def count_of_zeros(e: LinearEquations, polynomial: Polynomial | None, trial: Mapping[Node, Any]) -> int:
     """How many eigenvalues are 0.
 
     Args:
@@ -122,7 +122,7 @@ def _by_rank(A: np.ndarray, B: np.ndarray) -> int:
 # -- eigenvalues that are one --------------------------------------------------------------------------------------
 
 
-def met(values: np.ndarray) -> np.ndarray:
+def merged(values: np.ndarray) -> np.ndarray:
     """The eigenvalues, those that rounding has drawn apart from one place of the imaginary axis put back on it."""
     values = values.copy()
     for group in _groups(values):

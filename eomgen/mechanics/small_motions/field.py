@@ -18,23 +18,23 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
-Entry = Any  # an exact scalar, or a float
-Entries = list[list[Entry]]
+MatrixEntry = Any  # an exact scalar, or a float
+Entries = list[list[MatrixEntry]]
 
 
-class Field(Protocol):
+class NumberField(Protocol):
     """Where entries come from."""
 
-    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+    def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
         """The scalars at the state."""
 
-    def tidy(self, x: Entry) -> Entry:
+    def tidy(self, x: MatrixEntry) -> MatrixEntry:
         """An entry in the form in which it is used further; 0 where it vanishes."""
 
-    def size(self, x: Entry) -> float:
+    def size(self, x: MatrixEntry) -> float:
         """|x|, by which a pivot is chosen."""
 
-    def with_values(self, more: Mapping[Node, Entry]) -> Field:
+    def with_values(self, more: Mapping[Node, MatrixEntry]) -> NumberField:
         """The same with more symbols known."""
 
 
@@ -48,16 +48,16 @@ class Numbers:
 
     state: Mapping[Node, Any]
 
-    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+    def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
         return [float(x) for x in evaluate(tuple(scalars), self.state, fifty_digits())]
 
-    def tidy(self, x: Entry) -> Entry:
+    def tidy(self, x: MatrixEntry) -> MatrixEntry:
         return x
 
-    def size(self, x: Entry) -> float:
+    def size(self, x: MatrixEntry) -> float:
         return abs(x)
 
-    def with_values(self, more: Mapping[Node, Entry]) -> Numbers:
+    def with_values(self, more: Mapping[Node, MatrixEntry]) -> Numbers:
         number = fifty_digits().number
         return Numbers({**self.state, **{node: number(1) * x for node, x in more.items()}})
 
@@ -78,10 +78,10 @@ class Exact:
     trial: Mapping[Node, Any]
     known: dict[Scalar, Scalar] = dataclass_field(default_factory=dict, compare=False, repr=False)
 
-    def of(self, scalars: Iterable[Scalar]) -> list[Entry]:
+    def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
         return [self.tidy(x) for x in substituted(tuple(scalars), self.state)]
 
-    def tidy(self, x: Entry) -> Entry:
+    def tidy(self, x: MatrixEntry) -> MatrixEntry:
         if type(x) is not Node or x.op == "symbol":
             return x
         if x not in self.known:
@@ -89,26 +89,26 @@ class Exact:
             self.known[x] = self.known[found] = 0 if is_zero(found) or vanishes(found) else found
         return self.known[x]
 
-    def size(self, x: Entry) -> float:
+    def size(self, x: MatrixEntry) -> float:
         return abs(float(evaluate((x,), self.trial, fifty_digits())[0]))
 
-    def with_values(self, more: Mapping[Node, Entry]) -> Exact:
+    def with_values(self, more: Mapping[Node, MatrixEntry]) -> Exact:
         return replace(self, state={**self.state, **more})
 
 
-def at(field: Field, rows: Sequence[Sequence[Scalar]]) -> Entries:
+def at(field: NumberField, rows: Sequence[Sequence[Scalar]]) -> Entries:
     """A matrix of graph scalars at the state."""
     flat = iter(field.of([x for row in rows for x in row]))
     return [[next(flat) for _ in row] for row in rows]
 
 
-def product(field: Field, A: Entries, B: Entries) -> Entries:
+def matrix_product(field: NumberField, A: Entries, B: Entries) -> Entries:
     """A B."""
     columns = list(zip(*B, strict=True))
     return [[field.tidy(inner(row, column)) for column in columns] for row in A]
 
 
-def total(field: Field, *matrices: Entries) -> Entries:
+def matrix_sum(field: NumberField, *matrices: Entries) -> Entries:
     """A + B + ..."""
     rows = zip(*matrices, strict=True)
     return [[field.tidy(sum(x, start=0)) for x in zip(*row, strict=True)] for row in rows]
@@ -118,12 +118,12 @@ def negative(A: Entries) -> Entries:
     return [[-x for x in row] for row in A]
 
 
-def turned(A: Entries, columns: int) -> Entries:
+def matrix_transposed(A: Entries, columns: int) -> Entries:
     """A transposed; `columns` of A, where it may have no rows."""
     return [[row[j] for row in A] for j in range(columns)]
 
 
-def solved(field: Field, A: Entries, B: Entries) -> Entries:
+def matrix_solution(field: NumberField, A: Entries, B: Entries) -> Entries:
     """X of A X = B. A has full column rank; rows beyond that follow from the others, and are not looked at."""
     rows = [[*a, *b] for a, b in zip(A, B, strict=True)]
     unknowns = len(A[0]) if A else 0

@@ -18,7 +18,7 @@ from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.small_motions.field import Entries, Numbers, at
-from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -125,7 +125,7 @@ def _held(system: System) -> list[list[Scalar]]:
 # -- what stays independent --------------------------------------------------------------------------------
 
 
-def choice_of(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> Choice:
+def choice_of(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str]) -> Choice:
     """Coordinates and speeds that stay: those wanted, then the model's own, then the others.
 
     Args:
@@ -164,7 +164,7 @@ def _rows(first: FirstOrder) -> tuple[tuple[ScalarRows, Sequence[Node]], ...]:
     return (first.derivatives["G"], symbols.q), (first.assembly.J, symbols.u)
 
 
-def _elsewhere(reference: Reference) -> dict[Node, Any]:
+def _elsewhere(reference: ReferenceMotion) -> dict[Node, Any]:
     """The state with other coordinates."""
     rng, number = Random(4), fifty_digits().number(1)
     return {

@@ -16,7 +16,15 @@ from dataclasses import replace
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Entries, Field, negative, product, solved, total, turned
+from eomgen.mechanics.small_motions.field import (
+    Entries,
+    NumberField,
+    matrix_product,
+    matrix_solution,
+    matrix_sum,
+    matrix_transposed,
+    negative,
+)
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.numeric.dense import without_noise
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
@@ -68,7 +76,7 @@ def _strangeness(row: np.ndarray) -> int:
     return 2 if np.count_nonzero(row) != 1 else int(row.max() != 1)
 
 
-def without_rounding(e: LinearEquations) -> LinearEquations:
+def equations_without_rounding(e: LinearEquations) -> LinearEquations:
     """The equations in numbers, 0 where an entry is what is left of it: beside its row and column, or the whole.
 
     Of C also beside what inertia and stiffness make of a rate: sqrt(M K).
@@ -87,7 +95,7 @@ def _rounded(A: np.ndarray, usual: float = 0) -> Entries:
     return [[*row] for row in np.where(sizes > least, A, 0.0).tolist()]
 
 
-def over_coordinates(field: Field, equations: LinearEquations, kept: Indices) -> LinearEquations:
+def over_coordinates(field: NumberField, equations: LinearEquations, kept: Indices) -> LinearEquations:
     """The equations over these of the coordinates; of second order where they are as many as the speeds."""
     chosen = replace(
         equations,
@@ -100,7 +108,7 @@ def over_coordinates(field: Field, equations: LinearEquations, kept: Indices) ->
     return _second_order(field, chosen) if _can_be_of_second_order(field, chosen) else chosen
 
 
-def _can_be_of_second_order(field: Field, equations: LinearEquations) -> bool:
+def _can_be_of_second_order(field: NumberField, equations: LinearEquations) -> bool:
     n = len(equations.speeds)
     if len(equations.coordinates) != n:
         return False
@@ -118,18 +126,18 @@ def is_second_order(equations: LinearEquations) -> bool:
     )
 
 
-def _second_order(field: Field, e: LinearEquations) -> LinearEquations:
+def _second_order(field: NumberField, e: LinearEquations) -> LinearEquations:
     """With u_i = E^-1 (q_i' - F q_i), and E^-T in front."""
     if is_second_order(e):
         return e
     n = len(e.speeds)
     one = [[int(i == j) for j in range(n)] for i in range(n)]
-    inverse = solved(field, e.E, one)
-    front = turned(inverse, n)
-    M, C = product(field, e.M, inverse), product(field, e.C, inverse)
-    K = total(field, e.K, negative(product(field, C, e.F)))
-    C = total(field, C, negative(product(field, M, e.F)))
-    M, C, K, B = (product(field, front, x) for x in (M, C, K, e.B))
+    inverse = matrix_solution(field, e.E, one)
+    front = matrix_transposed(inverse, n)
+    M, C = matrix_product(field, e.M, inverse), matrix_product(field, e.C, inverse)
+    K = matrix_sum(field, e.K, negative(matrix_product(field, C, e.F)))
+    C = matrix_sum(field, C, negative(matrix_product(field, M, e.F)))
+    M, C, K, B = (matrix_product(field, front, x) for x in (M, C, K, e.B))
     return replace(e, M=M, C=C, K=K, B=B, E=one, F=[[0] * n for _ in range(n)])
 
 
@@ -137,7 +145,7 @@ def _second_order(field: Field, e: LinearEquations) -> LinearEquations:
 
 
 def restricted(
-    field: Field, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
+    field: NumberField, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
 ) -> LinearEquations:
     """The equations of the coordinates that are asked, alone.
 
@@ -190,17 +198,17 @@ def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
     )
 
 
-def _with_momenta_kept(field: Field, e: LinearEquations, c: Indices, o: Indices) -> LinearEquations:
+def _with_momenta_kept(field: NumberField, e: LinearEquations, c: Indices, o: Indices) -> LinearEquations:
     """Routh's reduction."""
     M_oo, M_co = (_columns([e.M[i] for i in rows], o) for rows in (o, c))
     C_co = _columns([e.C[i] for i in c], o)
     M_oc, C_oc = (_columns([A[i] for i in o], c) for A in (e.M, e.C))
-    by_rates, by_places = solved(field, M_oo, M_oc), solved(field, M_oo, C_oc)
-    by_inputs = solved(field, M_oo, [e.B[i] for i in o])
+    by_rates, by_places = matrix_solution(field, M_oo, M_oc), matrix_solution(field, M_oo, C_oc)
+    by_inputs = matrix_solution(field, M_oo, [e.B[i] for i in o])
     whole = _taken(e, c)
 
     def less(A: Entries, *parts: tuple[Entries, Entries]) -> Entries:
-        return total(field, A, *(negative(product(field, X, Y)) for X, Y in parts))
+        return matrix_sum(field, A, *(negative(matrix_product(field, X, Y)) for X, Y in parts))
 
     return replace(
         whole,

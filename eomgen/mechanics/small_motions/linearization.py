@@ -15,23 +15,28 @@ from eomgen.mechanics.small_motions.dependent_values import with_followers
 from eomgen.mechanics.small_motions.field import Exact, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
 from eomgen.mechanics.small_motions.forms import (
+    equations_without_rounding,
     floats,
     is_second_order,
     over_coordinates,
     restricted,
-    without_rounding,
 )
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import (
     START,
     STEADY,
-    Reference,
+    ReferenceMotion,
     at_the_start,
     in_closed_form,
     place_of_rest,
     relative_rest,
 )
-from eomgen.mechanics.small_motions.steadiness import reduced, refuse_corners, refuse_singular, steady_coordinates
+from eomgen.mechanics.small_motions.steadiness import (
+    reduced_equations,
+    refuse_corners,
+    refuse_singular,
+    steady_coordinates,
+)
 from eomgen.mechanics.small_motions.steady import steady_start
 from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.model.unknowns import refuse_motion
@@ -59,7 +64,7 @@ class SmallMotions:
         first: the equations of motion from which they come.
     """
 
-    reference: Reference
+    reference: ReferenceMotion
     numbers: LinearEquations
     exact: LinearEquations | None
     whole: LinearEquations
@@ -128,7 +133,7 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
             yield None
 
 
-def _about(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> SmallMotions:
+def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str]) -> SmallMotions:
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError("the ties leave no freedom: there are no small motions")
@@ -137,11 +142,11 @@ def _about(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> Sm
     refuse_corners(first, choice, reference, raw, kept)
     refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
-    numbers = without_rounding(restricted(Numbers(reference.numbers), decided, wanted, decided))
+    numbers = equations_without_rounding(restricted(Numbers(reference.numbers), decided, wanted, decided))
     field = _exact_field(reference, first, choice)
     exact = None
     if field is not None:
-        whole = over_coordinates(field, reduced(first, choice, reference, field), kept)
+        whole = over_coordinates(field, reduced_equations(first, choice, reference, field), kept)
         exact = restricted(field, whole, wanted, decided)
     if exact is None:
         _refuse_unvalued(reference)
@@ -149,7 +154,7 @@ def _about(first: FirstOrder, reference: Reference, wanted: Sequence[str]) -> Sm
     return SmallMotions(reference, numbers, exact, raw, left, first)
 
 
-def _refuse_unvalued(reference: Reference) -> None:
+def _refuse_unvalued(reference: ReferenceMotion) -> None:
     """Equations that are only known in numbers need values of all parameters.
 
     Raises:
@@ -162,19 +167,19 @@ def _refuse_unvalued(reference: Reference) -> None:
         raise DerivationError(what, "parameters")
 
 
-def _equations(first: FirstOrder, choice: Choice, reference: Reference) -> LinearEquations:
+def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) -> LinearEquations:
     """The equations in numbers.
 
     Raises:
         DerivationError: they have no value there: rates that declared speeds do not determine are named.
     """
     try:
-        return reduced(first, choice, reference, Numbers(reference.numbers))
+        return reduced_equations(first, choice, reference, Numbers(reference.numbers))
     except (NoValue, ZeroDivisionError) as error:
         raise _without_value(reference) from error
 
 
-def _without_value(reference: Reference) -> DerivationError:
+def _without_value(reference: ReferenceMotion) -> DerivationError:
     solved, value = reference.system.declared, Numbers(reference.numbers).of
     lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
     what = lost[0] if lost else "the equations of motion, or their derivatives, have no value"
@@ -182,7 +187,7 @@ def _without_value(reference: Reference) -> DerivationError:
     return DerivationError(f"{what} at the place of reference", "linearize", mend)
 
 
-def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exact | None:
+def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) -> Exact | None:
     """Exact entries, where the reference is known so and the work is bounded; None elsewhere."""
     small = len(choice.u) <= MOST_EXACT and max(len(choice.dq), len(choice.du)) <= MOST_FOLLOWING
     long = operations(x for row in first.derivatives["R_q"] for x in row).total > MOST_OPERATIONS
@@ -196,7 +201,7 @@ def _exact_field(reference: Reference, first: FirstOrder, choice: Choice) -> Exa
 
 def _balanced(
     system: System, about: str, guess: Mapping[str, float] | None, wanted: Sequence[str]
-) -> tuple[Reference, FirstOrder]:
+) -> tuple[ReferenceMotion, FirstOrder]:
     """The reference, at which forces and inertia balance, and the equations of its system.
 
     Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
@@ -223,7 +228,7 @@ def _balanced(
         return _other_rest(system, guess, error)
 
 
-def _steady(first: FirstOrder, start: Reference, wanted: Sequence[str]) -> Reference:
+def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) -> ReferenceMotion:
     """The steady motion nearest to the start, in closed form where its family has one."""
     found = steady_start(first, start, wanted)
     there = replace(at_the_start(first.system, at_rest=False, given=found.values), about=STEADY)
@@ -231,13 +236,15 @@ def _steady(first: FirstOrder, start: Reference, wanted: Sequence[str]) -> Refer
     return there if family is None else in_closed_form(replace(there, family=family), family.state)
 
 
-def _with_family(first: FirstOrder, reference: Reference) -> Reference:
+def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
     """Rest beside drives with all its places."""
     choice = choice_of(first, reference, ())
     return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
 
 
-def _other_rest(system: System, guess: Mapping[str, float] | None, why: EomgenError) -> tuple[Reference, FirstOrder]:
+def _other_rest(
+    system: System, guess: Mapping[str, float] | None, why: EomgenError
+) -> tuple[ReferenceMotion, FirstOrder]:
     """Rest beside what the model drives steadily, or the start without speeds."""
     first = first_order_of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())
@@ -252,7 +259,7 @@ def _other_rest(system: System, guess: Mapping[str, float] | None, why: EomgenEr
     raise why
 
 
-def _accelerated(first: FirstOrder, reference: Reference) -> str:
+def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
     """The speed that does not stay as it is; "" where all do."""
     reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
     wrong = unsettled(reducing, COMPUTED)

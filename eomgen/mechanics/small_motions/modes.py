@@ -12,7 +12,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
-from eomgen.mechanics.small_motions.field import Entry
+from eomgen.mechanics.small_motions.field import MatrixEntry
 from eomgen.mechanics.small_motions.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.small_motions.polynomial import (
     Polynomial,
@@ -161,7 +161,7 @@ class Modes:
 
     # -- by name -----------------------------------------------------------------------------------------------
 
-    def entry(self, function: str, *names: str) -> tuple[Entry, bool]:
+    def entry(self, function: str, *names: str) -> tuple[MatrixEntry, bool]:
         """(an entry of M, C or K, whether it is exact).
 
         Raises:
@@ -193,7 +193,7 @@ class Modes:
         return found[k - 1]
 
     @property
-    def symmetric_parts(self) -> dict[str, list[list[Entry]]]:
+    def symmetric_parts(self) -> dict[str, list[list[MatrixEntry]]]:
         """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
         equations = self.small.exact or self.small.numbers
         return {
@@ -202,12 +202,12 @@ class Modes:
             for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)
         }
 
-    def tidy(self, x: Entry) -> Entry:
+    def tidy(self, x: MatrixEntry) -> MatrixEntry:
         """An entry in its shortest form."""
         return x if isinstance(x, float) else simplest(x, Work.VALUE, self.positive)
 
 
-def _parted(A: list[list[Entry]]) -> tuple[list[list[Entry]], list[list[Entry]]]:
+def _parted(A: list[list[MatrixEntry]]) -> tuple[list[list[MatrixEntry]], list[list[MatrixEntry]]]:
     """(A + A^T)/2 and (A - A^T)/2."""
     half = 0.5 if any(isinstance(x, float) for row in A for x in row) else Fraction(1, 2)
     n = range(len(A))

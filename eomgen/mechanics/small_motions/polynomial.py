@@ -16,7 +16,7 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.exact.terms import Terms, TooLarge, plus
+from eomgen.symbolic.exact.terms import Terms, TooLarge, terms_plus
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
@@ -128,7 +128,7 @@ def closed_frequencies(polynomial: Polynomial, s: Node, positive: Collection[Nod
 
 
 @dataclass(frozen=True)
-class Factors:
+class PolynomialFactors:
     """The factors of a polynomial in s.
 
     Args:
@@ -148,7 +148,7 @@ class Factors:
         return simplest(substituted((a,), self.fresh)[0], Work.ANSWER, self.positive)
 
 
-def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> Factors:
+def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> PolynomialFactors:
     """Those that hold s and more.
 
     Raises:
@@ -159,7 +159,9 @@ def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> Factors:
     f, _ = expansion.cleared(expansion.of(x))
     f, fresh = wave_free(expansion, f)
     found = ((coefficients(part, s), n) for part, n in factored(f))
-    return Factors(expansion, tuple(c for c, n in found for _ in range(n) if max(c, default=0)), fresh, positive)
+    return PolynomialFactors(
+        expansion, tuple(c for c, n in found for _ in range(n) if max(c, default=0)), fresh, positive
+    )
 
 
 def _frequencies(x: Scalar, s: Node, positive: Collection[Node]) -> Iterator[Scalar]:
@@ -184,7 +186,7 @@ def _rooted(squared: Scalar) -> tuple[Scalar, ...]:
 def _squares(expansion: Expansion, c: dict[int, Terms], positive: Collection[Node]) -> tuple[Scalar, ...]:
     """(c2 -+ sqrt(c2^2 - 4 c0 c4))/(2 c4); () where w has roots that do not stand in one another."""
     node, middle = expansion.atoms.node, c.get(2, {})
-    discriminant = plus(expansion.product(middle, middle), expansion.product(c.get(0, {}), c[4]), -4)
+    discriminant = terms_plus(expansion.product(middle, middle), expansion.product(c.get(0, {}), c[4]), -4)
     whole = square_root(discriminant) if discriminant else {}
     if whole is None and _single_roots(expansion, c):
         return ()
@@ -197,7 +199,7 @@ def _single_roots(expansion: Expansion, c: dict[int, Terms]) -> tuple[Terms, ...
     q = square_root(expansion.product(c[0], c[4])) if c.get(0) else None
     if q is None:
         return ()
-    parts = tuple(plus(c.get(2, {}), q, factor) for factor in (2, -2))
+    parts = tuple(terms_plus(c.get(2, {}), q, factor) for factor in (2, -2))
     whole = [not x or square_root(expansion.product(x, c[4])) is not None for x in parts]
     return parts if any(whole) else ()
 

@@ -23,7 +23,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.small_motions.field import Entries, Entry, Field, at, negative, product, solved, total, turned
+from eomgen.mechanics.small_motions.field import (
+    Entries,
+    MatrixEntry,
+    NumberField,
+    at,
+    matrix_product,
+    matrix_solution,
+    matrix_sum,
+    matrix_transposed,
+    negative,
+)
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node
@@ -69,7 +79,7 @@ class Reducing:
 
     first: FirstOrder
     choice: Choice
-    field: Field
+    field: NumberField
 
     @cached_property
     def J(self) -> Entries:
@@ -84,13 +94,13 @@ class Reducing:
         """x of all speeds with x_i = 0 and J x + right = 0."""
         choice = self.choice
         J_d = [[row[k] for k in choice.du] for row in self.J]
-        found = solved(self.field, J_d, negative(right)) if choice.du else []
+        found = matrix_solution(self.field, J_d, negative(right)) if choice.du else []
         width = len(right[0]) if right else 0
         by_speed = dict(zip(choice.du, found, strict=True))
         return [by_speed.get(k, [0] * width) for k in range(len(self.first.system.symbols.u))]
 
     @cached_property
-    def a(self) -> list[Entry]:
+    def a(self) -> list[MatrixEntry]:
         """Accelerations, the independent ones 0: J a + gamma = 0."""
         if not self.choice.ties:
             return [0] * len(self.first.system.symbols.u)
@@ -98,29 +108,29 @@ class Reducing:
         return [row[0] for row in self.following([[x] for x in gamma])]
 
     @cached_property
-    def forces(self) -> list[Entry]:
+    def forces(self) -> list[MatrixEntry]:
         """M a - forcing: what the ties must push."""
         forcing = self.field.of(self.first.assembly.forcing)
         return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
 
     @cached_property
-    def lam(self) -> list[Entry]:
+    def lam(self) -> list[MatrixEntry]:
         """Multipliers by J_d^T lam = M a - forcing; 0 of rows that follow from others."""
         choice = self.choice
         J_d = [[row[k] for row in self.J] for k in choice.du]
-        found = solved(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
+        found = matrix_solution(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
         by_row = dict(zip(choice.ties, (row[0] for row in found), strict=True))
         return [by_row.get(i, 0) for i in range(len(self.first.assembly.J))]
 
     @cached_property
-    def unbalanced(self) -> list[Entry]:
+    def unbalanced(self) -> list[MatrixEntry]:
         """Z^T (M a - forcing): what accelerates the independent speeds."""
-        return [self.field.tidy(inner(column, self.forces)) for column in turned(self.Z, len(self.choice.u))]
+        return [self.field.tidy(inner(column, self.forces)) for column in matrix_transposed(self.Z, len(self.choice.u))]
 
     # -- to first order ------------------------------------------------------------------------------------
 
     @cached_property
-    def _whole(self) -> Field:
+    def _whole(self) -> NumberField:
         """The state with accelerations and multipliers."""
         symbols = self.first.system.symbols
         known = dict(zip(symbols.a, self.a, strict=True)) | dict(zip(symbols.lam, self.lam, strict=True))
@@ -149,7 +159,7 @@ class Reducing:
         entries = at(self._whole, G)
         G_d = [[row[k] for k in choice.dq] for row in entries]
         G_i = [[-row[k] for k in choice.q] for row in entries]
-        found = dict(zip(choice.dq, solved(self.field, G_d, G_i), strict=True)) if choice.dq else {}
+        found = dict(zip(choice.dq, matrix_solution(self.field, G_d, G_i), strict=True)) if choice.dq else {}
         place = {k: j for j, k in enumerate(choice.q)}
         return [[int(place[k] == j) for j in range(len(choice.q))] if k in place else found[k] for k in range(n)]
 
@@ -162,37 +172,41 @@ class Reducing:
         X_q, X_u = Y, [[0] * len(choice.u)] * n
         if choice.ties:
             A_u = self._closing("A_u")
-            Y = self.following(product(field, self._closing("V_q"), P))
-            X_q = self.following(total(field, product(field, self._closing("A_q"), P), product(field, A_u, Y)))
-            X_u = self.following(product(field, A_u, Z))
-        Z_T = turned(Z, len(choice.u))
-        K = total(field, product(field, R_q, P), product(field, R_u, Y), product(field, self.M, X_q))
-        C = total(field, product(field, R_u, Z), product(field, self.M, X_u))
+            Y = self.following(matrix_product(field, self._closing("V_q"), P))
+            X_q = self.following(
+                matrix_sum(field, matrix_product(field, self._closing("A_q"), P), matrix_product(field, A_u, Y))
+            )
+            X_u = self.following(matrix_product(field, A_u, Z))
+        Z_T = matrix_transposed(Z, len(choice.u))
+        K = matrix_sum(
+            field, matrix_product(field, R_q, P), matrix_product(field, R_u, Y), matrix_product(field, self.M, X_q)
+        )
+        C = matrix_sum(field, matrix_product(field, R_u, Z), matrix_product(field, self.M, X_u))
         N = at(field, self.first.system.scope.N)
-        rates = total(field, product(field, self.derivative("S_q"), P), product(field, N, Y))
+        rates = matrix_sum(field, matrix_product(field, self.derivative("S_q"), P), matrix_product(field, N, Y))
         return LinearEquations(
             tuple(symbols.q[k] for k in choice.q),
             tuple(symbols.u[k] for k in choice.u),
             tuple(symbols.inputs.values()),
             symbols.q,
-            product(field, Z_T, product(field, self.M, Z)),
-            product(field, Z_T, C),
-            product(field, Z_T, K),
-            product(field, Z_T, self.derivative("W")),
+            matrix_product(field, Z_T, matrix_product(field, self.M, Z)),
+            matrix_product(field, Z_T, C),
+            matrix_product(field, Z_T, K),
+            matrix_product(field, Z_T, self.derivative("W")),
             [rates[k] for k in choice.q],
-            product(field, [N[k] for k in choice.q], Z),
+            matrix_product(field, [N[k] for k in choice.q], Z),
             P,
         )
 
 
-def dependent_speeds(first: FirstOrder, choice: Choice, field: Field) -> dict[Node, Entry]:
+def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, MatrixEntry]:
     """The dependent speeds by J u + sigma = 0, from the independent ones of the state."""
     if not choice.ties:
         return {}
     there, u = Reducing(first, choice, field), first.system.symbols.u
     independent = [[x] for x in field.of([u[k] for k in choice.u])]
     sigma = field.of([first.assembly.sigma[i] for i in choice.ties])
-    pushed = product(field, [[row[k] for k in choice.u] for row in there.J], independent)
+    pushed = matrix_product(field, [[row[k] for k in choice.u] for row in there.J], independent)
     found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
     return {u[k]: found[k][0] for k in choice.du}
 
@@ -214,5 +228,5 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     return [i for i in left if abs(found[i]) > SOLVED * rows[i]]
 
 
-def _size(row: list[Entry], unit: list[float]) -> float:
+def _size(row: list[MatrixEntry], unit: list[float]) -> float:
     return float(sum(abs(x) * one for x, one in zip(row, unit, strict=True)))

@@ -32,7 +32,7 @@ EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceMotion:
     """The state about which the equations are linearized.
 
     Args:
@@ -74,7 +74,7 @@ class Reference:
         return {x: self.numbers[x] for x in self.system.symbols.parameters.values()}
 
 
-def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> Reference:
+def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
     """The place of rest nearest to the guess.
 
     Args:
@@ -93,7 +93,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     return _place(place)
 
 
-def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float] | None = None) -> Reference:
+def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
     """The place at which all is at rest beside what the model drives at a steady rate: a bead on a hoop that turns.
 
     forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
@@ -126,7 +126,7 @@ def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float]
     return _place(nearest_equilibrium(statics, guess))
 
 
-def _place(place: Equilibrium) -> Reference:
+def _place(place: Equilibrium) -> ReferenceMotion:
     system = place.statics.system
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
@@ -135,10 +135,10 @@ def _place(place: Equilibrium) -> Reference:
     numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
     for q in symbols.q:
         numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(1) * place.numbers[q]
-    return _with_inputs(Reference(system, EQUILIBRIUM, exact, numbers, place))
+    return _with_inputs(ReferenceMotion(system, EQUILIBRIUM, exact, numbers, place))
 
 
-def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | None = None) -> Reference:
+def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | None = None) -> ReferenceMotion:
     """The start of the model, without its speeds where it is to be a place of rest.
 
     Args:
@@ -169,10 +169,10 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
     for x in (*symbols.q, *symbols.u):
         numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
-    return _with_inputs(Reference(system, EQUILIBRIUM if at_rest else START, exact, numbers))
+    return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))
 
 
-def in_closed_form(reference: Reference, state: Mapping[Node, Scalar]) -> Reference:
+def in_closed_form(reference: ReferenceMotion, state: Mapping[Node, Scalar]) -> ReferenceMotion:
     """The reference with coordinates and speeds that are known as scalars of the parameters."""
     numbers = {**reference.numbers, **_numbers(state, reference.trial)}
     return replace(reference, exact={**reference.exact, **state}, numbers=numbers)
@@ -182,7 +182,7 @@ def _gap(row: Row) -> Scalar | None:
     return None if row.identical else row.gap
 
 
-def _with_inputs(reference: Reference) -> Reference:
+def _with_inputs(reference: ReferenceMotion) -> ReferenceMotion:
     """Inputs as they are at t = 0."""
     system = reference.system
     given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.mechanics.small_motions.eigen import defective, eigenpairs, met, squares_of, zeros_of
+from eomgen.mechanics.small_motions.eigen import count_of_zeros, defective, eigenpairs, merged, squares_of
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.polynomial import Polynomial
@@ -91,7 +91,7 @@ def spectrum_of(small: SmallMotions, polynomial: Polynomial | None = None) -> Sp
     Args:
         polynomial: p(s), where it is known exactly.
     """
-    zeros = zeros_of(small.numbers, polynomial, small.reference.trial)
+    zeros = count_of_zeros(small.numbers, polynomial, small.reference.trial)
     modes = _undamped(small, zeros // 2) if _is_undamped(small) else _general(small, zeros)
     modes.sort(key=lambda mode: (mode.frequency is None, mode.frequency or 0.0, -mode.eigenvalue.real))
     values = [x for mode in modes for x in _all_values(mode)]
@@ -148,7 +148,7 @@ def _general(small: SmallMotions, still: int) -> list[Mode]:
     moving = vectors[: len(small.numbers.coordinates)]
     real = [moving[:, k].imag if values[k].imag < 0 else moving[:, k].real for k in order[:still]]  # drawn to a pair
     zeros = [_shape(small, x.astype(complex), 0) for x in real]
-    values, vectors = met(values[order[still:]]), vectors[:, order[still:]]
+    values, vectors = merged(values[order[still:]]), vectors[:, order[still:]]
     modes = []
     for value, x in zip(_without_noise(small, values), vectors.T, strict=True):
         if value.imag >= 0:

@@ -14,10 +14,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.small_motions.field import Entries, Field, at, negative, product, solved, total
+from eomgen.mechanics.small_motions.field import (
+    Entries,
+    NumberField,
+    at,
+    matrix_product,
+    matrix_solution,
+    matrix_sum,
+    negative,
+)
 from eomgen.mechanics.small_motions.first_order import Choice
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import fifty_digits
@@ -26,7 +34,7 @@ NAME = "turn_"
 
 
 @dataclass(frozen=True)
-class Turn:
+class SpinAxis:
     """A quaternion that moves in the reference.
 
     Args:
@@ -40,7 +48,7 @@ class Turn:
     carriers: tuple[int, ...]
 
 
-def spinning(reference: Reference, choice: Choice) -> tuple[Turn, ...]:
+def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]:
     """The quaternions that move in the reference, three of each independent."""
     system, found = reference.system, []
     speeds = {u.name: u for u in system.symbols.u}
@@ -49,31 +57,38 @@ def spinning(reference: Reference, choice: Choice) -> tuple[Turn, ...]:
         carriers = tuple(j for j, k in enumerate(choice.q) if system.symbols.q[k] in four)
         moves = any(e in reference.moving for e in four)
         if moves and len(carriers) == len(part.speeds) and all(w in speeds for w in part.speeds):
-            found.append(Turn(four, tuple(speeds[w] for w in part.speeds), carriers))
+            found.append(SpinAxis(four, tuple(speeds[w] for w in part.speeds), carriers))
     return tuple(found)
 
 
-def over_turns(field: Field, system: System, equations: LinearEquations, turns: tuple[Turn, ...]) -> LinearEquations:
+def over_turns(
+    field: NumberField, system: System, equations: LinearEquations, turns: tuple[SpinAxis, ...]
+) -> LinearEquations:
     """The equations with small turns in the place of quaternions that move."""
     for turn in turns:
         equations = _over_turn(field, system, equations, turn)
     return equations
 
 
-def _over_turn(field: Field, system: System, e: LinearEquations, turn: Turn) -> LinearEquations:
+def _over_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis) -> LinearEquations:
     n, graph = len(e.coordinates), system.scope.graph
     T, rate = _by_turn(field, system, e, turn, n)
     one = [[int(i == j) for j in range(n)] for i in range(n)]
-    T_inverse = solved(field, T, one)
-    F = product(field, T_inverse, total(field, product(field, e.F, T), negative(rate)))
+    T_inverse = matrix_solution(field, T, one)
+    F = matrix_product(field, T_inverse, matrix_sum(field, matrix_product(field, e.F, T), negative(rate)))
     names = dict(zip(turn.carriers, turn.speeds, strict=True))
     labels = tuple(graph.symbol(NAME + names[j].name) if j in names else q for j, q in enumerate(e.coordinates))
     return replace(
-        e, coordinates=labels, K=product(field, e.K, T), P=product(field, e.P, T), F=F, E=product(field, T_inverse, e.E)
+        e,
+        coordinates=labels,
+        K=matrix_product(field, e.K, T),
+        P=matrix_product(field, e.P, T),
+        F=F,
+        E=matrix_product(field, T_inverse, e.E),
     )
 
 
-def _by_turn(field: Field, system: System, e: LinearEquations, turn: Turn, n: int) -> tuple[Entries, Entries]:
+def _by_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis, n: int) -> tuple[Entries, Entries]:
     """(T, T') of all coordinates: 1 and 0 for those that are no part of the quaternion."""
     scope = system.scope
     places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]
@@ -96,7 +111,7 @@ def _spread(row: list[Any], columns: tuple[int, ...], n: int) -> list[Any]:
     return found
 
 
-def turned_on(turns: tuple[Turn, ...], numbers: Mapping[Node, Any], time: float) -> dict[Node, Any]:
+def turned_on(turns: tuple[SpinAxis, ...], numbers: Mapping[Node, Any], time: float) -> dict[Node, Any]:
     """The quaternions that long later: e o (cos(|w| t/2), sin(|w| t/2) w/|w|)."""
     found: dict[Node, Any] = {}
     for turn in turns:

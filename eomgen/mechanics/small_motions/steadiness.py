@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Field, Numbers
+from eomgen.mechanics.small_motions.field import NumberField, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_own
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
-from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.mechanics.small_motions.spin_axes import over_turns, spinning, turned_on
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node
@@ -29,14 +29,16 @@ PRIME = "'"
 LATER = (13.4142135623, 1717.7724538509)  # the same, where t itself stands in the equations
 
 
-def reduced(first: FirstOrder, choice: Choice, reference: Reference, field: Field) -> LinearEquations:
+def reduced_equations(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, field: NumberField
+) -> LinearEquations:
     """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
     equations = Reducing(first, choice, field).equations()
     return over_turns(field, first.system, equations, spinning(reference, choice))
 
 
 def refuse_corners(
-    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> None:
     """Forces that are not smooth at the reference, as k |x| at x = 0: close to it, on both sides, all must be the same.
 
@@ -58,7 +60,7 @@ def refuse_corners(
 
 
 def steady_coordinates(
-    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, wanted: Sequence[str]
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, wanted: Sequence[str]
 ) -> tuple[int, ...]:
     """The coordinates over which the equations stay as they are with time: those that carry the motion.
 
@@ -89,7 +91,7 @@ def steady_coordinates(
 
 
 def _unsteady(
-    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> list[dict[Node, Any]]:
     """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
     moving, t, graph = reference.moving, first.system.symbols.t, first.assembly
@@ -122,7 +124,7 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
 
 
 def _changed(
-    first: FirstOrder, choice: Choice, reference: Reference, raw: LinearEquations, kept: Sequence[int]
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> Callable[[Mapping[Node, Any]], bool]:
     """Whether the equations are others at a shifted state."""
     here = list(_compared(raw, kept))
@@ -131,7 +133,7 @@ def _changed(
         shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
         reducing = Reducing(first, choice, Numbers(shifted))
         try:
-            there = list(_compared(reduced(first, choice, reference, reducing.field), kept))
+            there = list(_compared(reduced_equations(first, choice, reference, reducing.field), kept))
             pushed = unsettled(reducing, COMPUTED)
         except (NoValue, ZeroDivisionError):
             return True

@@ -23,7 +23,7 @@ from eomgen.mechanics.small_motions.field import Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, determined
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, dependent_speeds, unsettled
-from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -48,7 +48,7 @@ class Steady:
     following: tuple[Node, ...]
 
 
-def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] = ()) -> Steady:
+def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str] = ()) -> Steady:
     """The steady motion nearest to the start.
 
     Args:
@@ -72,7 +72,7 @@ def steady_start(first: FirstOrder, reference: Reference, wanted: Sequence[str] 
     )
 
 
-def _steady(first: FirstOrder, choice: Choice, state: State, changed: np.ndarray) -> Steady:
+def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], changed: np.ndarray) -> Steady:
     symbols = first.system.symbols
     values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
     independent = (*(symbols.q[k] for k in choice.q), *(symbols.u[k] for k in choice.u))
@@ -107,7 +107,9 @@ def _needed(here: Here, free: np.ndarray) -> np.ndarray:
     return needed
 
 
-def _sought(first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: np.ndarray) -> State | None:
+def _sought(
+    first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: np.ndarray
+) -> Mapping[Node, Any] | None:
     """The state with all residuals zero, by steps of least size in what the mask frees; None where none is near."""
     state, before = start, np.zeros(len(mask))
     for _ in range(STEPS):

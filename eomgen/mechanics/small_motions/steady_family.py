@@ -24,7 +24,7 @@ from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.reduction import Reducing, dependent_speeds
-from eomgen.mechanics.small_motions.reference import Reference
+from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.mechanics.small_motions.steady import Here
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -45,7 +45,7 @@ MOST_SOUGHT = 2  # unknowns of which all values are sought
 
 
 def family_of(
-    first: FirstOrder, reference: Reference, wanted: Sequence[str], following: Sequence[Node]
+    first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str], following: Sequence[Node]
 ) -> Family | None:
     """The family of a steady motion; None where its conditions are too long to be written.
 
@@ -84,7 +84,7 @@ class _Writing:
     """
 
     first: FirstOrder
-    reference: Reference
+    reference: ReferenceMotion
     choice: Choice
     moved: tuple[Node, ...]
 

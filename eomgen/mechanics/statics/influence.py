@@ -21,7 +21,7 @@ from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, sizes_of
 from eomgen.mechanics.statics.section_forces import KINDS
 from eomgen.mechanics.statics.section_release import Cut, cut_of, left_powers, loaded_axis
 from eomgen.mechanics.structures.structure import Structure
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.derivative import substituted
@@ -36,7 +36,7 @@ DOWN: Vector = (0, -1, 0)
 
 
 @dataclass(frozen=True)
-class Span:
+class InfluenceSpan:
     """A straight part of the way of the load, on which the influence line is straight.
 
     Args:
@@ -66,9 +66,9 @@ class InfluenceLine:
 
     name: str
     load: Vector
-    plan: Plan
+    plan: VelocityPlan
     cut: Cut | None
-    spans: tuple[Span, ...]
+    spans: tuple[InfluenceSpan, ...]
 
 
 def influence_line(structure: Structure, asked: str, load: Vector = DOWN) -> InfluenceLine:
@@ -134,12 +134,12 @@ class _Travelling:
     """A unit load on its way over the moving bodies."""
 
     structure: Structure
-    plan: Plan
+    plan: VelocityPlan
     cut: Cut | None
     load: Vector
     sizes: Sizes
 
-    def spans(self, along: Sequence[str]) -> Iterable[Span]:
+    def spans(self, along: Sequence[str]) -> Iterable[InfluenceSpan]:
         """Span by span."""
         motion = self.structure.system.motion
         unknown = [name for name in along if name not in motion.index]
@@ -156,7 +156,7 @@ class _Travelling:
             )
         return spans
 
-    def _chosen(self) -> Sequence[Span]:
+    def _chosen(self) -> Sequence[InfluenceSpan]:
         """What is horizontal, in order; else what is not upright; of a truss the lowest nodes."""
         links = self.structure.system.motion.links
         spans = list(self._over_bodies([link.name for link in links if not is_node(link.name)], skip=True))
@@ -184,11 +184,11 @@ class _Travelling:
             found.insert(k, thing)
         return found
 
-    def _over_nodes(self, nodes: Sequence[str]) -> Iterable[Span]:
+    def _over_nodes(self, nodes: Sequence[str]) -> Iterable[InfluenceSpan]:
         for a, b in pairwise(nodes):
             yield self._span(f"{a}-{b.partition('.')[2]}", (a, ZERO), (b, ZERO))
 
-    def _over_bodies(self, bodies: Sequence[str], *, skip: bool = False) -> Iterable[Span]:
+    def _over_bodies(self, bodies: Sequence[str], *, skip: bool = False) -> Iterable[InfluenceSpan]:
         for body in bodies:
             try:
                 axis = loaded_axis(self.structure, body, self.sizes)
@@ -198,7 +198,7 @@ class _Travelling:
                 raise
             yield from self._over(axis)
 
-    def _over(self, axis: MemberAxis) -> Iterable[Span]:
+    def _over(self, axis: MemberAxis) -> Iterable[InfluenceSpan]:
         """The legs of one body, that with the section in two."""
         cut = None if self.cut is None or self.cut.axis.body != axis.body else self.cut
         for k, leg in enumerate(axis.legs):
@@ -211,8 +211,8 @@ class _Travelling:
                 before = cut is not None and self.sizes.sign(cut.x - b) >= 0
                 yield self._span(axis.body, (axis.body, leg.place(a)), (axis.body, leg.place(b)), before=before)
 
-    def _span(self, name: str, a: LoadPoint, b: LoadPoint, *, before: bool = False) -> Span:
-        return Span(name, self._position(a), self._position(b), self._value(a, before), self._value(b, before))
+    def _span(self, name: str, a: LoadPoint, b: LoadPoint, *, before: bool = False) -> InfluenceSpan:
+        return InfluenceSpan(name, self._position(a), self._position(b), self._value(a, before), self._value(b, before))
 
     def _value(self, place: LoadPoint, before: bool) -> Scalar:
         """-e . v(P)"""

@@ -51,7 +51,7 @@ class AskedReactions:
             return self._tension(call)
         if call.name in KINDS:
             return self._section_force(call)
-        return self._reaction(call, *(name_of(call, argument) for argument in call.args))
+        return self._reaction(call, *(output_name(call, argument) for argument in call.args))
 
     def _reaction(self, call: Call, owner: str, frame: str = "") -> Scalar:
         """A component of a reaction: reaction_x(B), reaction_x(B.II), reaction_y(bar, bar), reaction_n(wall)."""
@@ -100,7 +100,7 @@ class AskedReactions:
     def _tension(self, call: Call) -> Scalar:
         """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
         owner, *strand = call.args
-        name = name_of(call, owner)
+        name = output_name(call, owner)
         tie = self.system.scope.model.constraints.get(name)
         if tie is not None and tie.table == "trusses":
             return self.reactions.member(name, *_ends(call))
@@ -112,12 +112,12 @@ class AskedReactions:
     def _section_force(self, call: Call) -> Scalar:
         """bending_moment(beam, a), shear_force(beam, a, before)."""
         body, x, *side = call.args
-        sides = [name_of(call, name) for name in side]
+        sides = [output_name(call, name) for name in side]
         if any(name not in ("before", "after") for name in sides):
             raise DerivationError(f"'{call}': the third argument is `before` or `after`")
         names = self.system.scope.names
         distance = (parse(x.name) if isinstance(x, Reference) else x).evaluate(names)  # L-c reads like a member
-        return self._beam(name_of(call, body)).value(call.name, distance, *sides)
+        return self._beam(output_name(call, body)).value(call.name, distance, *sides)
 
     def _beam(self, body: str) -> SectionForces:
         if body not in self.system.motion.index:
@@ -132,7 +132,7 @@ class AskedReactions:
         return {}
 
 
-def name_of(call: Call, argument: object) -> str:
+def output_name(call: Call, argument: object) -> str:
     """An argument that is a name.
 
     Raises:

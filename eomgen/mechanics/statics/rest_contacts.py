@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.bodies.contact_modes import Mode, Modes
+from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model
@@ -18,7 +18,7 @@ from eomgen.symbolic.expression.graph import Scalar
 
 
 @dataclass(frozen=True)
-class Condition:
+class RestCondition:
     """What must hold for a contact to be as it was taken.
 
     Args:
@@ -41,12 +41,12 @@ class Condition:
         }[self.kind]
 
 
-def modes_at_rest(model: Model) -> Modes:
+def modes_at_rest(model: Model) -> ContactModes:
     """Every contact with dry friction sticks."""
-    return {contact.name: Mode(sense=0) for contact in rough_contacts(model)}
+    return {contact.name: ContactMode(sense=0) for contact in rough_contacts(model)}
 
 
-def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
+def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
     """What must hold of contacts that can end or slide, those whose reactions are determinate."""
     found = []
     for contact in contacts_of(statics.system.scope.model):
@@ -57,12 +57,12 @@ def conditions_of(statics: StaticReactions) -> tuple[Condition, ...]:
             whole = _resultant([_value(statics, f"reaction_{axis}({name})") for axis in "xyz"])
             normal = None if whole is None or along is None else sqrt(whole * whole - along * along)
         if contact.unilateral and normal is not None:
-            found.append(Condition(name, "pushes", normal))
+            found.append(RestCondition(name, "pushes", normal))
         if contact.unilateral and pull is not None:
-            found.append(Condition(name, "pulls", pull))
+            found.append(RestCondition(name, "pulls", pull))
         if contact.mu is not None and normal is not None and along is not None:
             most = statics.system.scope.value(contact.mu) * function("abs", normal)
-            found.append(Condition(name, "sticks", most - function("abs", along)))
+            found.append(RestCondition(name, "sticks", most - function("abs", along)))
     return tuple(found)
 
 

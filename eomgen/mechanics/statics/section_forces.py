@@ -54,7 +54,7 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class Piece:
+class SectionPiece:
     """The section forces between two stations, polynomials in s = x - start.
 
     Args:
@@ -99,7 +99,7 @@ class SectionForces:
     """
 
     axis: MemberAxis
-    pieces: tuple[Piece, ...]
+    pieces: tuple[SectionPiece, ...]
 
     @property
     def sizes(self) -> Sizes:
@@ -136,7 +136,7 @@ class SectionForces:
         """The zeros of V within the pieces, those that have a closed form and whose place is known."""
         return tuple(e for piece in self.pieces for e in self._zeros(piece))
 
-    def _zeros(self, piece: Piece) -> Iterable[Extreme]:
+    def _zeros(self, piece: SectionPiece) -> Iterable[Extreme]:
         for root in _roots(piece.V, self.sizes):
             try:
                 inside = self.sizes.sign(root) > 0 and self.sizes.sign(piece.end - piece.start - root) > 0
@@ -198,7 +198,7 @@ def _spread(axis: MemberAxis, line: LineLoad) -> Iterable[Spread]:
     yield Spread(a, b, line[2], slope)
 
 
-def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[Piece]:
+def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[SectionPiece]:
     """From station to station: everything before is carried along as one force and one moment."""
     sizes = axis.sizes
     stations = _stations(axis, actions, spreads)
@@ -222,14 +222,16 @@ def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Sprea
         T = sizes.simple(-piece.value("bending_moment", end))
 
 
-def _piece(sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]) -> Piece:
+def _piece(
+    sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]
+) -> SectionPiece:
     """N, V, M from the resultant R and moment T before, and the load q + slope s."""
     R, T, q, slope = acting
     t, n = leg.along, leg.left
     N = (-dot(R, t), -dot(q, t), -HALF * dot(slope, t))
     V = (dot(R, n), dot(q, n), HALF * dot(slope, n))
     M = (-T, dot(R, n), HALF * dot(q, n), SIXTH * dot(slope, n))
-    return Piece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
+    return SectionPiece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
 
 
 def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.balance.named_reactions import named
+from eomgen.mechanics.balance.named_reactions import argument_name
 from eomgen.mechanics.balance.unit_wrenches import Effect
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of
 from eomgen.mechanics.statics.member_loads import place_of
@@ -61,7 +61,7 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
         )
     body, where, *side = call.args
     motion, names = structure.system.motion, structure.system.scope.names
-    name = named(body)
+    name = argument_name(body)
     if name not in motion.index or is_node(name):
         raise UsageError(f"influence line: {call}: there is no body '{name}'", mend=nearest(name, motion.index))
     axis = loaded_axis(structure, name, sizes)
@@ -74,7 +74,7 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     place = vector_of(substituted(motion.position((name, leg.place(x))), structure.at))
     shift = {"axial_force": t, "shear_force": times(-1, n), "bending_moment": ZERO}[call.name]
     at_end = sizes.sign(axis.ends[1] - x) == 0
-    here = 1 if (named(side[0]) if side else "before" if at_end else "after") == "before" else 0
+    here = 1 if (argument_name(side[0]) if side else "before" if at_end else "after") == "before" else 0
     inside = not at_end and sizes.sign(x - axis.ends[0]) != 0
     if inside and not side and call.name != "bending_moment" and _is_pushed(structure, axis, x, name):
         asked = f"{call.name}({name}, {to_text(x)}"

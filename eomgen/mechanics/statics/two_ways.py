@@ -148,12 +148,12 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
         found.append(StaticReaction(named.name, named.unit, named, solved, positive, work))
     for unknown in structure.unknowns:
         work = unknown_by_virtual_work(structure, unknown) if one in (None, unknown.name) else None
-        solved, unit = balance.unknowns.get(unknown), unit_of(structure, unknown)
+        solved, unit = balance.unknowns.get(unknown), unit_of_unknown(structure, unknown)
         found.append(StaticReaction(unknown.name, unit, None, solved, positive, work))
     return StaticReactions(structure, tuple(found), balance)
 
 
-def unit_of(structure: Structure, unknown: Node) -> str:
+def unit_of_unknown(structure: Structure, unknown: Node) -> str:
     """The unit of SI of an unknown force, couple or line load, where the model says what it is."""
     unit = structure.system.scope.model.unknowns[unknown.name].unit
     return "" if unit is None else UNITS.get(unit.dimension, "")

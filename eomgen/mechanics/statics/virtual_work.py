@@ -16,14 +16,14 @@ from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.structures.blocks import turning_by_one
 from eomgen.mechanics.structures.structure import Structure
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import times
 
-Load = PointForce | Couple | SpreadLoad
+StaticLoad = PointForce | Couple | SpreadLoad
 
 
 @dataclass(frozen=True)
@@ -37,16 +37,16 @@ class Acting:
     """
 
     name: str
-    load: Load | None
+    load: StaticLoad | None
     effects: tuple[Effect, ...] = ()
 
-    def work(self, plan: Plan) -> Scalar:
+    def work(self, plan: VelocityPlan) -> Scalar:
         """Its virtual work in a motion, not written out."""
         return plan.work_of_effects(self.effects) if self.load is None else plan.work(self.load)
 
 
 @dataclass(frozen=True)
-class Term:
+class WorkTerm:
     """The virtual work of one load, not 0."""
 
     acting: Acting
@@ -67,9 +67,9 @@ class WorkEquation:
     """
 
     name: str
-    plan: Plan
+    plan: VelocityPlan
     along: Scalar
-    terms: tuple[Term, ...]
+    terms: tuple[WorkTerm, ...]
     given: Scalar
     value: Scalar
 
@@ -125,7 +125,7 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
     loads = loads_at_rest(structure)
     works = substituted(tuple(load.work(plan) for load in loads), still)
     terms = tuple(
-        Term(load, plan.simple(work)) for load, work in zip(loads, works, strict=True) if not plan.vanishes((work,))
+        WorkTerm(load, plan.simple(work)) for load, work in zip(loads, works, strict=True) if not plan.vanishes((work,))
     )
     total = sum((term.work for term in terms), start=0)
     return WorkEquation(name, plan, along, terms, given, plan.simple(over(-total, along) + given))

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.fields.field import Field
-from eomgen.mechanics.structures.velocity_plan import Center, Plan
+from eomgen.mechanics.fields.field import VelocityField
+from eomgen.mechanics.structures.velocity_plan import PlanCenter, VelocityPlan
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.functions import over
@@ -18,7 +18,7 @@ from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 
 @dataclass(frozen=True)
-class Block:
+class RigidBlock:
     """What moves as one rigid body.
 
     Args:
@@ -40,12 +40,12 @@ class Block:
         """Everything in it by name."""
         return (*self.bodies, *(f"{truss} {member}" for truss, member in self.members), *self.nodes)
 
-    def center(self, plan: Plan) -> Center:
+    def center(self, plan: VelocityPlan) -> PlanCenter:
         """Its centre of rotation in the plane."""
-        return plan.center(Field(v=self.velocity, w=self.spin))
+        return plan.center(VelocityField(v=self.velocity, w=self.spin))
 
 
-def blocks_of(plan: Plan) -> tuple[Block, ...]:
+def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
     """The blocks that move, in the order of the model; what is in none of them stays at rest."""
     parts = [*_bodies(plan), *_members(plan)]
     flat = iter(plan.numbers([x for part in parts for x in (*part.spin, *part.velocity)]))
@@ -61,7 +61,7 @@ def blocks_of(plan: Plan) -> tuple[Block, ...]:
     return (*blocks, *_single_nodes(plan, blocks))
 
 
-def turning_by_one(plan: Plan) -> Scalar:
+def turning_by_one(plan: VelocityPlan) -> Scalar:
     """1/w of the first block that turns about one axis; 1 where none does."""
     for part in (*_bodies(plan), *_members(plan)):
         spins = [w for w in part.spin if not plan.vanishes((w,))]
@@ -70,7 +70,7 @@ def turning_by_one(plan: Plan) -> Scalar:
     return 1
 
 
-def resting(plan: Plan) -> tuple[str, ...]:
+def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
     """The bodies and trusses of which nothing moves, by name."""
     links = plan.system.motion.links
     bodies = tuple(link.name for link in links if link.name not in plan.moving and not is_node(link.name))
@@ -85,14 +85,14 @@ def members_of(system: System) -> list[tuple[str, str, tuple[str, str]]]:
     return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
 
 
-def _bodies(plan: Plan) -> Iterable[Block]:
+def _bodies(plan: VelocityPlan) -> Iterable[RigidBlock]:
     """The bodies that are no nodes, each by itself."""
     for name in plan.moving:
         if not is_node(name):
-            yield Block((name,), (), (), plan.raw_spin(name), plan.raw_velocity_at(name, ZERO))
+            yield RigidBlock((name,), (), (), plan.raw_spin(name), plan.raw_velocity_at(name, ZERO))
 
 
-def _members(plan: Plan) -> Iterable[Block]:
+def _members(plan: VelocityPlan) -> Iterable[RigidBlock]:
     """The moving members in the plane that keep their length, each by itself: w = r x (v_2 - v_1) / r.r"""
     if plan.system.scope.model.space != "plane":
         return
@@ -105,23 +105,23 @@ def _members(plan: Plan) -> Iterable[Block]:
         if plan.vanishes((dot(apart, along),)):
             spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
             moved = plus(v, cross(spin, minus(ZERO, position)))
-            yield Block((), ((truss, member),), (), spin, (moved[0], moved[1], 0))
+            yield RigidBlock((), ((truss, member),), (), spin, (moved[0], moved[1], 0))
 
 
 def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
     return all(abs(x - y) < ZERO_AT_50 for x, y in zip(one, other, strict=True))
 
 
-def _joined(plan: Plan, group: list[Block]) -> Block:
+def _joined(plan: VelocityPlan, group: list[RigidBlock]) -> RigidBlock:
     bodies = tuple(name for part in group for name in part.bodies)
     members = tuple(member for part in group for member in part.members)
     spin, velocity = (vector_of(map(plan.simple, x)) for x in (group[0].spin, group[0].velocity))
-    return Block(bodies, members, (), spin, velocity)
+    return RigidBlock(bodies, members, (), spin, velocity)
 
 
-def _single_nodes(plan: Plan, blocks: list[Block]) -> list[Block]:
+def _single_nodes(plan: VelocityPlan, blocks: list[RigidBlock]) -> list[RigidBlock]:
     """Moving nodes at the end of no moving member that keeps its length."""
     ends = {(truss, member): pair for truss, member, pair in members_of(plan.system)}
     carried = {node for block in blocks for member in block.members for node in ends[member]}
     alone = [name for name in plan.moving if is_node(name) and name not in carried]
-    return [Block((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]
+    return [RigidBlock((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]

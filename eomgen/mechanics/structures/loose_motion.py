@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.structures.blocks import Block, blocks_of
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
 from eomgen.mechanics.structures.structure import Structure
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.trusses import declared_at
 from eomgen.symbolic.expression.functions import over
@@ -53,7 +53,7 @@ def stays(structure: Structure) -> bool:
     return kept and structure.is_in_balance
 
 
-def _hangs(structure: Structure, plan: Plan) -> bool:
+def _hangs(structure: Structure, plan: VelocityPlan) -> bool:
     """Whether a string pulls every body that moves."""
     system = structure.system
     ties = system.scope.model.constraints
@@ -66,7 +66,7 @@ def _only_pulls(tie: Constraint) -> bool:
     return bool(tie.strand_rows()) or bool(getattr(tie, "unilateral", False))
 
 
-def _culprit(plan: Plan) -> str:
+def _culprit(plan: VelocityPlan) -> str:
     """A body or node that moves."""
     blocks = blocks_of(plan)
     named = [name for block in blocks for name in block.bodies]
@@ -86,7 +86,7 @@ def _mend(structure: Structure, enough: bool) -> str:
     return held + (balanced if structure.is_in_balance else "")
 
 
-def motion_in_words(plan: Plan) -> str:
+def motion_in_words(plan: VelocityPlan) -> str:
     """body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)"""
     (name, (verb, _, how)), *others = [(_named(block), _motion(plan, block)) for block in blocks_of(plan)]
     following = [f"{other} {doing} {how}" for other, (_, doing, how) in others[:MOST_MOTIONS]]
@@ -94,7 +94,7 @@ def motion_in_words(plan: Plan) -> str:
     return f"{name} can {verb} {how}" + (f", with it {' and '.join(following)}" if following else "")
 
 
-def _named(block: Block) -> str:
+def _named(block: RigidBlock) -> str:
     """Its bodies; of trusses its members, or its nodes."""
     members = [member for _, member in block.members]
     kinds: list[tuple[str, str, Sequence[str]]] = [
@@ -111,7 +111,7 @@ def _of_kind(one: str, many: str, names: Sequence[str]) -> str:
     return f"{one if len(names) == 1 else many} {shown}{more}"
 
 
-def _motion(plan: Plan, block: Block) -> tuple[str, str, str]:
+def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
     """(slide, sliding, along x), (turn, turning, about (a, 0))"""
     if plan.vanishes(block.spin):
         return "slide", "sliding", f"along {_direction(plan, vector_of(map(plan.simple, block.velocity)))}"
@@ -119,7 +119,7 @@ def _motion(plan: Plan, block: Block) -> tuple[str, str, str]:
     return "turn", "turning", _screw(plan, block) if place is None else f"about {_tuple(place[:2])}"
 
 
-def _screw(plan: Plan, block: Block) -> str:
+def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
     """In space: the axis through w x v_O / w.w along w, and the advance along it."""
     w, v = block.spin, block.velocity
     square = dot(w, w)
@@ -128,7 +128,7 @@ def _screw(plan: Plan, block: Block) -> str:
     return turning if plan.vanishes((dot(w, v),)) else f"{turning}, advancing along it"
 
 
-def _direction(plan: Plan, vector: Vector) -> str:
+def _direction(plan: VelocityPlan, vector: Vector) -> str:
     """x, y, z, or the components against the first that is not 0."""
     kept = [k for k in range(3) if not plan.vanishes((vector[k],))]
     if len(kept) == 1:

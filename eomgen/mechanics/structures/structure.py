@@ -26,7 +26,7 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import at_rest, values_for
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -35,9 +35,9 @@ from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
-from eomgen.symbolic.solve.scaling import solved
+from eomgen.symbolic.solve.scaling import scaled_solution
 
-Column = tuple[int, int]
+UnknownColumn = tuple[int, int]
 """(index of the body, direction in DIRECTIONS): one velocity."""
 
 
@@ -54,7 +54,7 @@ class Structure:
 
     balance: Balance
     at: State
-    columns: tuple[Column, ...]
+    columns: tuple[UnknownColumn, ...]
     rows: tuple[dict[int, Scalar], ...]
 
     @property
@@ -100,7 +100,7 @@ class Structure:
     # -- motions -----------------------------------------------------------------------------------
 
     @cached_property
-    def loose(self) -> tuple[Plan, ...]:
+    def loose(self) -> tuple[VelocityPlan, ...]:
         """Independent motions that nothing resists; () where the bodies are held."""
         plans = []
         for f in self._solved.solution.free:
@@ -122,12 +122,12 @@ class Structure:
         """Whether the loads do no work in any motion that nothing resists."""
         return all(plan.vanishes((self._work(plan),)) for plan in self.loose)
 
-    def _is_idle(self, plan: Plan) -> bool:
+    def _is_idle(self, plan: VelocityPlan) -> bool:
         points = self.system.motion.points
         moved = [x for body in plan.moving for r in points[body].values() for x in plan.raw_velocity((body, r))]
         return plan.vanishes((*moved, self._work(plan)))
 
-    def _work(self, plan: Plan) -> Scalar:
+    def _work(self, plan: VelocityPlan) -> Scalar:
         """Of all loads, as the bodies' equations hold them; unknown ones do none in a motion that nothing resists."""
         applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
         given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
@@ -151,7 +151,7 @@ class Structure:
         works = (sum((k * stress.get(j, 0) for j, k in combination.items()), start=0) for stress in self.stresses)
         return all(is_zero(x) or holds_identically(x) for x in works)
 
-    def released(self, row: int | Mapping[int, Scalar]) -> Plan:
+    def released(self, row: int | Mapping[int, Scalar]) -> VelocityPlan:
         """The motion that one released reaction leaves: a velocity 1 along it, 0 along all others.
 
         Where the bodies have freedoms besides, these stand still. A combination k of reactions is released as one:
@@ -176,11 +176,11 @@ class Structure:
         """
         return {own: j for j, own in reversed(list(enumerate(self.names)))}[name]
 
-    def _plan(self, xi: Sequence[Scalar]) -> Plan:
+    def _plan(self, xi: Sequence[Scalar]) -> VelocityPlan:
         velocities: list[list[Scalar]] = [[0] * 6 for _ in self.system.motion.links]
         for (body, direction), value in zip(self.columns, self._readable(xi), strict=True):
             velocities[body][direction] = value
-        return Plan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
+        return VelocityPlan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
 
     def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return readable_all(tuple(scalars), Work.ANSWER, self.positive)
@@ -214,7 +214,7 @@ class Structure:
             return evaluate(scalars, parameters, fifty_digits())
 
         sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
-        solution = solved(self.rows, deltas, len(self.columns), values, sure_symbols=sure)
+        solution = scaled_solution(self.rows, deltas, len(self.columns), values, sure_symbols=sure)
         return _Solved(solution, deltas, len(self.columns), parameters)
 
     def _parameters(self, *, shaken: bool) -> State:
@@ -271,12 +271,12 @@ def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) 
     return tuple({k: x for k, x in row.items() if not is_zero(x)} for row in placed)
 
 
-def _directions(system: System) -> list[Column]:
+def _directions(system: System) -> list[UnknownColumn]:
     axes = Axes(system.motion)
     return [(i, d) for i in range(len(system.motion.links)) for d in axes.rows]
 
 
-def _is_point_that_turns(system: System, column: Column) -> bool:
+def _is_point_that_turns(system: System, column: UnknownColumn) -> bool:
     """Whether it is the turning of a node or a point mass on which no moment acts: it is no motion of its own."""
     body, direction = column
     part = system.scope.model.bodies.get(system.motion.links[body].name)

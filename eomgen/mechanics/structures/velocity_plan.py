@@ -16,7 +16,7 @@ from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.fields.field import Field, rotation_center
+from eomgen.mechanics.fields.field import VelocityField, rotation_center
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import substituted
@@ -31,7 +31,7 @@ SIXTH = Fraction(1, 6)
 
 
 @dataclass(frozen=True)
-class Center:
+class PlanCenter:
     """The centre of rotation of a body in the plane.
 
     Args:
@@ -44,7 +44,7 @@ class Center:
 
 
 @dataclass(frozen=True)
-class Plan:
+class VelocityPlan:
     """A field of velocities of rigid bodies, a velocity plan.
 
     Args:
@@ -59,14 +59,14 @@ class Plan:
     parameters: Mapping[Node, Any]
     velocities: tuple[tuple[Scalar, ...], ...]
 
-    def scaled(self, k: Scalar) -> Plan:
+    def scaled(self, k: Scalar) -> VelocityPlan:
         """k times as fast."""
         if k == 1:
             return self
         flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self._positive)
         return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
 
-    def plus(self, other: Plan, k: Scalar = 1) -> Plan:
+    def plus(self, other: VelocityPlan, k: Scalar = 1) -> VelocityPlan:
         """Both motions at once, the other k times as fast."""
         pairs = zip(self.velocities, other.velocities, strict=True)
         rows = tuple(tuple(self.simple(x + k * y) for x, y in zip(a, b, strict=True)) for a, b in pairs)
@@ -105,15 +105,15 @@ class Plan:
         """Of the point of a body that is at a place of the ground, ground axes, not written out."""
         return self.field(body).velocity(position)
 
-    def field(self, body: str) -> Field:
+    def field(self, body: str) -> VelocityField:
         """Velocities of a body by that of its mass centre; of a body at rest all 0."""
         if body not in self._fields:
-            self._fields[body] = self._field(body) if body in self.moving else Field()
+            self._fields[body] = self._field(body) if body in self.moving else VelocityField()
         return self._fields[body]
 
-    def _field(self, body: str) -> Field:
+    def _field(self, body: str) -> VelocityField:
         six = self._six(body)
-        return Field(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
+        return VelocityField(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
 
     def position(self, place: BodyPoint) -> Vector:
         """Of a place in this configuration, ground axes."""
@@ -122,11 +122,11 @@ class Plan:
     def mass_center(self, body: str) -> Vector:
         return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
 
-    def center(self, field: Field) -> Center:
+    def center(self, field: VelocityField) -> PlanCenter:
         """The centre of rotation of what moves so in the plane."""
         if self.vanishes(field.w):
-            return Center(None, ZERO if self.vanishes(field.v) else self._simple(field.v))
-        return Center(self._simple(rotation_center(field)))
+            return PlanCenter(None, ZERO if self.vanishes(field.v) else self._simple(field.v))
+        return PlanCenter(self._simple(rotation_center(field)))
 
     # -- work ----------------------------------------------------------------------------------------
 
@@ -186,7 +186,7 @@ class Plan:
         return {}
 
     @cached_property
-    def _fields(self) -> dict[str, Field]:
+    def _fields(self) -> dict[str, VelocityField]:
         return {}
 
     @cached_property

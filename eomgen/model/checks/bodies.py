@@ -5,7 +5,7 @@ from typing import Any
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.composite import sources
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 
@@ -21,7 +21,7 @@ def bodies(catalog: Catalog) -> Iterator[Finding]:
 
 
 def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
-    path: Path = ("bodies", name)
+    path: DocumentPath = ("bodies", name)
     alone = "shape" if body.shape is not None else "parts" if body.parts is not None else ""
     others = {"shape": ("mass", "center", "inertia", "parts"), "parts": ("center", "inertia"), "": ()}[alone]
     for other in others:
@@ -38,7 +38,7 @@ def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
         yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
 
 
-def _sharing(path: Path, name: str, body: Any) -> Iterator[Finding]:
+def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Finding]:
     """Parts without a mass of their own: in what they share the rest, and that equal densities can be meant."""
     sharing = [k for k, piece in enumerate(body.parts) if piece.shape.mass is None]
     for k in sharing:
@@ -81,7 +81,7 @@ def _turns(catalog: Catalog, name: str) -> bool:
 
 
 def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Finding]:
-    path: Path = ("bodies", name, "joint")
+    path: DocumentPath = ("bodies", name, "joint")
     space = catalog.model.space
     if joint.on is not None and joint.at is not None:
         if "." in joint.on:

@@ -6,7 +6,7 @@ from functools import cache
 from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
-from eomgen.model.findings import Finding, Path, article, nearest, whereabouts
+from eomgen.model.findings import DocumentPath, Finding, article, nearest, whereabouts
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
@@ -92,7 +92,7 @@ def _needed(leaf: Leaf) -> Unit | None:
 def _rings(catalog: Catalog) -> Iterator[Finding]:
     values = {name: part.value if part else None for name, part in catalog.table("parameters").items()}
     for ring in in_order(values)[1]:
-        path: Path = ("parameters", ring[0], "value")
+        path: DocumentPath = ("parameters", ring[0], "value")
         shown = ring if len(ring) <= LONGEST_TRAIL else [*ring[:LONGEST_TRAIL], "..."]
         trail = " -> ".join([*shown, ring[0]])
         what = f"parameter '{ring[0]}' needs itself: {trail}" if len(ring) == 1 else f"parameters in a ring: {trail}"

@@ -4,22 +4,22 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.arithmetic import Number, number_of
+from eomgen.model.arithmetic import AnyNumber, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.triangle import possible
 from eomgen.model.composite import Composite, about, composite_of
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.part import leaves_of
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 
-def made(catalog: Catalog, values: Mapping[str, Number]) -> Iterator[Finding]:
+def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
     """Shapes that cannot be, parts that weigh more than the whole, holes larger than what they are cut out of."""
     for name, body in catalog.table("bodies").items():
         if body is None or ("bodies", name) in catalog.broken or not _signed_right(body, values):
             continue  # told already
-        path: Path = ("bodies", name)
+        path: DocumentPath = ("bodies", name)
         shapes = [((*path, "shape"), f"the shape of body '{name}'", body.shape)] if body.shape is not None else []
         shapes += [
             ((*path, "parts", k), f"part {k + 1} of body '{name}'", piece.shape)
@@ -31,7 +31,7 @@ def made(catalog: Catalog, values: Mapping[str, Number]) -> Iterator[Finding]:
             yield from _whole((*path, "parts"), name, body, values)
 
 
-def _impossible(path: Path, what: str, shape: Any, values: Mapping[str, Number]) -> Finding | None:
+def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, AnyNumber]) -> Finding | None:
     if not _known(shape, values):
         return None
     try:
@@ -41,14 +41,14 @@ def _impossible(path: Path, what: str, shape: Any, values: Mapping[str, Number])
     return Finding(path, f"{what} ({shape.kind}) cannot be: {why}") if why else None
 
 
-def _signed_right(body: Any, values: Mapping[str, Number]) -> bool:
+def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
     """Whether every mass, length and radius of a body that is known has its sign."""
     signed = [leaf for leaf in leaves_of(body, ()) if getattr(leaf.rule, "sign", "")]
-    known = [(leaf.rule.sign, number_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
+    known = [(leaf.rule.sign, value_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
     return all(x is None or x > 0 or (x == 0 and sign == "nonnegative") for sign, x in known)
 
 
-def _known(part: Any, values: Mapping[str, Number]) -> bool:
+def _known(part: Any, values: Mapping[str, AnyNumber]) -> bool:
     """Whether every expression in a part has names with values only."""
     leaves = (leaf.value for leaf in leaves_of(part, ()))
     return all(e.names <= values.keys() for e in leaves if isinstance(e, Expression))
@@ -60,7 +60,7 @@ def _complete(body: Any) -> bool:
     return not sharing or (body.mass is not None and len({piece.shape.dimension for piece in sharing}) == 1)
 
 
-def _whole(path: Path, name: str, body: Any, values: Mapping[str, Number]) -> Iterator[Finding]:
+def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
     """Of a composite body all of whose numbers are known."""
     expressions = [body.mass] if body.mass is not None else []
     if not all(_known(piece, values) for piece in body.parts) or any(e.names - values.keys() for e in expressions):
@@ -85,7 +85,7 @@ def _signed(piece: Any, value: Any) -> Any:
     return (-1 if piece.hole else 1) * piece.shape.measure(value)
 
 
-def _masses(path: Path, name: str, body: Any, composite: Composite) -> Iterator[Finding]:
+def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> Iterator[Finding]:
     total = sum(placed.sign * placed.mass.m for placed in composite.pieces)
     largest = max(placed.mass.m for placed in composite.pieces)
     negative = [k for k, placed in enumerate(composite.pieces) if placed.mass.m < 0]
@@ -109,7 +109,7 @@ def _of_holes(composite: Composite) -> float:
     return float(sum(placed.mass.m for placed in composite.pieces if placed.sign < 0))
 
 
-def _inertia(path: Path, name: str, composite: Composite) -> Iterator[Finding]:
+def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Finding]:
     I = composite.whole.I
     moments = [float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
     size = max(abs(float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)

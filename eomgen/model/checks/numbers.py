@@ -5,26 +5,26 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.arithmetic import Number, in_order, number_of
+from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.made import made
 from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Finding, Path, shown, whereabouts
+from eomgen.model.findings import DocumentPath, Finding, shown, whereabouts
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import cross, vector_of
 
 
 def numbers(catalog: Catalog) -> Iterator[Finding]:
     """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
-    values: dict[str, Number] = {"pi": math.pi}
+    values: dict[str, AnyNumber] = {"pi": math.pi}
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
     for leaf, expression in catalog.expressions:
         yield from _worth(leaf, expression, values)
         sign = getattr(leaf.rule, "sign", "")
         if sign:
-            yield from _sign(leaf, expression, number_of(expression, values))
+            yield from _sign(leaf, expression, value_of(expression, values))
     yield from _directions(catalog, values)
     yield from _crossing(catalog, values)
     yield from _positive(catalog, values)
@@ -32,7 +32,7 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
     yield from made(catalog, values)
 
 
-def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterator[Finding]:
+def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     """Adds the value of a parameter to the values, or tells why it has none."""
     part = catalog.table("parameters")[name]
     if part is None or part.value is None or not part.value.names <= values.keys():
@@ -44,7 +44,7 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, Number]) -> Iterat
         yield Finding(path, what, error.mend, error.column, error.length)
 
 
-def _worth(leaf: Leaf, expression: Expression, values: dict[str, Number]) -> Iterator[Finding]:
+def _worth(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     """An expression of parameters that has no value, such as asin(2); a parameter's own is told above."""
     elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
     if elsewhere or not expression.names <= values.keys():
@@ -66,23 +66,23 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
     yield Finding(leaf.path, f"'{key}' in {where} is {what}: {worth}")
 
 
-def _directions(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding]:
+def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     """A direction that its parameters make zero (one of literal zeros is told where vectors are checked)."""
     for leaf in catalog.leaves:
         if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
             continue
         named = any(component.literal is None for component in leaf.value)
-        if named and all(number_of(component, values) == 0 for component in leaf.value):
+        if named and all(value_of(component, values) == 0 for component in leaf.value):
             yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
 
 
-def _crossing(catalog: Catalog, values: dict[str, Number]) -> Iterator[Finding]:
+def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     """The two axes of a universal joint that its numbers make parallel: it then turns about one axis alone."""
     for name, body in catalog.table("bodies").items():
         axes = getattr(getattr(body, "joint", None), "axes", None)
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
             continue
-        a, b = ([number_of(component, values) for component in axis] for axis in axes)
+        a, b = ([value_of(component, values) for component in axis] for axis in axes)
         if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
             yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
@@ -99,8 +99,8 @@ def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
     for name, body in catalog.table("bodies").items():
         if body is None or body.inertia is None:
             continue
-        path: Path = ("bodies", name, "inertia")
-        moments = [number_of(e, values) for e in body.inertia]
+        path: DocumentPath = ("bodies", name, "inertia")
+        moments = [value_of(e, values) for e in body.inertia]
         negative = [k for k, x in enumerate(moments[:3]) if x is not None and x < 0]
         for k in negative:
             what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"
@@ -109,7 +109,7 @@ def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
             yield from _triangle(name, path, [float(x) for x in moments if x is not None], len(moments))
 
 
-def _triangle(name: str, path: Path, moments: list[float], count: int) -> Iterator[Finding]:
+def _triangle(name: str, path: DocumentPath, moments: list[float], count: int) -> Iterator[Finding]:
     if len(moments) == count and not possible(moments):
         told = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"

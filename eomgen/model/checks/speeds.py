@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 
 
 def speeds(catalog: Catalog) -> Iterator[Finding]:
@@ -19,7 +19,7 @@ def _quaternions(catalog: Catalog) -> Iterator[Finding]:
         joint = None if part is None else part.joint
         if joint is None or getattr(joint, "orientation", None) != "quaternion":
             continue
-        path: Path = ("bodies", body, "joint")
+        path: DocumentPath = ("bodies", body, "joint")
         for key, names in (("quaternion", joint.quaternion or ()), ("omega", joint.omega or ())):
             for k, name in enumerate(names):
                 if name in taken:

@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from eomgen.model.catalog import Catalog, one_of, owner_of
+from eomgen.model.catalog import Catalog, findings_of_one, owner_of
 from eomgen.model.fields import NameRule
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
@@ -17,18 +17,18 @@ def ties(catalog: Catalog) -> Iterator[Finding]:
         for name, part in catalog.table(table).items():
             if part is None:
                 continue
-            path: Path = (table, name)
+            path: DocumentPath = (table, name)
             if part.one_of:
-                yield from one_of(catalog, path, part, part.one_of)
+                yield from findings_of_one(catalog, path, part, part.one_of)
             yield from part.findings(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
             friction = getattr(part, "friction", None)
             if friction is not None:
-                yield from one_of(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
+                yield from findings_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
 
 
-def _on_itself(catalog: Catalog, path: Path, part: Any) -> Iterator[Finding]:
+def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Finding]:
     """A tie that joins a body to itself, or the ground to the ground."""
     name = path[1]
     bodies = getattr(part, "bodies", None)
@@ -51,7 +51,7 @@ def coordinates(catalog: Catalog) -> Iterator[Finding]:
     for name, part in catalog.table("coordinates").items():
         if part is None:
             continue
-        path: Path = ("coordinates", name)
+        path: DocumentPath = ("coordinates", name)
         laws = [law for law in ("motion", "rate", "acceleration") if getattr(part, law) is not None]
         if len(laws) > 1:
             what = f"coordinate '{name}' is driven twice: {', '.join(laws)}"

@@ -8,7 +8,7 @@ from typing import ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.graph import Scalar
@@ -30,7 +30,7 @@ class Constraint(Part, ABC):
     pulls: ClassVar[bool] = False  # a wire, which goes slack; anything else opens
     on_line: ClassVar[bool] = False  # in space it holds its point from all sides of a line
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 

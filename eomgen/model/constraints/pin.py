@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.row import AXIS_NAMES, TieRow, axes_of
+from eomgen.model.constraints.row import AXIS_NAMES, TieRow, scene_axes
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
@@ -62,13 +62,13 @@ def held_together(scene: Scene, first: BodyPoint, other: BodyPoint) -> list[TieR
     gap = minus(scene.position(first), scene.position(other))
     return [
         TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap), component=name)
-        for name, e in zip(AXIS_NAMES, axes_of(scene), strict=False)
+        for name, e in zip(AXIS_NAMES, scene_axes(scene), strict=False)
     ]
 
 
 def across_from(scene: Scene, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
     """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n."""
-    n, e = carried(scene, bodies[1], n), carried(scene, bodies[0], e)
+    n, e = carried_direction(scene, bodies[1], n), carried_direction(scene, bodies[0], e)
     couple = cross(e, n)
     pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
     return TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple")
@@ -82,10 +82,10 @@ def not_turning(scene: Scene, bodies: tuple[str | None, str | None]) -> list[Tie
 
 def alike(scene: Scene, bodies: tuple[str | None, str | None], n: Vector) -> Scalar:
     """n . n of a direction that agreed at the start, carried by either body."""
-    return dot(carried(scene, bodies[0], n), carried(scene, bodies[1], n))
+    return dot(carried_direction(scene, bodies[0], n), carried_direction(scene, bodies[1], n))
 
 
-def carried(scene: Scene, body: str | None, direction: Vector) -> Vector:
+def carried_direction(scene: Scene, body: str | None, direction: Vector) -> Vector:
     """A direction given in ground axes at the start, as the body carries it along, ground axes."""
     if body is None:
         return direction

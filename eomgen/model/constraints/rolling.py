@@ -5,23 +5,23 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
-from eomgen.model.catalog import Catalog, is_round, not_in_the_plane, one_of
+from eomgen.model.catalog import Catalog, findings_of_one, is_round, not_in_the_plane
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.round_bodies import Ball, Egg, Round, Wheel
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.tracks import (
     Circle,
-    Contact,
     Curved,
     Track,
+    TrackContact,
     curved,
     normal_of,
     on_curved,
     on_level,
     wheel_on_ball,
 )
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
@@ -69,10 +69,10 @@ class Rolling(Constraint):
     axis: SpaceDirection | None = None
     ellipsoid: Size | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """Tracks and sizes that are missing or exclude one another, or that are for another space."""
         alone = self.on is not None and all(getattr(self, track) is None for track in TRACKS)
-        yield from one_of(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
+        yield from findings_of_one(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
         yield from self._wrong_sizes(path, catalog)
         if alone and not is_round(catalog, self.on):
             what = f"'{self.body}' rolls on body '{self.on}', which is not round"
@@ -89,7 +89,7 @@ class Rolling(Constraint):
                 (*path, "friction"), "friction needs sliding", "slip = true, or leave 'friction' out", key=True
             )
 
-    def _wrong_sizes(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def _wrong_sizes(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """A radius, or semiaxes, of the tie or of the shape; not both; a tyre only about an axis."""
         sizes = ("radius",) if catalog.model.space == "plane" else ("radius", "semiaxes", "major")
         if self.radius is None and self.ellipsoid is None and not is_round(catalog, self.body, sizes):
@@ -102,7 +102,7 @@ class Rolling(Constraint):
         if self.tube is not None and self.axis is None and not is_round(catalog, self.body, ("major",)):
             yield Finding((*path, "tube"), f"the tyre of '{self.body}' has no 'axis'", "give it, body axes", key=True)
 
-    def _of_other_space(self, path: Path, catalog: Catalog, curved: bool) -> Iterator[Finding]:
+    def _of_other_space(self, path: DocumentPath, catalog: Catalog, curved: bool) -> Iterator[Finding]:
         """In the plane no fields of space; in space a plane for a line; wheels on planes and balls, eggs on planes."""
         if catalog.model.space == "plane":
             if self.plane is not None:
@@ -155,7 +155,7 @@ class Rolling(Constraint):
         out = minus(center, scene.position(self._curved(scene).anchor))
         return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
-    def _contact(self, scene: Scene, center: Any) -> Contact:
+    def _contact(self, scene: Scene, center: Any) -> TrackContact:
         body = self._round(scene)
         track = self.plane or self.line
         if track is not None:

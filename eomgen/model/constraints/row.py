@@ -65,11 +65,11 @@ def normals_of(scene: Scene, d: Vector) -> tuple[tuple[str, Vector], ...]:
     return ("n 1", first), ("n 2", second)
 
 
-def axes_of(scene: Scene) -> tuple[Vector, ...]:
+def scene_axes(scene: Scene) -> tuple[Vector, ...]:
     """The ground's axes in which a point can be held: x, y, and in space z."""
     axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     return axes[:2] if scene.plane else axes
 
 
 AXIS_NAMES = ("x", "y", "z")
-"""The components of a held point, in the order of `axes_of`."""
+"""The components of a held point, in the order of `scene_axes`."""

@@ -9,7 +9,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left
 from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
 from eomgen.symbolic.expression.functions import over
@@ -31,7 +31,7 @@ class Skate(Constraint):
     along: Direction
     normal: SpaceDirection | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """The ice has no normal in the plane."""
         yield from not_in_the_plane(catalog, path, self, ("normal",))
 

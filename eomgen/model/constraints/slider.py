@@ -9,7 +9,7 @@ from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
@@ -35,7 +35,7 @@ class Slider(Constraint):
     unilateral: Flag = False
     friction: FrictionLaw | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """The body needs a line, another than that of the point; in space the slider cannot end."""
         if _lacks_line(catalog, self.on):
             what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"

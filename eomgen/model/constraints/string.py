@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, ClassVar
 
-from eomgen.model.catalog import Catalog, is_round, one_of, owner_of
+from eomgen.model.catalog import Catalog, findings_of_one, is_round, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
@@ -82,13 +82,13 @@ class String(Constraint):
         ways = [_direction(scene, way) for way in self.strands]
         return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """Wraps that lack a size or a sense; something that moves must hang on it; a direction for each strand."""
         for k, wrap in enumerate(self.path or ()):
             where = (*path, "path", k)
             if isinstance(wrap, str):
                 continue
-            yield from one_of(catalog, where, wrap, ("body", "at"))
+            yield from findings_of_one(catalog, where, wrap, ("body", "at"))
             if wrap.radius is None and (wrap.at is not None or not is_round(catalog, wrap.body)):
                 yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
             if wrap.turn is None and (*where, "turn") not in catalog.broken:

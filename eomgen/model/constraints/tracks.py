@@ -37,7 +37,7 @@ class Circle(Part):
 
 
 @dataclass(frozen=True)
-class Contact:
+class TrackContact:
     """A round body against its track.
 
     Args:
@@ -72,14 +72,14 @@ class Curved:
     axis: Vector | None = None
 
 
-def on_level(scene: Scene, on: str | None, track: Track, center: Vector, body: Round) -> Contact:
+def on_level(scene: Scene, on: str | None, track: Track, center: Vector, body: Round) -> TrackContact:
     """gap = n . (c - at) - height, n and `at` fixed in the track's body."""
     own = direction_of(scene, scene.vector(track.normal))
     tangents = (right(own),) if scene.plane else laid_in(scene, own)
     n, *along = (_carried(scene, on, e) for e in (own, *tangents))
     anchor = anchor_of(scene, on, track.at)
     out, near = minus(center, scene.position(anchor)), body.nearest(scene, n)
-    return Contact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
+    return TrackContact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
 
 
 def normal_of(scene: Scene, on: str | None, track: Track) -> Vector:
@@ -92,7 +92,7 @@ def _carried(scene: Scene, on: str | None, e: Vector) -> Vector:
     return e if on is None else apply(scene.orientation(on), e)
 
 
-def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> Contact:
+def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> TrackContact:
     """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre (the pipe's axis) to the ball's.
 
     d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the
@@ -104,17 +104,17 @@ def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> Contac
     d = out if track.axis is None else minus(out, along)
     n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
     arm = plus(along, times(track.side * track.r, n))
-    return Contact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+    return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
 
 
-def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> Contact:
+def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
     """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
     D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
     rim = wheel.nearest_to_ball(scene, out, track.side)
     d = plus(out, rim)
     n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
     reach = minus(rim, times(wheel.tube, n))
-    return Contact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
+    return TrackContact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
 
 
 def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:

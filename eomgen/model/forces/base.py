@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.forces.load import Load, Scene, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.spatial import AnyScalar
@@ -26,7 +26,7 @@ class Force(Part):
     elastic: ClassVar[bool] = False  # a spring
     placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
-from eomgen.model.kinds import AxesName, BodyName, Couple, OwnPointName
+from eomgen.model.kinds import AxesName, BodyName, CoupleFormula, OwnPointName
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +21,7 @@ class CoupleForce(Force):
 
     kind: ClassVar[str] = "couple"
     body: BodyName
-    couple: Couple
+    couple: CoupleFormula
     axes: AxesName = "ground"
     point: OwnPointName | None = None
 

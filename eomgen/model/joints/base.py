@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.errors import NotYet
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expression.expressions import Expression
@@ -89,7 +89,7 @@ class Joint(Part):
         """Of a joint whose last four variables are a quaternion: the speeds that S takes in place of their rates."""
         return ()
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Value, Z, unit, vector
-from eomgen.model.kinds import Angle, Displacement, Force, SpaceDirection, Torque
+from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -25,7 +25,7 @@ class Cylindrical(AxisJoint):
     axis: SpaceDirection | None = None
     displacement: Displacement
     angle: Angle
-    force: Force | None = None
+    force: ForceFormula | None = None
     torque: Torque | None = None
 
     def turns(self) -> tuple[Expression, ...]:

@@ -6,12 +6,12 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, linear
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
-    Quaternion,
+    QuaternionNames,
     Sequence,
     columns_of,
     other_space,
@@ -49,10 +49,10 @@ class Free(Joint):
     position: Position | None = None
     orientation: Sequence | None = None
     angles: Angles | None = None
-    quaternion: Quaternion | None = None
+    quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """The fields of this space, all of them."""
         plane = catalog.model.space == "plane"
         yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)

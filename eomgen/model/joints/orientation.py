@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.joints.base import Column, X, Y, Z, angular
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -26,13 +26,13 @@ SEQUENCES = tuple("".join(s) for s in combinations("xyz", repeat=3) if s[0] != s
 
 Sequence = Annotated[str, TextRule((*SEQUENCES, "quaternion"))]
 Angles = Annotated[tuple[Expression, ...], ListRule(FormulaRule("rad", "", CONFIGURATION), 3, 3)]
-Quaternion = Annotated[tuple[str, ...], ListRule(NameRule("coordinate"), 4, 4)]
+QuaternionNames = Annotated[tuple[str, ...], ListRule(NameRule("coordinate"), 4, 4)]
 Omega = Annotated[tuple[str, ...], ListRule(NameRule("speed"), 3, 3)]
 
 TURNING = ("orientation", "angles", "quaternion", "omega")
 
 
-def other_space(joint: Any, keys: Iterable[str], path: Path, space: str) -> Iterator[Finding]:
+def other_space(joint: Any, keys: Iterable[str], path: DocumentPath, space: str) -> Iterator[Finding]:
     """Fields that mean nothing in this space."""
     for key in keys:
         if getattr(joint, key) is not None:
@@ -40,7 +40,7 @@ def other_space(joint: Any, keys: Iterable[str], path: Path, space: str) -> Iter
             yield Finding((*path, key), what, "leave it out", key=True)
 
 
-def turning_findings(joint: Any, path: Path, catalog: Catalog) -> Iterator[Finding]:
+def turning_findings(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
     """Of a joint that turns in space: no fields of it in the plane; in space those that its orientation needs."""
     if catalog.model.space == "plane":
         yield from other_space(joint, TURNING, path, "plane")
@@ -48,7 +48,7 @@ def turning_findings(joint: Any, path: Path, catalog: Catalog) -> Iterator[Findi
         yield from _orientation(joint, path, catalog)
 
 
-def _orientation(joint: Any, path: Path, catalog: Catalog) -> Iterator[Finding]:
+def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
     """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
     orientation, name = joint.orientation, path[1]
     if orientation is None:

@@ -6,14 +6,14 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
+from eomgen.model.findings import DocumentPath as FilePath
 from eomgen.model.findings import Finding
-from eomgen.model.findings import Path as FilePath
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn
 from eomgen.model.part import Part, PartRule, made, slots_of
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import chosen, cos, over, sin
+from eomgen.symbolic.expression.functions import cos, over, selected, sin
 from eomgen.symbolic.expression.spatial import Pose, Vector, plus
 
 
@@ -76,7 +76,7 @@ class Stretch:
         return plus(self.begin, (bend * (sin(h) - sin(h_0)), bend * (cos(h_0) - cos(h)), 0))
 
 
-Pieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
+PathPieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +96,7 @@ class Path(Joint):
     kind: ClassVar[str] = "path"
     along: Displacement
     heading: ConstantAngle | None = None
-    pieces: Pieces
+    pieces: PathPieces
 
     @property
     def friction(self) -> FrictionLaw | None:
@@ -180,7 +180,7 @@ class Path(Joint):
         """Of the values that the pieces have, that of the piece on which s is."""
         *before, here = values
         for stretch, there in zip(reversed(self.stretches(value)[:-1]), reversed(before), strict=True):
-            here = chosen(s, stretch.end, there, here)
+            here = selected(s, stretch.end, there, here)
         return here
 
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
-    Quaternion,
+    QuaternionNames,
     Sequence,
     columns_of,
     rotation_of,
@@ -40,10 +40,10 @@ class Placed(Joint):
     axis: SpaceDirection | None = None
     orientation: Sequence | None = None
     angles: Angles | None = None
-    quaternion: Quaternion | None = None
+    quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         yield from turning_findings(self, path, catalog)
 
     @property

@@ -9,7 +9,7 @@ from eomgen.model.kinds import (
     ConstantAngle,
     Direction,
     Displacement,
-    Force,
+    ForceFormula,
     Law,
     LinearStiffness,
     RestLength,
@@ -36,7 +36,7 @@ class Prismatic(AxisJoint):
     axis: Direction
     displacement: Displacement
     angle: ConstantAngle | None = None
-    force: Force | None = None
+    force: ForceFormula | None = None
     stiffness: LinearStiffness | None = None
     damping: Law | None = None
     rest: RestLength | None = None

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding, Path
+from eomgen.model.findings import DocumentPath, Finding
 from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
-    Quaternion,
+    QuaternionNames,
     Sequence,
     columns_of,
     rotation_of,
@@ -37,10 +37,10 @@ class Spherical(Joint):
     beside_orientation: ClassVar[tuple[str, ...]] = ()
     orientation: Sequence
     angles: Angles | None = None
-    quaternion: Quaternion | None = None
+    quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: Path, catalog: Catalog) -> Iterator[Finding]:
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         yield from turning_findings(self, path, catalog)
 
     @property

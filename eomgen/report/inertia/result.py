@@ -11,7 +11,7 @@ from typing import Any
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
-from eomgen.mechanics.masses.principal import values_of
+from eomgen.mechanics.masses.principal import numbers_in
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.report.document import Document, document_of
@@ -165,7 +165,7 @@ class _Report:
         return Inertia(self.system, values, axes, steps)
 
     def _quantity(self, entry: InertiaEntry) -> Quantity:
-        values = values_of((entry.value,), self.system.scope, self.start)
+        values = numbers_in((entry.value,), self.system.scope, self.start)
         return Quantity(to_text(entry.value), None if values is None else values[0] + 0.0, entry.unit)
 
     def _own(self, body: str) -> Section:

@@ -10,8 +10,8 @@ from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.masses.principal import short_form, values_of
-from eomgen.model.composite import about, scaled
+from eomgen.mechanics.masses.principal import numbers_in, short_form
+from eomgen.model.composite import about, matrix_times
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -47,12 +47,12 @@ class InertiaRow:
 
     def own(self) -> Matrix:
         """Its inertia about its own mass centre, as it counts."""
-        return scaled(self.sign, self.mass.I)
+        return matrix_times(self.sign, self.mass.I)
 
     def shift(self, point: Vector) -> Matrix:
         """m (d.d 1 - d d^T), what the parallel axes add, as it counts."""
         without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
-        return scaled(self.sign, about(without, point))
+        return matrix_times(self.sign, about(without, point))
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Sum:
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
         """What scalars are worth at the start; None where one holds what has no value."""
-        return values_of(scalars, self.motion.scope, self.start)
+        return numbers_in(scalars, self.motion.scope, self.start)
 
     def short(self, x: Scalar) -> Scalar:
         """x in readable form; what was read once is not read again."""

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from eomgen.mechanics.instant.construction import POINT, Found, LineOf, Pair
+from eomgen.mechanics.instant.construction import POINT, Found, LineOf, PointPair
 from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.mechanism import FIXED, Center, Mechanism
+from eomgen.mechanics.instant.mechanism import FIXED, Mechanism, RotationCenter
 from eomgen.report.latex_names import lettered
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
@@ -106,7 +106,7 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
     return Step("centers", "Centres of rotation", (*words, *((Prose((agree,)),) if agree else ())))
 
 
-def place_cells(state: KinematicState, center: Center) -> tuple[Cell, Cell]:
+def place_cells(state: KinematicState, center: RotationCenter) -> tuple[Cell, Cell]:
     """x and y; of a centre at infinity in which direction."""
     x, y, _ = center.point
     if not center.at_infinity:
@@ -176,7 +176,7 @@ def _line(line: LineOf) -> str:
     return "on " + PUSHES.get(line.kind.split(" ")[0], "the line of the force of '{}'").format(line.owner)
 
 
-def _pair(pair: Pair) -> str:
+def _pair(pair: PointPair) -> str:
     return f"({pair[0]}, {pair[1]})"
 
 

@@ -11,7 +11,7 @@ from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.mechanism import Center
+from eomgen.mechanics.instant.mechanism import RotationCenter
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
@@ -141,7 +141,7 @@ class Kinematics(Result):
             "accelerations": {names: self._vector(a, exact) for names, _, _, a in self.state.points if a is not None},
         }
 
-    def _center(self, center: Center) -> dict[str, Any]:
+    def _center(self, center: RotationCenter) -> dict[str, Any]:
         x, y, _ = center.point
         place = [self._value(x), self._value(y)]
         found = self.state.found.get(center.pair)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.modes import Modes
-from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY, Reference
+from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY, ReferenceMotion
 from eomgen.report.setting_steps import listed
 from eomgen.report.statements import Cell, Formula, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.expression.derivative import depends_on
@@ -36,7 +36,7 @@ def reference_step(modes: Modes) -> Step:
     return Step("reference", "Reference", tuple(statements))
 
 
-def _words(reference: Reference) -> str:
+def _words(reference: ReferenceMotion) -> str:
     if reference.about == STEADY:
         return "The steady motion nearest to the start:"
     if reference.about != EQUILIBRIUM:

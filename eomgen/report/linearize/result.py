@@ -20,7 +20,7 @@ from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
-from eomgen.mechanics.statics.reaction_outputs import name_of
+from eomgen.mechanics.statics.reaction_outputs import output_name
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.small_motions import small_motion_checks
@@ -148,7 +148,7 @@ class Linearization(Result):
         """
         if call.name == "frequency":
             return self._frequency(call)
-        found, exact = self.modes.entry(call.name, *(name_of(call, argument) for argument in call.args))
+        found, exact = self.modes.entry(call.name, *(output_name(call, argument) for argument in call.args))
         return found if exact else self._rounded(found), exact
 
     def _frequency(self, call: Call) -> tuple[Scalar, bool]:

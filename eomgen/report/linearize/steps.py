@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.small_motions.field import Entries, Entry
+from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
@@ -159,7 +159,7 @@ def _plain(x: Node) -> Node:
     return x.graph.symbol(x.name.removesuffix("'"))
 
 
-def _side(x: Entry) -> Side:
+def _side(x: MatrixEntry) -> Side:
     if isinstance(x, float):
         return _number(x)
     return x if text_size(x) <= LONG else Law("(too long to print)", r"\text{(too long to print)}")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.statics.influence import InfluenceLine
-from eomgen.mechanics.statics.section_forces import KINDS, Extreme, Piece, SectionForces
+from eomgen.mechanics.statics.section_forces import KINDS, Extreme, SectionForces, SectionPiece
 from eomgen.report.figures import halo
 from eomgen.report.quantities import Scale, figures
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -71,7 +71,7 @@ def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tu
     return x, scale(M)
 
 
-def _curve(piece: Piece, kind: str, values: Mapping[Node, float], scale: Scale) -> tuple[np.ndarray, np.ndarray]:
+def _curve(piece: SectionPiece, kind: str, values: Mapping[Node, float], scale: Scale) -> tuple[np.ndarray, np.ndarray]:
     """Points of one piece."""
     start, end = _numbers((piece.start, piece.end), values)
     s = np.linspace(0.0, end - start, FINE)

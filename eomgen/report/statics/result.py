@@ -12,11 +12,11 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.static_equations import with_drives_held
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
-from eomgen.mechanics.statics.rest_contacts import Condition, conditions_of, modes_at_rest
+from eomgen.mechanics.statics.rest_contacts import RestCondition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
 from eomgen.mechanics.statics.virtual_work import WorkEquation
-from eomgen.mechanics.structures.blocks import Block, blocks_of
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.report.document import Document
@@ -78,7 +78,7 @@ class Statics(Result):
         )
 
     @cached_property
-    def conditions(self) -> tuple[Condition, ...]:
+    def conditions(self) -> tuple[RestCondition, ...]:
         """What must hold of contacts that can end or slide."""
         return conditions_of(self.found)
 
@@ -187,7 +187,7 @@ def _work(equation: WorkEquation) -> dict[str, Any]:
     }
 
 
-def _block(plan: Plan, block: Block) -> dict[str, Any]:
+def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
     """What moves as one: its parts, spin, the velocity of its point at the origin; in the plane its centre too."""
     moved = {
         "parts": list(block.parts),

@@ -9,7 +9,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
-from eomgen.mechanics.statics.section_forces import KINDS, Piece, SectionForces, section_forces
+from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
 from eomgen.report.latex_names import lettered
 from eomgen.report.statements import Formula, Grid, Law, Name, Prose, Side, Statement, Step
@@ -78,7 +78,7 @@ def section_payload(sections: Sections) -> dict[str, Any]:
     return found | {body: {"message": reason} for body, reason in sections.reasons.items()}
 
 
-def _row(forces: SectionForces, piece: Piece, x: Node) -> dict[str, str]:
+def _row(forces: SectionForces, piece: SectionPiece, x: Node) -> dict[str, str]:
     values = {LETTERS[kind]: to_text(forces.sizes.shortest(piece.value(kind, x))) for kind in KINDS}
     ends = (to_text(forces.sizes.shortest(end)) for end in (piece.start, piece.end))
     return {**dict(zip(("from", "to"), ends, strict=True)), **values}

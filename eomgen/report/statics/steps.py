@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.statics.rest_contacts import Condition
+from eomgen.mechanics.statics.rest_contacts import RestCondition
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.mechanics.structures.loose_motion import motion_in_words
 from eomgen.mechanics.structures.structure import Structure
@@ -235,7 +235,7 @@ def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
 MARGINS = {"pushes": "its normal force", "pulls": "its tension", "sticks": "mu |N| less its friction"}
 
 
-def contacts_step(conditions: Sequence[Condition], broken: Sequence[str]) -> tuple[Step, ...]:
+def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) -> tuple[Step, ...]:
     """What must hold of contacts that can end or slide, and what does not."""
     if not conditions:
         return ()

@@ -8,9 +8,9 @@ from fractions import Fraction
 
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.statics.two_ways import StaticReaction
-from eomgen.mechanics.statics.virtual_work import Acting, Term, WorkEquation
-from eomgen.mechanics.structures.blocks import Block, blocks_of, members_of, resting
-from eomgen.mechanics.structures.velocity_plan import Plan
+from eomgen.mechanics.statics.virtual_work import Acting, WorkEquation, WorkTerm
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of, resting_blocks
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
 from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid
@@ -44,15 +44,15 @@ def work_step(reaction: StaticReaction, symbol: Node) -> Step:
     return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", tuple(statements))
 
 
-def _scale(blocks: Sequence[Block], symbol: Node) -> Node:
+def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
     """The angle where a block turns by 1, else a length."""
     turns = any(not isinstance(w, Node) and w == 1 for block in blocks for w in block.spin)
     return symbol.graph.symbol(TURN if turns else SHIFT)
 
 
-def _released(plan: Plan, blocks: Sequence[Block], symbol: Node, delta: Node) -> Prose:
+def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:
     """What moves once the reaction is released, and what does not."""
-    still = resting(plan)
+    still = resting_blocks(plan)
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
     return Prose(
@@ -74,7 +74,7 @@ def _listed(names: Sequence[str]) -> str:
 # -- the mechanism -----------------------------------------------------------------------------------
 
 
-def _mechanism(plan: Plan, blocks: Sequence[Block], delta: Node) -> Grid:
+def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
     """Of every block its centre of rotation and its rotation, or its displacement."""
     if plan.system.scope.model.space != "plane":
         return _mechanism_in_space(plan, blocks, delta)
@@ -88,7 +88,7 @@ def _mechanism(plan: Plan, blocks: Sequence[Block], delta: Node) -> Grid:
     return _narrow(("block", "moves", "centre x", "centre y", "rotation", "shift x", "shift y"), rows)
 
 
-def _mechanism_in_space(plan: Plan, blocks: Sequence[Block], delta: Node) -> Grid:
+def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
     """Of every body its rotation and the displacement of its mass centre; nodes are named, loads show their shifts."""
     rows: list[tuple[Cell, ...]] = []
     for number, block in enumerate(blocks, start=1):
@@ -105,7 +105,7 @@ def _mechanism_in_space(plan: Plan, blocks: Sequence[Block], delta: Node) -> Gri
     return _narrow(head, rows)
 
 
-def _parts(plan: Plan, block: Block, blocks: Sequence[Block]) -> str:
+def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) -> str:
     """Its bodies, members and nodes; a truss as one where all of it is in the block."""
     if len(plan.moving) == len(plan.system.motion.links) and len(blocks) == 1:
         return "the whole structure"
@@ -128,7 +128,7 @@ def _numeral(number: int) -> str:
 # -- works -------------------------------------------------------------------------------------------
 
 
-def _works(plan: Plan, terms: Sequence[Term], delta: Node) -> Grid:
+def _works(plan: VelocityPlan, terms: Sequence[WorkTerm], delta: Node) -> Grid:
     """Of every load that works the displacement of its point, and its work."""
     plane = plan.system.scope.model.space == "plane"
     size = 2 if plane else 3
@@ -147,7 +147,7 @@ Displaced = tuple[str, Vector | None, Vector | None]
 """(where a load acts, displacement of that point, rotation of the body): of what it works on."""
 
 
-def _points_of(plan: Plan, acting: Acting) -> list[Displaced]:
+def _points_of(plan: VelocityPlan, acting: Acting) -> list[Displaced]:
     load = acting.load
     if load is None:
         return [(f"joint of {acting.name}", None, None)]
@@ -158,7 +158,7 @@ def _points_of(plan: Plan, acting: Acting) -> list[Displaced]:
     return _along(plan, load)
 
 
-def _along(plan: Plan, load: SpreadLoad) -> list[Displaced]:
+def _along(plan: VelocityPlan, load: SpreadLoad) -> list[Displaced]:
     """Of a uniform load its middle, where the resultant acts; of another both ends."""
     a, b = (point_name(plan, place) for place in (load.start, load.end))
     v, w = (plan.velocity(place) for place in (load.start, load.end))
@@ -175,7 +175,7 @@ def _moved(moved: Vector | None, turned: Vector | None, size: int, delta: Node) 
     return (*shift, *(x * delta for x in (turned[2:] if size == 2 else turned)))
 
 
-def point_name(plan: Plan, place: BodyPoint) -> str:
+def point_name(plan: VelocityPlan, place: BodyPoint) -> str:
     """A place by the name of the point of the body that is there."""
     body, r = place
     motion = plan.system.motion

@@ -19,9 +19,9 @@ from eomgen.symbolic.exact.terms import (
     common_monomial,
     content,
     inverse,
-    scaled,
+    terms_scaled,
+    terms_times,
     tidy,
-    times,
 )
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -46,8 +46,8 @@ def _rewritten(x: Scalar, limit: int, positive: Collection[Node], write) -> Scal
         above, below = reduced(expansion, terms)
         writer = Writer(expansion)
         number = content(below) if len(below) > 1 else Fraction(1)
-        top = write(expansion, writer, scaled(above, 1 / number))
-        return expansion.graph.div(top, writer.in_powers(scaled(below, 1 / number)))
+        top = write(expansion, writer, terms_scaled(above, 1 / number))
+        return expansion.graph.div(top, writer.in_powers(terms_scaled(below, 1 / number)))
     except TooLarge:
         return x
 
@@ -81,7 +81,7 @@ def _sum_of(writer: Writer, part: Terms, common: Monomial) -> Scalar:
     number = content(part) if len(part) > 1 else Fraction(1)
     if len(part) > 1 and all(c < 0 for c in part.values()):
         number = -number
-    rest = times(scaled(part, 1 / number), {(inverted, ()): factor})
+    rest = terms_times(terms_scaled(part, 1 / number), {(inverted, ()): factor})
     ordered = sorted(rest.items(), key=lambda item: item[1] < 0)
     total: Scalar = 0
     for key, c in ordered:
@@ -100,7 +100,7 @@ def _by_parameters(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar
     for still, part in groups.items():
         square = _square(expansion, writer, part)
         if square is None:
-            rest |= times(part, {(still, ()): 1})
+            rest |= terms_times(part, {(still, ()): 1})
         else:
             total = expansion.graph.add(total, writer.factored(still, {ONE: 1}) * square)
     return expansion.graph.add(writer.sum(rest), total)

@@ -26,10 +26,10 @@ from eomgen.symbolic.exact.terms import (
     constant,
     content,
     inverse,
-    plus,
-    scaled,
+    terms_plus,
+    terms_scaled,
+    terms_times,
     tidy,
-    times,
     wave,
 )
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
@@ -98,9 +98,9 @@ class Expansion:
             return self.product(parts[0], parts[1])
         if op in ("add", "sub"):
             self._spend(len(parts[1]))
-            return plus(parts[0], parts[1], 1 if op == "add" else -1)
+            return terms_plus(parts[0], parts[1], 1 if op == "add" else -1)
         if op == "neg":
-            return scaled(parts[0], -1)
+            return terms_scaled(parts[0], -1)
         if op == "div":
             return self.product(parts[0], self.reciprocal(parts[1]))
         if op in ("sin", "cos"):
@@ -129,15 +129,15 @@ class Expansion:
         outside = tuple((atom, e - self._odd(atom, e)) for atom, e in powers if e != self._odd(atom, e))
         rest = self._without(f, powers)
         if (sign := self._known_sign(rest)) is not None:
-            outer, rest = scaled(rest, sign), constant(1)
+            outer, rest = terms_scaled(rest, sign), constant(1)
         else:
             outer = constant(1)
-        bare = self._function("abs", (times(rest, {(inside, ()): 1}),))
+        bare = self._function("abs", (terms_times(rest, {(inside, ()): 1}),))
         return self.product({(outside, ()): tidy(content(f))}, self.product(outer, bare))
 
     def _extreme(self, op: str, a: Terms, b: Terms) -> Terms:
         """min or max of a and b; one of them where it is known which."""
-        sign = self._known_sign(plus(a, b, -1))
+        sign = self._known_sign(terms_plus(a, b, -1))
         if sign is None:
             return self._function(op, (a, b))
         return a if (sign > 0) is (op == "max") else b
@@ -161,7 +161,7 @@ class Expansion:
             if self.atoms.is_a(atom, "sqrt")
         ]
         for sign in (1, -1):
-            if self._is_never_negative(scaled(f, sign)) or scaled(f, sign) in roots:
+            if self._is_never_negative(terms_scaled(f, sign)) or terms_scaled(f, sign) in roots:
                 return sign
         return self.sign_of_constant(self.atoms.node(f))
 
@@ -191,12 +191,12 @@ class Expansion:
     def _without(self, f: Terms, powers: Monomial) -> Terms:
         """f over its content and over a monomial that all its terms hold."""
         inverted, _ = inverse(powers)
-        return times(f, {(inverted, ()): tidy(1 / content(f))}) if f else f
+        return terms_times(f, {(inverted, ()): tidy(1 / content(f))}) if f else f
 
     def product(self, a: Terms, b: Terms) -> Terms:
         """a b, with atom^2 = f for atoms sqrt(f), and e0^2 = 1 - (the other squares) for symbols on a sphere."""
         self._spend(len(a) * len(b))
-        found = self._without_squared_roots(times(a, b))
+        found = self._without_squared_roots(terms_times(a, b))
         for sphere in self.spheres:
             found = reduced_on(sphere, found)
         return found
@@ -234,7 +234,7 @@ class Expansion:
         if inner is not x:
             arguments = tuple(self.of(a) for a in inner.args)
         self.atoms.opaque[inner.index] = Opaque(op, arguments)
-        return scaled(self._atom(inner), -1 if inner is not x else 1)
+        return terms_scaled(self._atom(inner), -1 if inner is not x else 1)
 
     def _applied(self, op: str, nodes: list[Scalar]) -> Scalar:
         return self.graph.pow(nodes[0], nodes[1]) if op == "pow" else self.graph.call(op, *nodes)
@@ -255,27 +255,27 @@ class Expansion:
             for atom, e in squared:
                 whole = self.power(self.atoms.opaque[atom].arguments[0], square[atom] * abs(e // 2))
                 part = self.product(part, whole if e > 0 else self.reciprocal(whole))
-            result = plus(result, part)
+            result = terms_plus(result, part)
         return result
 
     def _root(self, f: Terms) -> Terms:
         """sqrt(f): the number's root taken out, the rest an atom."""
         outside = content(f) if f else Fraction(0)
         root = self.graph.sqrt(outside)
-        inside = scaled(f, 1 / outside) if f else f
+        inside = terms_scaled(f, 1 / outside) if f else f
         outer = self._constant_root(root)
         if self.positive and inside:
             part, inside = self._positive_root(inside)
             outer = self.product(outer, part)
         if inside in ({}, constant(1)):
             return outer
-        return times(outer, self._function("sqrt", (inside,)))
+        return terms_times(outer, self._function("sqrt", (inside,)))
 
     def _positive_root(self, f: Terms) -> tuple[Terms, Terms]:
         """(r, g) with sqrt(f) = r sqrt(g): the roots of positive symbols and sums that all terms hold."""
         powers = tuple((atom, e) for atom, e in common_monomial(f) if self._is_positive(atom))
         inverted, _ = inverse(powers)
-        inside = times(f, {(inverted, ()): 1})
+        inside = terms_times(f, {(inverted, ()): 1})
         outer = constant(1)
         for atom, e in powers:  # sqrt(p^3) = p sqrt(p)
             if e // 2:
@@ -359,7 +359,7 @@ class Expansion:
         factor = content(f)
         if f[min(f)] < 0:
             factor = -factor
-        return factor, monomial, scaled(times(f, {(inverted, ()): 1}), 1 / factor)
+        return factor, monomial, terms_scaled(terms_times(f, {(inverted, ()): 1}), 1 / factor)
 
     def cleared(self, f: Terms) -> tuple[Terms, dict[int, int]]:
         """(numerator, {atom of a divisor: its power}): f = numerator / product of divisor ** power."""
@@ -377,7 +377,7 @@ class Expansion:
             part: Terms = {(tuple(sorted(exponents.items())), w): c}
             for atom, e in missing.items():
                 part = self.product(part, self.power(self.atoms.opaque[atom].arguments[0], e))
-            numerator = plus(numerator, part)
+            numerator = terms_plus(numerator, part)
         inner, more = self.cleared(numerator)
         for atom, e in more.items():
             powers[atom] = powers.get(atom, 0) + e
@@ -404,8 +404,8 @@ class Expansion:
         cosine, sine = self._wave("cos", k), self._wave("sin", k)
         cos_turn, sin_turn = known
         if op == "sin":
-            return plus(times(sine, cos_turn), times(cosine, sin_turn))
-        return plus(times(cosine, cos_turn), times(sine, sin_turn), -1)
+            return terms_plus(terms_times(sine, cos_turn), terms_times(cosine, sin_turn))
+        return terms_plus(terms_times(cosine, cos_turn), terms_times(sine, sin_turn), -1)
 
     def _angle(self, key: Key) -> int:
         """The index of the node whose multiples are angles."""

@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Any
 
 from eomgen.symbolic.exact.squares import holds_no_square
-from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, inverse, scaled, tidy, times
+from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, inverse, terms_scaled, terms_times, tidy
 from eomgen.symbolic.expression.graph import Number
 
 LARGEST_DEGREE = 24
@@ -26,7 +26,7 @@ def factored(f: Terms) -> list[tuple[Terms, int]]:
     f must hold no waves. Monomials and numbers are left out of the list.
     """
     inverted, _ = inverse(common_monomial(f))
-    f = times(f, {(inverted, ()): 1})
+    f = terms_times(f, {(inverted, ()): 1})
     found = _polynomial(f)
     if found is None:
         return [(f, 1)]
@@ -58,7 +58,7 @@ def square_root(f: Terms) -> Terms | None:
     if len(f) == 1:
         single = _root_of(Fraction(next(iter(f.values()))))
         return None if single is None else {(tuple((atom, e // 2) for atom, e in common), ()): single}
-    found = _polynomial(times(f, {(inverted, ()): 1}))
+    found = _polynomial(terms_times(f, {(inverted, ()): 1}))
     if found is None:
         return None
     polynomial, atoms = found
@@ -71,8 +71,8 @@ def square_root(f: Terms) -> Terms | None:
     root: Terms = {(tuple((atom, e // 2) for atom, e in common), ()): outside}
     for part, n in parts:
         for _ in range(n // 2):
-            root = times(root, _terms(part, atoms))
-    return scaled(root, -1) if root[min(root)] < 0 else root
+            root = terms_times(root, _terms(part, atoms))
+    return terms_scaled(root, -1) if root[min(root)] < 0 else root
 
 
 def _root_of(c: Fraction) -> Number | None:

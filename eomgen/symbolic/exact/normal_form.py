@@ -15,7 +15,7 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.radicals import one_root
-from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, scaled, tidy
+from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, terms_scaled, tidy
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
@@ -274,4 +274,6 @@ def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms,
     above, below = writer.content(numerator), writer.content(denominator)
     ratio = above / below
     sign = -1 if writer.leads_with_minus(denominator) else 1
-    return scaled(numerator, sign * ratio.numerator / above), scaled(denominator, sign * ratio.denominator / below)
+    return terms_scaled(numerator, sign * ratio.numerator / above), terms_scaled(
+        denominator, sign * ratio.denominator / below
+    )

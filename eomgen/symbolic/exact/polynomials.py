@@ -14,7 +14,7 @@ from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, plus, tidy
+from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, terms_plus, tidy
 from eomgen.symbolic.expression.graph import Number
 
 MOST_AXES = 4  # angles, for other forms than that in cosines
@@ -70,7 +70,7 @@ class Polynomials:
                 for kind, e in zip(("cos", "sin"), exponents[i : i + 2], strict=True):
                     for _ in range(e):
                         part = self._expansion.product(part, {((), (kind, axis)): 1})
-            total = plus(total, part)
+            total = terms_plus(total, part)
         return total
 
     def without_common_divisor(self, above: Element, below: Element) -> tuple[Element, Element]:

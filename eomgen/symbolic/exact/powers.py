@@ -10,16 +10,16 @@ from math import comb
 from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy
 from eomgen.symbolic.expression.graph import Number
 
-Powers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
-Polynomial = dict[Powers, Number]
+CirclePowers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
+CirclePolynomial = dict[CirclePowers, Number]
 
 LARGEST_DEGREE = 12  # of a wave to be written in powers
 KEPT = 20_000  # waves and sets of angles of which the form is remembered
 
 
-def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> Polynomial | None:
+def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> CirclePolynomial | None:
     """The waves as a polynomial in the axes' cosines and sines, s^2 eliminated; None where that is too large."""
-    polynomial: Polynomial = {}
+    polynomial: CirclePolynomial = {}
     for w, c in waves.items():
         multiples = _multiples(w[1], axes) if w else (0,) * len(axes)
         if multiples is None or sum(abs(m) for m in multiples) > LARGEST_DEGREE:
@@ -74,10 +74,10 @@ def _multiples(k: AngleSum, axes: tuple[AngleSum, ...]) -> tuple[int, ...] | Non
 
 
 @lru_cache(maxsize=KEPT)
-def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> Polynomial:
+def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> CirclePolynomial:
     """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
-    real: Polynomial = {(): 1}
-    imaginary: Polynomial = {}
+    real: CirclePolynomial = {(): 1}
+    imaginary: CirclePolynomial = {}
     for m in multiples:
         c_part, s_part = _one_axis(m)
         real, imaginary = (
@@ -95,8 +95,8 @@ def _one_axis(m: int) -> tuple[dict[tuple[int, int], int], dict[tuple[int, int],
     return cosine, sine
 
 
-def _joined(*products: tuple[Polynomial, dict[tuple[int, int], int], int]) -> Polynomial:
-    total: Polynomial = {}
+def _joined(*products: tuple[CirclePolynomial, dict[tuple[int, int], int], int]) -> CirclePolynomial:
+    total: CirclePolynomial = {}
     for left, right, sign in products:
         for powers, c in left.items():
             for pair, d in right.items():
@@ -104,9 +104,9 @@ def _joined(*products: tuple[Polynomial, dict[tuple[int, int], int], int]) -> Po
     return {powers: c for powers, c in total.items() if c}
 
 
-def eliminated(polynomial: Polynomial, axis: int, keep: str) -> Polynomial:
+def eliminated(polynomial: CirclePolynomial, axis: int, keep: str) -> CirclePolynomial:
     """With s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") used up for one axis."""
-    total: Polynomial = {}
+    total: CirclePolynomial = {}
     for powers, coefficient in polynomial.items():
         c, s = powers[axis]
         kept, gone = (c, s) if keep == "cos" else (s, c)

@@ -22,8 +22,8 @@ from eomgen.symbolic.expression.graph import Number
 LARGEST_DEGREE = 24
 MOST_TERMS = 60  # of what is factored
 
-Powers = dict[Element, int]  # exponent of each irreducible factor
-Pairs = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
+FactorPowers = dict[Element, int]  # exponent of each irreducible factor
+Quotients = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
 
 
 @dataclass(frozen=True)
@@ -58,11 +58,13 @@ def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[T
 class _Roots:
     """The polynomials of above/below and the factors of the product under the roots."""
 
-    def __init__(self, expansion: Expansion, ring: Polynomials, above: Terms, below: Terms, fractions: Pairs) -> None:
+    def __init__(
+        self, expansion: Expansion, ring: Polynomials, above: Terms, below: Terms, fractions: Quotients
+    ) -> None:
         self.expansion, self.ring = expansion, ring
         self.above, self.below = self._element(above), self._element(below)
         self.number = Fraction(1)
-        self.powers: Powers = {}
+        self.powers: FactorPowers = {}
         self.positive: set[Element] = set()
         for pair in fractions:
             found = [self._factors(terms) for terms in pair]

@@ -20,10 +20,10 @@ from eomgen.symbolic.exact.terms import (
     common_monomial,
     inverse,
     monomial_product,
-    plus,
-    scaled,
+    terms_plus,
+    terms_scaled,
+    terms_times,
     tidy,
-    times,
 )
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import substituted
@@ -143,11 +143,11 @@ def readable_over(x: Scalar, roots: Sequence[Node], limit: int) -> Scalar:
     for part in divided:
         factor, sum_ = _primitive(writer, part)
         key = tuple(sorted(sum_.items()))
-        factor_of[key] = plus(factor_of.get(key, {}), factor)
+        factor_of[key] = terms_plus(factor_of.get(key, {}), factor)
     for key, factor in factor_of.items():
         beside = _beside(rest, dict(key), next(iter(factor.values())))
-        rest = plus(rest, times(beside, dict(key)), -1)
-        factor_of[key] = plus(beside, factor)
+        rest = terms_plus(rest, terms_times(beside, dict(key)), -1)
+        factor_of[key] = terms_plus(beside, factor)
     total = writer.sum(rest)
     for key, factor in factor_of.items():
         total = total + _taken_out(writer, factor, atoms) * writer.sum(dict(key))
@@ -171,9 +171,9 @@ def _primitive(writer: Writer, terms: Terms) -> tuple[Terms, Terms]:
     if max(number.numerator, number.denominator) > LARGEST_FACTOR:
         number = Fraction(1)
     inverted, share = inverse(common)
-    sum_ = times(terms, {(inverted, ()): tidy(share / number)})
+    sum_ = terms_times(terms, {(inverted, ()): tidy(share / number)})
     sign = -1 if writer.leads_with_minus(sum_) else 1
-    return {(common, ()): sign * tidy(number)}, scaled(sum_, sign)
+    return {(common, ()): sign * tidy(number)}, terms_scaled(sum_, sign)
 
 
 def _beside(terms: Terms, sum_: Terms, number: Number) -> Terms:
@@ -188,7 +188,7 @@ def _beside(terms: Terms, sum_: Terms, number: Number) -> Terms:
         equal = number if (number > 0) == (ratio > 0) else -number
         for other, c in ((False, equal), (True, ratio)):
             found: Terms = {(monomial, ()): c}
-            left = len(plus(terms, times(found, sum_), -1))
+            left = len(terms_plus(terms, terms_times(found, sum_), -1))
             if left <= len(terms) - other and (not best or (other, left) < shortest):
                 best, shortest = found, (other, left)
     return best
@@ -213,7 +213,7 @@ def _taken_out(writer: Writer, factor: Terms, roots: set[int]) -> Scalar:
     inverted, share = inverse(common)
     number = abs(lead) if all(abs(c) == abs(lead) for c in factor.values()) else writer.content(factor)
     number = number if lead > 0 else -number
-    return tidy(number) * writer.factored(common, times(factor, {(inverted, ()): tidy(share / number)}))
+    return tidy(number) * writer.factored(common, terms_times(factor, {(inverted, ()): tidy(share / number)}))
 
 
 def _divisors(key: Key) -> int:

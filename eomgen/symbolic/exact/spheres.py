@@ -14,16 +14,16 @@ from math import factorial
 from eomgen.symbolic.exact.terms import Key, Terms, tidy
 from eomgen.symbolic.expression.graph import Number
 
-Sphere = tuple[int, ...]  # the symbols, by index
+SphereSymbols = tuple[int, ...]  # the symbols, by index
 Exponents = tuple[int, ...]  # one for each symbol of the sphere
-Polynomial = dict[Exponents, Number]
+SpherePolynomial = dict[Exponents, Number]
 
 LARGEST_DEGREE = 12  # of a sum that is looked at in other forms
 
 
-def with_square_replaced(polynomial: Polynomial, k: int) -> Polynomial:
+def with_square_replaced(polynomial: SpherePolynomial, k: int) -> SpherePolynomial:
     """The polynomial with e_k^2 = 1 - (the other squares)."""
-    found: Polynomial = {}
+    found: SpherePolynomial = {}
     for exponents, c in polynomial.items():
         n, rest = exponents[k] // 2, (*exponents[:k], exponents[k] % 2, *exponents[k + 1 :])
         for powers in _up_to(len(exponents) - 1, n):
@@ -34,9 +34,9 @@ def with_square_replaced(polynomial: Polynomial, k: int) -> Polynomial:
     return {key: c for key, c in found.items() if c}
 
 
-def of_one_degree(polynomial: Polynomial) -> Polynomial:
+def of_one_degree(polynomial: SpherePolynomial) -> SpherePolynomial:
     """The even terms brought to one degree by factors e . e, and so the odd ones."""
-    found: Polynomial = {}
+    found: SpherePolynomial = {}
     largest = {odd: max((sum(e) for e in polynomial if sum(e) % 2 == odd), default=0) for odd in (0, 1)}
     for exponents, c in polynomial.items():
         n = (largest[sum(exponents) % 2] - sum(exponents)) // 2
@@ -47,19 +47,19 @@ def of_one_degree(polynomial: Polynomial) -> Polynomial:
     return {key: c for key, c in found.items() if c}
 
 
-def reduced_on(sphere: Sphere, terms: Terms) -> Terms:
+def reduced_on(sphere: SphereSymbols, terms: Terms) -> Terms:
     """The sum with the square of the sphere's first symbol used up."""
     if not any(atom == sphere[0] and e > 1 for monomial, _ in terms for atom, e in monomial):
         return terms
     return _by_parts(sphere, terms, lambda polynomial: with_square_replaced(polynomial, 0))
 
 
-def shortest_on(sphere: Sphere, terms: Terms) -> Terms:
+def shortest_on(sphere: SphereSymbols, terms: Terms) -> Terms:
     """The sum with as few terms as its forms on the sphere have, each monomial of the other symbols by itself."""
     return _by_parts(sphere, terms, _shortest)
 
 
-def _shortest(polynomial: Polynomial) -> Polynomial:
+def _shortest(polynomial: SpherePolynomial) -> SpherePolynomial:
     if len(polynomial) < 2 or max(map(sum, polynomial)) > LARGEST_DEGREE or min(map(min, polynomial)) < 0:
         return polynomial
     forms = [polynomial, of_one_degree(polynomial)]
@@ -67,9 +67,9 @@ def _shortest(polynomial: Polynomial) -> Polynomial:
     return min(forms, key=lambda form: (len(form), sum(map(sum, form))))
 
 
-def _by_parts(sphere: Sphere, terms: Terms, change) -> Terms:
+def _by_parts(sphere: SphereSymbols, terms: Terms, change) -> Terms:
     """The sum, of which `change` replaces what each product of other symbols and waves is multiplied by."""
-    parts: dict[Key, Polynomial] = {}
+    parts: dict[Key, SpherePolynomial] = {}
     for (monomial, w), c in terms.items():
         exponents = dict(monomial)
         own = tuple(exponents.pop(atom, 0) for atom in sphere)

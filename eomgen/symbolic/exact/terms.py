@@ -43,7 +43,7 @@ def constant(c: Number) -> Terms:
     return {ONE: c} if c != 0 else {}
 
 
-def plus(a: Terms, b: Terms, factor: Number = 1) -> Terms:
+def terms_plus(a: Terms, b: Terms, factor: Number = 1) -> Terms:
     """a + factor b"""
     total = dict(a)
     for key, c in b.items():
@@ -60,12 +60,12 @@ def accumulate(total: Terms, key: Key, c: Number) -> None:
         total[key] = c
 
 
-def scaled(a: Terms, c: Number) -> Terms:
+def terms_scaled(a: Terms, c: Number) -> Terms:
     """c a"""
     return {key: tidy(c * value) for key, value in a.items()} if c != 0 else {}
 
 
-def times(a: Terms, b: Terms) -> Terms:
+def terms_times(a: Terms, b: Terms) -> Terms:
     """a b; powers of roots of atoms are not reduced here (only those of numbers are)."""
     total: Terms = {}
     for (m, w), c in a.items():

@@ -14,7 +14,7 @@ from functools import lru_cache
 from itertools import product
 from math import gcd
 
-from eomgen.symbolic.exact.powers import Polynomial, axes_of, eliminated, power_form
+from eomgen.symbolic.exact.powers import CirclePolynomial, axes_of, eliminated, power_form
 from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy, vector_sum, wave
 from eomgen.symbolic.expression.graph import Number
 
@@ -219,7 +219,7 @@ def _in_powers(waves: Waves) -> Sum | None:
     return _as_sum(polynomial, axes)
 
 
-def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[AngleSum, ...]] | None:
+def _polynomial(waves: Waves) -> tuple[CirclePolynomial, tuple[AngleSum, ...]] | None:
     axes = axes_of(waves)
     if len(axes) > MOST_AXES:
         return None
@@ -227,7 +227,7 @@ def _polynomial(waves: Waves) -> tuple[Polynomial, tuple[AngleSum, ...]] | None:
     return None if polynomial is None else (polynomial, axes)
 
 
-def _as_sum(polynomial: Polynomial, axes: tuple[AngleSum, ...]) -> Sum:
+def _as_sum(polynomial: CirclePolynomial, axes: tuple[AngleSum, ...]) -> Sum:
     """The polynomial's terms, low powers first."""
     terms = []
     for powers in sorted(polynomial, key=lambda powers: (sum(c + s for c, s in powers), powers)):

@@ -22,8 +22,8 @@ from eomgen.symbolic.exact.terms import (
     common_number,
     constant,
     inverse,
+    terms_times,
     tidy,
-    times,
 )
 from eomgen.symbolic.exact.trigonometric_form import Factors, shortest
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
@@ -214,7 +214,9 @@ class Writer:
         common = common_monomial(terms)
         inverted, factor = inverse(common)
         number = self.content(terms) if len(terms) > 1 else Fraction(1)
-        return tidy(number) * self.factored(common, times(terms, {(inverted, ()): tidy(Fraction(factor) / number)}))
+        return tidy(number) * self.factored(
+            common, terms_times(terms, {(inverted, ()): tidy(Fraction(factor) / number)})
+        )
 
     def _applied(self, op: str, arguments: list[Scalar]) -> Scalar:
         if op == "select":

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
-from eomgen.symbolic.expression.splines import number_of, sampled_of
+from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
 
 
@@ -212,7 +212,7 @@ def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
 
 def _rate_of_sampled(g: Graph, t: Scalar, k: Scalar) -> Scalar:
     rate = sampled_of(k).derivative()
-    return 0 if rate.spline.vanishes else g.call("sampled", t, number_of(rate))
+    return 0 if rate.spline.vanishes else g.call("sampled", t, number_of_sampled(rate))
 
 
 def _power_in_exponent(g: Graph, x: Node, a: Scalar, n: Scalar) -> Scalar:

@@ -261,10 +261,10 @@ def apply_operation(stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar)
     elif kind == "function":
         name, count = what
         args = tuple(stack[-count:])
-        stack[-count:] = [scalar_operations.function(name, args, pi)]
+        stack[-count:] = [scalar_operations.function_value(name, args, pi)]
     else:
         b = stack.pop()
-        stack[-1] = scalar_operations.power(stack[-1], b, pi) if kind == "^" else _BINARY[kind](stack[-1], b)
+        stack[-1] = scalar_operations.power_value(stack[-1], b, pi) if kind == "^" else _BINARY[kind](stack[-1], b)
 
 
 def unknown(kind: str, name: str, known: Iterable[str], column: int) -> ExpressionError:

@@ -14,7 +14,7 @@ from math import isqrt
 from eomgen.symbolic.expression import functions
 from eomgen.symbolic.expression.graph import Node, Number
 from eomgen.symbolic.expression.spatial import AnyScalar
-from eomgen.symbolic.expression.splines import Sampled, number_of
+from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
 
 LARGEST_MAGNITUDE = 1000  # in bits: an exact number still fits a double
 MOST_BITS = 5_000  # of a numerator or denominator: 9^9^9 is refused, not computed
@@ -61,7 +61,7 @@ def divide(a: AnyScalar, b: AnyScalar) -> AnyScalar:
     return bounded(functions.over(a, b))
 
 
-def power(a: AnyScalar, b: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
+def power_value(a: AnyScalar, b: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
     """a ^ b; of exact numbers it is exact where it can be (4^(1/2) = 2)."""
     if is_exact(b) and b.denominator == 1:
         return _whole_power(a, b.numerator)
@@ -94,7 +94,7 @@ def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
     if type(pi) is Node:
         return pi.graph.pow(a, b)
     if b.denominator == 2:
-        return _whole_power(function("sqrt", (a,), pi), b.numerator)
+        return _whole_power(function_value("sqrt", (a,), pi), b.numerator)
     if pi is None or isinstance(pi, float):
         if a < 0:
             raise Undefined("a broken power of a negative number")
@@ -105,16 +105,16 @@ def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
 def through_samples(sampled: Sampled, t: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
     """The value at t of a function through samples; in the graph it stays one operation."""
     if type(t) is Node:
-        return t.graph.call("sampled", t, number_of(sampled))
+        return t.graph.call("sampled", t, number_of_sampled(sampled))
     if is_exact(t):
         value = sampled.spline.at(Fraction(t))
         return bounded(value) if sampled.pi_power == 0 else value * (math.pi if pi is None else pi) ** sampled.pi_power
     if isinstance(t, float):
         return sampled.at(t, float, math.pi)
-    return sampled.chosen(t, functions.chosen, pi)
+    return sampled.chosen(t, functions.selected, pi)
 
 
-def function(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar = None) -> AnyScalar:
+def function_value(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar = None) -> AnyScalar:
     """An elementary function at its arguments; min and max take two or more."""
     if name in ("min", "max"):
         value = args[0]

@@ -172,7 +172,7 @@ class Wrench:
 
 
 @dataclass(frozen=True)
-class Inertia:
+class SpatialInertia:
     """Mass properties of a rigid body about its frame's origin, in its axes.
 
     Args:
@@ -186,11 +186,11 @@ class Inertia:
     I: Matrix
 
     @staticmethod
-    def about_center(m: AnyScalar, com: Vector, I_com: Matrix) -> Inertia:
+    def about_center(m: AnyScalar, com: Vector, I_com: Matrix) -> SpatialInertia:
         """From the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
         h = times(m, com)
         shift = matrix_of(((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
-        return Inertia(m, h, added(I_com, shift))
+        return SpatialInertia(m, h, added(I_com, shift))
 
     def momentum(self, xi: Twist) -> Wrench:
         """I xi: angular momentum about the origin and linear momentum.

@@ -148,7 +148,7 @@ _ALL: list[Sampled] = []
 _NUMBERS: dict[Sampled, int] = {}
 
 
-def number_of(sampled: Sampled) -> int:
+def number_of_sampled(sampled: Sampled) -> int:
     """Its number, by which an operation of the graph names it; equal ones have the same."""
     if sampled not in _NUMBERS:
         _NUMBERS[sampled] = len(_ALL)

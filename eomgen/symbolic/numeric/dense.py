@@ -13,7 +13,7 @@ from eomgen.symbolic.numeric.tolerances import ROUNDING, ZERO_AT_50
 SWEEPS = 8  # of scaling; each takes the square root of what is left
 
 
-def solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
+def dense_solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
     """A x = right: by elimination, whose error knows no units; where A is not regular, the least squares' x.
 
     Args:
@@ -103,7 +103,7 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
     return rank
 
 
-def follows(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
+def follows_in_digits(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
     """Whether a row of numbers of 50 digits is a combination of others (`modular.follows` in the reals)."""
     left, waiting = list(row), [list(each) for each in rows]
     size = max(map(abs, left), default=0)

@@ -15,7 +15,7 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.functions import chosen
+from eomgen.symbolic.expression.functions import selected
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
@@ -96,7 +96,7 @@ def _summand(sign: int, x: Scalar, made: Mapping[Node, Any]) -> sympy.Expr:
 def _made(x: Node, made: Mapping[Node, Any]) -> Any:
     values = [_value(a, made) for a in x.args]
     if x.op == "sampled":
-        return sampled_of(x.args[1]).chosen(_plain(values[0]), chosen, sympy.pi)
+        return sampled_of(x.args[1]).chosen(_plain(values[0]), selected, sympy.pi)
     if x.op == "select":
         condition, if_true, if_false = values
         return sympy.Piecewise((_plain(if_true), _condition(condition)), (_plain(if_false), True))

@@ -8,12 +8,12 @@ from math import comb
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored
 from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import Monomial, Terms, TooLarge, Wave, plus
+from eomgen.symbolic.exact.terms import Monomial, Terms, TooLarge, Wave, terms_plus
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 
-Powers = Callable[[Expansion, Terms, Node], Iterator[Scalar]]
+PowersIn = Callable[[Expansion, Terms, Node], Iterator[Scalar]]
 """(expansion, f, atom) -> the values of the atom at which f, a polynomial in it, vanishes."""
 
 
@@ -38,12 +38,12 @@ def wave_free(expansion: Expansion, f: Terms) -> tuple[Terms, dict[Node, Scalar]
         for powers, c in polynomial.items():
             both = zip(pairs, powers, strict=True)
             added = [(s.index, e) for pair, exponents in both for s, e in zip(pair, exponents, strict=True) if e]
-            total = plus(total, {(tuple(sorted((*monomial, *added))), ()): c})
+            total = terms_plus(total, {(tuple(sorted((*monomial, *added))), ()): c})
     return total, fresh
 
 
 def vanishing_angles(
-    expansion: Expansion, f: Terms, fresh: dict[Node, Scalar], holders: set[Node], powers: Powers
+    expansion: Expansion, f: Terms, fresh: dict[Node, Scalar], holders: set[Node], powers: PowersIn
 ) -> Iterator[tuple[Scalar, Scalar]]:
     """(angle, value): f vanishes where the angle has the value; none where more than one angle is in f.
 
@@ -69,7 +69,7 @@ def _angle(cosine: Scalar, sine: Scalar) -> Scalar | None:
 
 
 def _values(
-    expansion: Expansion, f: Terms, pair: tuple[Node, Node], fresh: dict[Node, Scalar], powers: Powers
+    expansion: Expansion, f: Terms, pair: tuple[Node, Node], fresh: dict[Node, Scalar], powers: PowersIn
 ) -> Iterator[Scalar]:
     graph, (C, S) = expansion.graph, pair
     held = {atom for monomial, _ in f for atom, _ in monomial}
@@ -124,11 +124,11 @@ def _in_sines(expansion: Expansion, f: Terms, C: Node, S: Node) -> Terms:
             exponents[C.index] = 1
         rest: Terms = {(tuple(sorted(exponents.items())), w): c}
         square: Terms = {((), ()): 1, (((S.index, 2),), ()): -1}
-        total = plus(total, expansion.product(rest, expansion.power(square, n // 2)))
+        total = terms_plus(total, expansion.product(rest, expansion.power(square, n // 2)))
     return total
 
 
-def _by_half_angle(expansion: Expansion, f: Terms, C: Node, S: Node, powers: Powers) -> Iterator[Scalar]:
+def _by_half_angle(expansion: Expansion, f: Terms, C: Node, S: Node, powers: PowersIn) -> Iterator[Scalar]:
     """2 atan(tau) with C = (1 - tau^2)/(1 + tau^2), S = 2 tau/(1 + tau^2); pi where f vanishes there."""
     tau = expansion.graph.symbol("(tan of half)")
     expansion.of(tau)
@@ -139,8 +139,8 @@ def _by_half_angle(expansion: Expansion, f: Terms, C: Node, S: Node, powers: Pow
         n, k = _degree(monomial, C), _degree(monomial, S)
         rest: Terms = {(tuple(item for item in monomial if item[0] not in (C.index, S.index)), w): c}
         if k == 0:
-            at_pi = plus(at_pi, rest, (-1) ** n)
-        polynomial = plus(polynomial, expansion.product(rest, _half_angle_powers(tau, n, k, degree)))
+            at_pi = terms_plus(at_pi, rest, (-1) ** n)
+        polynomial = terms_plus(polynomial, expansion.product(rest, _half_angle_powers(tau, n, k, degree)))
     if not at_pi:
         yield expansion.graph.pi
     for part, _ in factored(polynomial):
@@ -157,7 +157,7 @@ def _half_angle_powers(tau: Node, n: int, k: int, degree: int) -> Terms:
         for j in range(degree - n - k + 1):
             e = 2 * i + 2 * j + k
             c = (-1) ** i * comb(n, i) * comb(degree - n - k, j) * 2**k
-            total = plus(total, {(((tau.index, e),) if e else (), ()): c})
+            total = terms_plus(total, {(((tau.index, e),) if e else (), ()): c})
     return total
 
 

@@ -43,7 +43,7 @@ class Block:
     matrix: tuple[tuple[Scalar, ...], ...]
 
 
-def solved(
+def solution_by_minors(
     rows: Sequence[Mapping[int, Scalar]],
     right: Sequence[Sequence[Scalar]],
     *,

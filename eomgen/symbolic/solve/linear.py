@@ -24,7 +24,7 @@ from eomgen.symbolic.solve import cramer
 
 TOGETHER = 4  # unknowns of one set of normal equations
 
-Values = Callable[[Sequence[Scalar]], list[Any]]
+ValuesAt = Callable[[Sequence[Scalar]], list[Any]]
 
 
 @dataclass(frozen=True)
@@ -58,11 +58,11 @@ class _Line:
     test: SparseRow
 
 
-def solved(
+def sparse_solution(
     rows: Sequence[Mapping[int, Scalar]],
     right: Sequence[Scalar],
     unknowns: int,
-    values: Values,
+    values: ValuesAt,
     *,
     simple: Callable[[Scalar], int] | None = None,
     tolerance: float = ELIMINATED_AT_50,
@@ -110,7 +110,7 @@ def solved(
 def _lines(
     rows: Sequence[Mapping[int, Scalar]],
     right: Sequence[Scalar],
-    values: Values,
+    values: ValuesAt,
     tolerance: float,
     tests: Sequence[Mapping[int, Scalar]],
 ) -> list[_Line]:
@@ -167,14 +167,14 @@ def _pivot(lines: list[_Line], rank: Callable[[_Line, int, Scalar], tuple[int, i
     return found
 
 
-def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: Values) -> None:
+def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: ValuesAt) -> None:
     """Solve the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
     for group, unknowns in _groups(lines):
         A = np.array([[float(line.shadow.get(j, 0)) for j in unknowns] for line in group])
         if len(unknowns) > min(len(group), TOGETHER) or not _independent(A):
             continue
         rows, right = _tested(group, unknowns, A, values)
-        found = cramer.solved(rows, [(b,) for b in right])[0]
+        found = cramer.solution_by_minors(rows, [(b,) for b in right])[0]
         for line in group:
             lines.remove(line)
         known = {j: value for j, (value,) in zip(unknowns, found, strict=True)}
@@ -183,7 +183,7 @@ def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: Values) 
 
 
 def _tested(
-    group: list[_Line], unknowns: list[int], A: np.ndarray, values: Values
+    group: list[_Line], unknowns: list[int], A: np.ndarray, values: ValuesAt
 ) -> tuple[list[SparseRow], list[Scalar]]:
     """(W^T A, W^T b), and (A, b) itself where it is square; unknowns counted from 0."""
     if len(group) == len(unknowns):

@@ -16,20 +16,20 @@ from typing import Any
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.solve.linear import Solution, Values
-from eomgen.symbolic.solve.linear import solved as solved_as_given
+from eomgen.symbolic.solve.linear import Solution, ValuesAt
+from eomgen.symbolic.solve.linear import sparse_solution as solved_as_given
 
 SWEEPS = 3  # over rows and columns
 
-Powers = dict[Node, int]
+SymbolPowers = dict[Node, int]
 
 
 @dataclass
-class Monomial:
+class PowerProduct:
     """number * product of atom ^ power"""
 
     number: Number
-    powers: Powers
+    powers: SymbolPowers
 
     def scalar(self) -> Scalar:
         total: Scalar = self.number
@@ -55,23 +55,23 @@ class Scaled:
     columns: dict[int, Scalar]
 
 
-def solved(
+def scaled_solution(
     rows: Sequence[Mapping[int, Scalar]],
     right: Sequence[Scalar],
     unknowns: int,
-    values: Values,
+    values: ValuesAt,
     *,
     sure_symbols: Collection[Node],
     tests: Sequence[Mapping[int, Scalar]] = (),
     **how: Any,
 ) -> Solution:
-    """`linear.solved` of equations that may have common factors in their rows and columns.
+    """`linear.sparse_solution` of equations that may have common factors in their rows and columns.
 
     Args:
         sure_symbols: that may stand in what is divided by: parameters, for which the equations are not singular.
-        how: what else `linear.solved` takes.
+        how: what else `linear.sparse_solution` takes.
     """
-    found = scaled(rows, right, frozenset(sure_symbols), tests)
+    found = without_common_factors(rows, right, frozenset(sure_symbols), tests)
     solution = solved_as_given(found.rows, found.right, unknowns, values, tests=found.tests, **how)
     s = found.columns
     constants = {j: over(x, s.get(j, 1)) for j, x in solution.constants.items()}
@@ -79,7 +79,7 @@ def solved(
     return replace(solution, constants=constants, shares=shares)
 
 
-def scaled(
+def without_common_factors(
     rows: Sequence[Mapping[int, Scalar]],
     right: Sequence[Scalar],
     sure: Collection[Node],
@@ -92,14 +92,14 @@ def scaled(
         tests: further rows, of the same number, that are scaled alike.
     """
     entries = {(i, j): monomial(x) for i, row in enumerate(rows) for j, x in row.items()}
-    by_row: dict[int, Powers] = {}
-    by_column: dict[int, Powers] = {}
+    by_row: dict[int, SymbolPowers] = {}
+    by_column: dict[int, SymbolPowers] = {}
     for _ in range(SWEEPS):
         taken = _taken(entries, 0, by_row, sure) + _taken(entries, 1, by_column, sure)
         if not taken:
             break
-    r = {i: Monomial(1, powers).scalar() for i, powers in by_row.items()}
-    s = {j: Monomial(1, powers).scalar() for j, powers in by_column.items()}
+    r = {i: PowerProduct(1, powers).scalar() for i, powers in by_row.items()}
+    s = {j: PowerProduct(1, powers).scalar() for j, powers in by_column.items()}
     found: list[dict[int, Scalar]] = [{} for _ in rows]
     for (i, j), entry in entries.items():
         found[i][j] = entry.scalar()
@@ -107,10 +107,10 @@ def scaled(
     return Scaled(found, [over(b, r.get(i, 1)) for i, b in enumerate(right)], alike, s)
 
 
-def monomial(x: Scalar) -> Monomial:
+def monomial(x: Scalar) -> PowerProduct:
     """x as a number times powers of what is no product; a root of a number is an atom."""
     number: Number = Fraction(1)
-    powers: Powers = {}
+    powers: SymbolPowers = {}
     stack: list[tuple[Scalar, int]] = [(x, 1)]
     while stack:
         part, e = stack.pop()
@@ -127,7 +127,7 @@ def monomial(x: Scalar) -> Monomial:
         else:
             powers[part] = powers.get(part, 0) + e
     whole = number.numerator if number.denominator == 1 else number
-    return Monomial(whole, {atom: e for atom, e in powers.items() if e})
+    return PowerProduct(whole, {atom: e for atom, e in powers.items() if e})
 
 
 def _two_roots(x: Scalar) -> tuple[tuple[Scalar, int], ...]:
@@ -144,10 +144,10 @@ def _two_roots(x: Scalar) -> tuple[tuple[Scalar, int], ...]:
 
 
 def _taken(
-    entries: dict[tuple[int, int], Monomial], which: int, factors: dict[int, Powers], sure: Collection[Node]
+    entries: dict[tuple[int, int], PowerProduct], which: int, factors: dict[int, SymbolPowers], sure: Collection[Node]
 ) -> int:
     """Take the common powers out of every row (which = 0) or column (1); how many there were."""
-    lines: dict[int, list[Monomial]] = {}
+    lines: dict[int, list[PowerProduct]] = {}
     for place, entry in entries.items():
         lines.setdefault(place[which], []).append(entry)
     count = 0
@@ -163,7 +163,7 @@ def _taken(
     return count
 
 
-def _common(line: list[Monomial], sure: Collection[Node]) -> Powers:
+def _common(line: list[PowerProduct], sure: Collection[Node]) -> SymbolPowers:
     """The powers that all monomials of a line hold."""
     atoms = {atom for entry in line for atom in entry.powers if set(symbols_of((atom,))) <= set(sure)}
     least = {atom: min(entry.powers.get(atom, 0) for entry in line) for atom in atoms}

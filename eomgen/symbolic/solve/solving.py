@@ -20,7 +20,7 @@ from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.exact.terms import Terms, common_monomial, plus, scaled, tidy
+from eomgen.symbolic.exact.terms import Terms, common_monomial, terms_plus, terms_scaled, tidy
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -142,7 +142,7 @@ class _Search:
 
     def _quadratic(self, expansion: Expansion, c0: Terms, c1: Terms, c2: Terms) -> Iterator[Scalar]:
         """(-c1 +- sqrt(c1^2 - 4 c0 c2))/(2 c2)"""
-        discriminant = plus(expansion.product(c1, c1), expansion.product(c0, c2), -4)
+        discriminant = terms_plus(expansion.product(c1, c1), expansion.product(c0, c2), -4)
         node = expansion.atoms.node
         whole = square_root(discriminant) if discriminant else {}
         under = simplest(node(discriminant), self.limit, self.positive)
@@ -166,7 +166,7 @@ class _Search:
         """(e, log(z)): f is a polynomial in z = exp(e), whole powers of which all its exponentials are."""
         exponents = {h.index: expansion.atoms.opaque[h.index].arguments[0] for h in holders}
         unit = next(iter(exponents.values()))
-        unit = scaled(unit, -1) if unit[min(unit)] < 0 else unit
+        unit = terms_scaled(unit, -1) if unit[min(unit)] < 0 else unit
         multiples = {atom: _multiple(argument, unit) for atom, argument in exponents.items()}
         if not all(multiples.values()):
             return
@@ -174,7 +174,7 @@ class _Search:
         z = self.x.graph.symbol("(exp)")
         expansion.of(z)
         polynomial = _in_powers_of(f, {atom: int(c / common) for atom, c in multiples.items()}, z)
-        exponent = expansion.atoms.node(scaled(unit, tidy(common)))
+        exponent = expansion.atoms.node(terms_scaled(unit, tidy(common)))
         for part in _factors(polynomial):
             for value in self._powers(expansion, part, z):
                 if type(value) is Node or value > 0:
@@ -201,14 +201,14 @@ def _squared(expansion: Expansion, f: Terms, root: Node) -> Terms:
     parts = coefficients(f, root)
     a, b = parts.get(0, {}), parts.get(1, {})
     inside = expansion.atoms.opaque[root.index].arguments[0]
-    return plus(expansion.product(a, a), expansion.product(expansion.product(b, b), inside), -1)
+    return terms_plus(expansion.product(a, a), expansion.product(expansion.product(b, b), inside), -1)
 
 
 def _multiple(a: Terms, unit: Terms) -> Fraction:
     """The number c with a = c unit; 0 where there is none."""
     key = next(iter(unit))
     c = Fraction(a.get(key, 0)) / unit[key]
-    return Fraction(0) if plus(a, unit, -c) else c
+    return Fraction(0) if terms_plus(a, unit, -c) else c
 
 
 def _in_powers_of(f: Terms, powers: dict[int, int], z: Node) -> Terms:
@@ -218,7 +218,7 @@ def _in_powers_of(f: Terms, powers: dict[int, int], z: Node) -> Terms:
     for (monomial, w), c in f.items():
         n = sum(e * powers.get(atom, 0) for atom, e in monomial) - lowest
         rest = [item for item in monomial if item[0] not in powers] + ([(z.index, n)] if n else [])
-        total = plus(total, {(tuple(sorted(rest)), w): c})
+        total = terms_plus(total, {(tuple(sorted(rest)), w): c})
     return total
 
 
