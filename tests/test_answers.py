@@ -10,6 +10,8 @@ import eomgen
 from eomgen import Answer
 from eomgen.symbolic.expression.expressions import parse
 
+pytestmark = pytest.mark.slow
+
 PENDULUM = """
 eomgen = 1
 name = "pendulum"

@@ -22,6 +22,8 @@ from eomgen.proof.check import Certificate, Check
 from eomgen.shell import LATER
 from eomgen.version import __version__
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 MODELS = ROOT / "models"
 PENDULUM = str(MODELS / "double_pendulum.toml")

@@ -13,6 +13,8 @@ from eomgen.symbolic.expression.derivative import depends_on, derivative, gradie
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 STEP = 1e-5
 
 

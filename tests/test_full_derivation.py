@@ -10,6 +10,8 @@ from click.testing import CliRunner
 
 from eomgen.cli import main
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 
 

@@ -17,6 +17,8 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, apply
 
+pytestmark = pytest.mark.slow
+
 DRIVEN = """
 [parameters]
 m = 1.5

@@ -22,6 +22,8 @@ from eomgen.report.statements import Omitted
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Scalar
 
+pytestmark = pytest.mark.slow
+
 GOLDEN = Path(__file__).parent / "golden"
 MATHEMATICS = set(
     r"""begin end left right bigl bigr big frac tfrac sqrt sum partial cdot quad leq lvert rvert dot ddot dddot text

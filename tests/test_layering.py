@@ -218,3 +218,10 @@ def test_sympy_is_not_imported_at_the_top_of_the_command_line():
                 heads = []
             assert not any(head.split(".")[0] == "sympy" for head in heads), f"{name} imports sympy at its top"
             waiting += [head for head in heads if head in modules]
+
+
+def test_every_public_name_is_where_the_package_says():
+    """`eomgen.derive` and all its neighbours are there on first use."""
+    import eomgen
+
+    assert all(getattr(eomgen, name) is not None for name in eomgen.__all__)

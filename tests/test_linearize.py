@@ -12,6 +12,8 @@ import eomgen
 from eomgen.cli import main
 from eomgen.report import rendered
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 BARS = str(MODELS / "seeds" / "ch22_p3.toml")
 CART = str(MODELS / "cart_pole.toml")

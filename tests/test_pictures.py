@@ -12,6 +12,8 @@ from eomgen.report.arrows import is_freer_outward
 from eomgen.report.coil import coil
 from eomgen.report.quantities import figures, scale_of
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 
 CHORD = np.array([[0.0, 0.0], [4.0, 0.0]])

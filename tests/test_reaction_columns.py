@@ -29,6 +29,8 @@ from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 UNPLACED = {"balancing_robot": "ahead", "delta_robot": "platform", "foucault_pendulum": "weight"}
 """Models with forces at no place, or bodies that nothing holds: reactions are refused, with what is to blame."""

@@ -21,6 +21,8 @@ from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
 from eomgen.symbolic.expression.functions import NAMES
 from eomgen.symbolic.expression.units import UNITS
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 REFERENCE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -42,6 +42,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.decimals import MOST_DIGITS
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 GOLDEN = Path(__file__).parent / "golden"
 SMALL = tuple(name for name in derivable() if name not in LARGE)
 FORMATS = tuple(member.name for member in ALL)

@@ -25,6 +25,8 @@ from eomgen.symbolic.print.sympy_form import to_sympy
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.follow import following
 
+pytestmark = pytest.mark.slow
+
 ARM = """
 [parameters]
 m = 1.5

@@ -23,6 +23,8 @@ from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 PENDULUM = {"x0": [1.0, 0.0], "p": [1.0, 1.0, 9.81]}
 

@@ -19,6 +19,8 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import is_zero
 
+pytestmark = pytest.mark.slow
+
 each_target = pytest.mark.parametrize("target", [target.name for target in ALL])
 
 

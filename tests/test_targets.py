@@ -29,6 +29,8 @@ from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 GOLDEN = Path(__file__).parent / "golden"
 MODELS = Path(__file__).parent.parent / "models"
 TARGETS = [target.name for target in ALL]

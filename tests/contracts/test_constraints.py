@@ -16,6 +16,8 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, apply, cross, plus
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
+pytestmark = pytest.mark.slow
+
 PLANE, SPACE = "plane", "space"
 EXAMPLES = {
     "pin": {

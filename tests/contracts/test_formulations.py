@@ -22,6 +22,8 @@ from eomgen.model.unbuilt import unbuilt
 from eomgen.proof.trials import accelerations_at
 from eomgen.symbolic.numeric.evaluation import NoValue
 
+pytestmark = pytest.mark.slow
+
 MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}
 RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]
 

@@ -7,6 +7,8 @@ import pytest
 import eomgen
 from eomgen.errors import EomgenError
 
+pytestmark = pytest.mark.slow
+
 HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
 
 BEAM = (

@@ -29,6 +29,8 @@ from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 DERIVABLE = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))
 SMALL = (

@@ -19,6 +19,8 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 UNITS = (  # (system and output, as a pattern): the unit that is asked for
     (r"ch11_p\d (c\d\d_[xy]|[xy]\d)", "m"),

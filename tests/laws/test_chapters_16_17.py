@@ -21,6 +21,8 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 EXACT = [asked for asked in ASKED if asked not in NUMBERS_ONLY]
 STATES = 3  # random states of a comparison

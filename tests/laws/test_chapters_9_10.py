@@ -19,6 +19,8 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 SETS = ("statement", "other")
 FIFTY = fifty_digits()

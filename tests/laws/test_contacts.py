@@ -13,6 +13,8 @@ from eomgen.model.values import numeric_parameters
 from eomgen.simulation.history import history
 from eomgen.simulation.result import Trajectory
 
+pytestmark = pytest.mark.slow
+
 G = 9.81
 HEAD = """
 eomgen = 1

@@ -21,6 +21,8 @@ from eomgen.proof import identities
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.solve import cramer
 
+pytestmark = pytest.mark.slow
+
 HEAD = """
 eomgen = 1
 name = "with dependent coordinates"

@@ -17,6 +17,8 @@ from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions
 from eomgen.verbs.statics import statics
 
+pytestmark = pytest.mark.slow
+
 HEAD = 'eomgen = 1\nname = "system"\nspace = "plane"\n'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
 

@@ -13,6 +13,8 @@ from eomgen.model import constraints, forces, joints
 from eomgen.model.part import Part, slots_of
 from eomgen.proof import identities, trials
 
+pytestmark = pytest.mark.slow
+
 HEAD = """
 eomgen = 1
 space = "{}"

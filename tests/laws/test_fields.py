@@ -38,6 +38,8 @@ from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 TOLERANCE = 1e-12
 
 PLANE = """

@@ -10,6 +10,8 @@ from scipy.optimize import fsolve
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 G = 9.81
 HEAD = """
 eomgen = 1

@@ -16,6 +16,8 @@ from eomgen.model.parts import Model
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.projection import projection_of
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 
 # -- rest beside velocity ties ---------------------------------------------------------------------------

@@ -15,6 +15,8 @@ from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, t
 from eomgen.mechanics.masses.principal import numbers_in, principal_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 
 def answers(**tables) -> dict[str, float]:
     """The values of a model's outputs."""

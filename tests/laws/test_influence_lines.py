@@ -14,6 +14,8 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 HEAD = 'eomgen = 1\nname = "structure"\nspace = "plane"\n'
 
 GERBER = (

@@ -27,6 +27,8 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 HEAD = """
 eomgen = 1
 name = "system"

@@ -23,6 +23,8 @@ from eomgen.mechanics.formulations import projection
 from eomgen.model.part import altered
 from eomgen.model.table import Table
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent.parent / "models"
 TREES = (
     "arm3 arm7 cart_pole chain20 double_pendulum elastic_pendulum gyrostat quadrotor simple_pendulum spherical_pendulum"

@@ -11,6 +11,8 @@ import eomgen
 from eomgen.errors import ModelError
 from eomgen.verbs.check import check
 
+pytestmark = pytest.mark.slow
+
 DISC = """eomgen = 1
 name = "rolling disc"
 space = "space"

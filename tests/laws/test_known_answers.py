@@ -20,6 +20,8 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 KNOWN = {name: (MODELS / f"{name}.toml", known) for name, known in CLASSICS.items()} | {
     name: (MODELS / "seeds" / f"{name}.toml", known) for name, known in SEEDS.items()
 }

@@ -10,6 +10,8 @@ from scipy.linalg import eigh
 import eomgen
 from eomgen.model.values import numeric_parameters
 
+pytestmark = pytest.mark.slow
+
 
 def motion(name: str, time: float, **options):
     """States by name along a simulation, n each, and the parameters' values."""

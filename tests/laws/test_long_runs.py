@@ -17,6 +17,8 @@ from eomgen.running import run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.projection import projection_of
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 G = 9.81
 

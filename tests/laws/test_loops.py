@@ -15,7 +15,7 @@ import eomgen
 from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"
 
 

@@ -19,7 +19,10 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*(Statically indeterminate|No single value):RuntimeWarning")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore:.*(Statically indeterminate|No single value):RuntimeWarning"),
+]
 
 CRANK = """
 eomgen = 1

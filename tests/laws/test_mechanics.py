@@ -18,6 +18,8 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, substitu
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 PATHS = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))
 

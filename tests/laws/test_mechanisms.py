@@ -19,6 +19,8 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.questions.velocities import state_of
 
+pytestmark = pytest.mark.slow
+
 SEEDS = range(3)
 BODIES = "[bodies.I]\npoints = { O = [0, 0], A = [0, 2] }\n"
 

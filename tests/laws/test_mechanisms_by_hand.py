@@ -13,6 +13,8 @@ from oracle_of_chapters_9_10 import DIGITS, length, motion, rate, slowest, turne
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = 'eomgen = 1\nname = "mechanism"\nspace = "plane"\n'
 Found = dict[str, Any]

@@ -18,6 +18,8 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 HEIGHT = "(L*sin(alpha) + R*(1 - cos(alpha)))"
 KNOWN = {

@@ -9,6 +9,8 @@ import pytest
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODEL = Path(__file__).parents[2] / "models" / "stewart_platform.toml"
 
 

@@ -9,6 +9,8 @@ import pytest
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 
 TEST_SET = "Mazzia & Magherini, Test Set for Initial Value Problem Solvers, release 2.4 (University of Bari, 2008)"

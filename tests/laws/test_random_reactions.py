@@ -19,6 +19,8 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 MOVED_INSIDE = ("S = ['l*", "A*t", 'kind = "placed"')  # seats and points that a coordinate moves: geometry, not bodies
 AT_COORDINATES = ('kind = "potential"', 'kind = "generalized"')  # at no place: no reactions follow
 

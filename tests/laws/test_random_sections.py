@@ -16,6 +16,8 @@ from eomgen.mechanics.statics.two_ways import static_reactions_of
 from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 FRAMES = [(1, 1), (2, 1), (3, 2), (4, 2), (5, 3), (6, 3), (7, 4), (8, 4)]
 
 

@@ -8,6 +8,8 @@ from random_systems import random_model
 import eomgen
 from eomgen.proof.check import Certificate
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("seed", range(30))
 @pytest.mark.parametrize("space", ["plane", "space"])

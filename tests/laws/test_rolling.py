@@ -11,6 +11,8 @@ from rolling_bodies import RoundBody, rotation_of
 import eomgen
 from eomgen.errors import ModelError
 
+pytestmark = pytest.mark.slow
+
 MASS, COM = 1.5, np.array([0.02, -0.03, 0.01])
 INERTIA = np.array([[0.11, 0.01, 0.005], [0.01, 0.13, 0], [0.005, 0, 0.17]])
 FREE = """eomgen = 1

@@ -9,6 +9,8 @@ import pytest
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 BALL = """eomgen = 1
 name = "ball"

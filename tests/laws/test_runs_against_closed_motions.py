@@ -21,6 +21,8 @@ from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
+pytestmark = pytest.mark.slow
+
 G = 9.81
 H = 1e-30  # of complex steps
 FINE = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-12}

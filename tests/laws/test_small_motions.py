@@ -19,6 +19,8 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 HEAD = 'eomgen = 1\nname = "small"\nspace = "plane"\n'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, "-g"]\n'
 

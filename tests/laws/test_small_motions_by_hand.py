@@ -10,6 +10,8 @@ import sympy
 import eomgen
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 PARTICLE = 'shape = { kind = "particle", mass = "m" }'
 

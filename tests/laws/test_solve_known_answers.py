@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 G = 9.81
 PLANE = 'eomgen = 1\nspace = "plane"\n'

@@ -12,6 +12,8 @@ import eomgen
 from eomgen.equations import Equations
 from eomgen.symbolic.exact.equality import equal_at_random_states
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = 'eomgen = 1\nname = "turning"\nspace = "space"\n'
 INERTIA = "[parameters]\nA = 1.1\nB = 2.3\nC = 3.1\nm = 0.7\nd = 0.2\ng = 9.81\n"

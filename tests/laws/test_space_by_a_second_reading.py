@@ -11,6 +11,8 @@ from model_by_hand import ByHand, mp
 import eomgen
 from eomgen.errors import DerivationError, ModelError
 
+pytestmark = pytest.mark.slow
+
 HEAD = 'eomgen = 1\nname = "unseen"\nspace = "space"\n'
 WEIGHT = '[forces.weight]\nkind = "gravity"\nacceleration = [0, 0, -9.81]\n'
 QUATERNION = "[coordinates]\ne0 = 0.9\ne1 = 0.1\ne2 = 0.3\ne3 = -0.2\n"

@@ -13,6 +13,8 @@ from float_space import Joint, Tree, jacobi, limits_of_nutation, of_quaternion, 
 import eomgen
 from eomgen.equations import Equations
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 RANDOM = np.random.default_rng(7)
 

@@ -19,6 +19,8 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent.parent / "models"
 
 DEPENDENT = 1e-9  # of the largest singular value

@@ -22,6 +22,8 @@ import eomgen
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.expressions import as_expression
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 KNOWN: dict[str, Callable[[Numbers], Numbers]] = {}
 

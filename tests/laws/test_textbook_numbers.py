@@ -13,6 +13,8 @@ import eomgen
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
 
+pytestmark = pytest.mark.slow
+
 SPACE = 'eomgen = 1\nname = "peer"\nspace = "space"\n'
 PLANE = 'eomgen = 1\nname = "peer"\nspace = "plane"\n'
 

@@ -13,6 +13,8 @@ import eomgen
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
+pytestmark = pytest.mark.slow
+
 TOLERANCE = 1e-9  # relative to the largest of its kind; a loop near a dead centre magnifies rounding
 
 

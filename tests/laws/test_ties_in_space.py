@@ -17,6 +17,8 @@ import eomgen
 from eomgen.errors import EomgenError, ModelError
 from eomgen.mechanics.constraints.freedom import freedom_of
 
+pytestmark = pytest.mark.slow
+
 G = 9.81
 
 

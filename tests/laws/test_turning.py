@@ -15,6 +15,8 @@ from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.small_motions.linearization import small_motions_of
 from eomgen.report import rendered
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = 'eomgen = 1\nname = "turning"\nspace = "space"\n'
 BY_QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'

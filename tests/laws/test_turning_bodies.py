@@ -18,6 +18,8 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
+pytestmark = pytest.mark.slow
+
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]
 MOVING = ("w1", "w2", "w3", "phi", "theta", "psi", "phi'", "theta'", "psi'")

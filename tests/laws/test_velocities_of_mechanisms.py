@@ -12,6 +12,8 @@ import eomgen
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Graph
 
+pytestmark = pytest.mark.slow
+
 PLANE = 'eomgen = 1\nspace = "plane"\n'
 
 FOUR_BAR = (

@@ -12,6 +12,8 @@ import pytest
 
 import eomgen
 
+pytestmark = pytest.mark.slow
+
 MODEL = Path(__file__).parents[2] / "models" / "whipple_bicycle.toml"
 TEXT = MODEL.read_text()
 

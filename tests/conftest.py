@@ -1,0 +1,17 @@
+"""`-m "not slow"`: the quick tests. What is slow as a whole says so in its file, which is then not even read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+SLOW = ("\npytestmark = pytest.mark.slow\n", "\npytestmark = [pytest.mark.slow,")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Whether a file of slow tests can be passed over: most of the quick set's time would be their collection."""
+    if config.getoption("markexpr") != "not slow" or collection_path.suffix != ".py":
+        return None
+    text = collection_path.read_text(encoding="utf-8")
+    return True if any(mark in text for mark in SLOW) else None
