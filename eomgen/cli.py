@@ -217,7 +217,10 @@ def kinematics(model: str, wants_json: bool, output: str | None, format_: str | 
 @click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
 @click.option("--about", metavar="POINT", help="About this point too.")
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
-def inertia(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+@NO_CERTIFY
+def inertia(
+    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
+) -> int:
     """Give masses, mass centres, moments of inertia, principal axes.
 
     Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
@@ -225,7 +228,7 @@ def inertia(model: str, wants_json: bool, output: str | None, format_: str | Non
     """
     from eomgen.verbs.inertia import inertia as found
 
-    return _write(found, model, wants_json, output, format_, **options)
+    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
 @main.command()

@@ -21,6 +21,7 @@ from eomgen.model.shapes import (
     Sphere,
     Triangle,
 )
+from eomgen.proof.masses import filled
 from eomgen.symbolic.expression.graph import Graph, Node
 
 EXAMPLES = {
@@ -290,3 +291,19 @@ def test_what_no_integral_stands_for_follows_from_another_shape():
     assert [prism.I[k][k] - plate.I[k][k] for k in range(3)] == [4, 4, 0] and prism.com == plate.com  # m l^2/12
     whole, ring = shapes.Arc(mass=3, radius=2, opening="2*pi"), properties(Ring(mass=3, radius=2))
     assert whole.mass_properties(exactly) == ring
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
+def test_a_shape_has_the_mass_centre_and_inertia_of_what_it_fills(cls):
+    """S = sum w [r; 1] [r; 1]^T over the nodes of a quadrature of the shape's own map of [0, 1]^d."""
+    shape = cls(**EXAMPLES[cls.kind])
+
+    def number(expression):
+        return float(value(expression))
+
+    measure, S = filled(shape, number)
+    mass = shape.of_mass(1, number)
+    center, P = S[:3, 3], S[:3, :3] - np.outer(S[:3, 3], S[:3, 3])
+    assert measure == pytest.approx(float(shape.measure(number)), rel=1e-10)
+    assert [float(x) for x in mass.com] == pytest.approx(list(center), abs=1e-10)
+    assert np.array(mass.I, dtype=float) == pytest.approx(np.trace(P) * np.eye(3) - P, abs=1e-10)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.model.parts import Model
 from eomgen.report.inertia.result import inertia as found_in
-from eomgen.verbs.outcome import Outcome, told
+from eomgen.verbs.outcome import Outcome, proven, told
 
 
 def inertia(
@@ -14,6 +14,7 @@ def inertia(
     bodies: tuple[str, ...] = (),
     about: str | None = None,
     axis: str | None = None,
+    certify: bool = True,
 ) -> Outcome:
     """Masses, mass centres, moments and products of inertia, principal axes.
 
@@ -22,5 +23,7 @@ def inertia(
         bodies: only these.
         about: a point about which they are taken too.
         axis: "A,B", or x, y, z through that point.
+        certify: whether it is proven.
     """
-    return told(found_in(model, bodies, about=about, axis=axis), plot=plot)
+    found = found_in(model, bodies, about=about, axis=axis)
+    return proven(told(found, plot=plot), found.certify() if certify else None)

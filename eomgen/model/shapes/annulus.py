@@ -1,12 +1,13 @@
 """Annulus: a thin round plate with a concentric hole."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Value, around, between, diagonal
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,6 +19,9 @@ class Annulus(Hollow):
 
     kind: ClassVar[str] = "annulus"
     dimension: ClassVar[int] = 2
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(between(value(self.inner), value(self.radius), s[0]), s[1]), 0)
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

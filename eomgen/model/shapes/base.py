@@ -15,7 +15,9 @@ from eomgen.symbolic.numeric.tolerances import SOLVED
 Line = tuple[tuple[float, float], ...]
 Value = Callable[[Expression], Any]
 """What an expression is worth: the arithmetic in which a law runs."""
+Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")
+HALF, THIRD = 0.5, 1 / 3  # of a length in numbers
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,17 @@ class Shape(Part, ABC):
     def points(self, value: Value) -> dict[str, Vector]:
         """The named points of the shape, body axes [m]: `origin`, `center`, the mass centre, and its own."""
         return {"origin": ZERO, "center": self.of_mass(1, value).com}
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        """The point at s, as many parts from 0 to 1 as it has dimensions, which run through all of it once.
+
+        Lengths are numbers; the parts may be arrays of complex numbers: what follows is smooth in them.
+        """
+        raise NotImplementedError
+
+    def cells(self, value: Value) -> tuple[Cell, ...]:
+        """The maps from [0, 1]^dimension that fill it: `filled`, or several whose measures count with their sign."""
+        return (lambda s: self.filled(value, s),)
 
     @abstractmethod
     def measure(self, value: Value) -> Any:
@@ -83,6 +96,29 @@ def tensor(second: Sequence[Sequence[Any]]) -> Matrix:
     """The inertia tensor from the second moments P_ij, the integrals of x_i x_j dm: I = tr(P) 1 - P."""
     trace = second[0][0] + second[1][1] + second[2][2]
     return matrix_of(((trace if i == j else 0) - second[i][j] for j in range(3)) for i in range(3))
+
+
+def around(radius: Any, turn: Any) -> tuple[Any, Any]:
+    """(x, y) at a distance from the origin, a part of a whole turn from +x."""
+    from numpy import cos, sin
+
+    angle = 2 * math.pi * turn
+    return radius * cos(angle), radius * sin(angle)
+
+
+def on_ball(radius: Any, fall: Any, turn: Any) -> Vector:
+    """(x, y, z) at a distance from the origin, a part of half a turn down from +z, a part of a turn about it."""
+    z, out = around(radius, HALF * fall)
+    return (*around(out, turn), z)
+
+
+def between(start: Any, end: Any, part: Any) -> Any:
+    """What is a part of the way from the one to the other."""
+    return start + part * (end - start)
+
+
+def part_of_turn(angle: Any) -> Any:
+    return angle / (2 * math.pi)
 
 
 def not_inside(inner: Any, outer: Any) -> str:

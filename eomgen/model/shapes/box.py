@@ -1,12 +1,13 @@
 """Box: a solid block."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,10 @@ class Box(Shape):
     def outline(self, value: Value) -> tuple[Line, ...]:
         width, height, _ = self.size
         return (box_around(value(width), value(height)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        x, y, z = map(value, self.size)
+        return (x * (s[0] - HALF), y * (s[1] - HALF), z * (s[2] - HALF))
 
     def measure(self, value: Value) -> Any:
         x, y, z = map(value, self.size)

@@ -1,12 +1,13 @@
 """Cone: a solid round cone."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, Value, around, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,9 @@ class Cone(Shape):
     dimension: ClassVar[int] = 3
     radius: Length
     height: Length
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius) * (1 - s[2]) * s[0], s[1]), value(self.height) * (s[2] - HALF * HALF))
 
     def measure(self, value: Value) -> Any:
         return Fraction(1, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.height)

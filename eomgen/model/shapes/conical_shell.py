@@ -1,13 +1,14 @@
 """Conical shell: the thin mantle of a cone, without its base."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, THIRD, MassProperties, Shape, Value, around, diagonal
 from eomgen.symbolic.expression.functions import sqrt
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +22,9 @@ class ConicalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
     height: Length
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius) * (1 - s[1]), s[0]), value(self.height) * (s[1] - THIRD))
 
     def measure(self, value: Value) -> Any:
         r, h = value(self.radius), value(self.height)

@@ -1,12 +1,13 @@
 """Cylinder: a solid round bar."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +24,9 @@ class Cylinder(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius) * s[0], s[1]), value(self.length) * (s[2] - HALF))
 
     def measure(self, value: Value) -> Any:
         return value(PI) * value(self.radius) * value(self.radius) * value(self.length)

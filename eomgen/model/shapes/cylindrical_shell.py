@@ -1,12 +1,13 @@
 """Cylindrical shell: a thin round pipe, open at its ends."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,9 @@ class CylindricalShell(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius), s[0]), value(self.length) * (s[1] - HALF))
 
     def measure(self, value: Value) -> Any:
         return 2 * value(PI) * value(self.radius) * value(self.length)

@@ -1,12 +1,13 @@
 """Disc: a thin round plate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,9 @@ class Disc(Shape):
     def outline(self, value: Value) -> tuple[Line, ...]:
         r = value(self.radius)
         return circle(r), ((0.0, 0.0), (r, 0.0))
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius) * s[0], s[1]), 0)
 
     def measure(self, value: Value) -> Any:
         return value(PI) * value(self.radius) * value(self.radius)

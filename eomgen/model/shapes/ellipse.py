@@ -1,12 +1,13 @@
 """Ellipse: a thin elliptic plate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import PlaneSize
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,11 @@ class Ellipse(Shape):
     def outline(self, value: Value) -> tuple[Line, ...]:
         a, b = map(value, self.semiaxes)
         return (tuple((a * x, b * y) for x, y in circle(1.0)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        x, y = around(s[0], s[1])
+        a, b = map(value, self.semiaxes)
+        return (a * x, b * y, 0)
 
     def measure(self, value: Value) -> Any:
         a, b = map(value, self.semiaxes)

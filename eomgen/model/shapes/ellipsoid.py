@@ -1,12 +1,13 @@
 """Ellipsoid: a solid one."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal, on_ball
+from eomgen.symbolic.expression.spatial import ZERO, Vector, vector_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,6 +17,9 @@ class Ellipsoid(Shape):
     kind: ClassVar[str] = "ellipsoid"
     dimension: ClassVar[int] = 3
     semiaxes: Size
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return vector_of(value(a) * x for a, x in zip(self.semiaxes, on_ball(s[0], s[1], s[2]), strict=True))
 
     def measure(self, value: Value) -> Any:
         a, b, c = map(value, self.semiaxes)

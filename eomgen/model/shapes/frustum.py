@@ -1,12 +1,14 @@
 """Frustum: a solid round cone without its tip."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, around, between, diagonal
 from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.spatial import Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +24,10 @@ class Frustum(Shape):
     radius: Length
     top: Length
     height: Length
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        radius = between(value(self.radius), value(self.top), s[2])
+        return (*around(radius * s[0], s[1]), value(self.height) * s[2])
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.top)

@@ -1,11 +1,13 @@
 """Hemispherical shell: half a thin hollow ball."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
+from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, Value, circle, diagonal, on_ball
+from eomgen.symbolic.expression.spatial import Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +23,9 @@ class HemisphericalShell(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return on_ball(value(self.radius), HALF * s[0], s[1])
 
     def measure(self, value: Value) -> Any:
         r = value(self.radius)

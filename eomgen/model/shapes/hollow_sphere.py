@@ -1,13 +1,14 @@
 """Hollow sphere: a ball with a concentric cavity."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Value, between, diagonal, on_ball
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +20,9 @@ class HollowSphere(Hollow):
 
     kind: ClassVar[str] = "hollow_sphere"
     dimension: ClassVar[int] = 3
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return on_ball(between(value(self.inner), value(self.radius), s[0]), s[1], s[2])
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

@@ -1,10 +1,11 @@
 """Particle: a mass without size."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,6 +14,9 @@ class Particle(Shape):
 
     kind: ClassVar[str] = "particle"
     dimension: ClassVar[int] = 0
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return ZERO
 
     def measure(self, value: Value) -> Any:
         return 0

@@ -1,14 +1,16 @@
 """Polygon: a thin plate with straight edges."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
+from eomgen.model.shapes.base import Cell, Line, MassProperties, Shape, Value, between
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function, over
+from eomgen.symbolic.expression.spatial import Vector
 
 Vertices = Annotated[tuple[tuple[Expression, ...], ...], ListRule(VectorRule(FormulaRule("m"), length=2), least=3)]
 
@@ -35,6 +37,11 @@ class Polygon(Shape):
             return "its edges cross one another"
         return "" if self.measure(value) else "it has no area"
 
+    def cells(self, value: Value) -> tuple[Cell, ...]:
+        """The triangles from the origin to each edge; those on whose right it is take away."""
+        corners = [(value(x), value(y)) for x, y in self.vertices]
+        return tuple(_fan(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True))
+
     def measure(self, value: Value) -> Any:
         corners = [(value(x), value(y)) for x, y in self.vertices]
         return Fraction(1, 2) * function("abs", _edge_sums(corners)[0])
@@ -48,6 +55,16 @@ class Polygon(Shape):
         I_yy = Fraction(1, 6) * density * yy - m * x * x
         I_xy = m * x * y - Fraction(1, 12) * density * xy
         return MassProperties(m, (x, y, 0), ((I_xx, I_xy, 0), (I_xy, I_yy, 0), (0, 0, I_xx + I_yy)))
+
+
+def _fan(a: tuple[Any, Any], b: tuple[Any, Any]) -> Cell:
+    """The triangle from the origin to the edge a b."""
+
+    def at(s: Sequence[Any]) -> Vector:
+        x, y = (between(a[k], b[k], s[1]) * s[0] for k in (0, 1))
+        return (x, y, 0)
+
+    return at
 
 
 def _edge_sums(corners: list[tuple[Any, Any]]) -> tuple[Any, ...]:

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, diagonal
+from eomgen.model.shapes.base import HALF, Cell, Line, MassProperties, Shape, Value, diagonal
 from eomgen.model.shapes.polygon import Polygon, Vertices
 from eomgen.symbolic.expression.spatial import added
 
@@ -32,6 +32,9 @@ class Prism(Shape):
     def impossible(self, value: Value) -> str:
         return self.section.impossible(value)
 
+    def cells(self, value: Value) -> tuple[Cell, ...]:
+        return tuple(_raised(cell, value(self.length)) for cell in self.section.cells(value))
+
     def measure(self, value: Value) -> Any:
         return self.section.measure(value) * value(self.length)
 
@@ -39,3 +42,8 @@ class Prism(Shape):
         plate = self.section.of_mass(m, value)
         across = Fraction(1, 12) * m * value(self.length) * value(self.length)
         return MassProperties(m, plate.com, added(plate.I, diagonal(across, across, 0)))
+
+
+def _raised(cell: Cell, length: Any) -> Cell:
+    """What stands on a cell of the section, from -l/2 to l/2."""
+    return lambda s: (*cell(s)[:2], length * (s[2] - HALF))

@@ -1,12 +1,13 @@
 """Pyramid: a solid one on a rectangle."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +25,12 @@ class Pyramid(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (box_around(value(self.width), value(self.depth)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        x, y = (
+            value(edge) * (part - HALF) * (1 - s[2]) for edge, part in zip((self.width, self.depth), s, strict=False)
+        )
+        return (x, y, value(self.height) * (s[2] - HALF * HALF))
 
     def measure(self, value: Value) -> Any:
         return Fraction(1, 3) * value(self.width) * value(self.depth) * value(self.height)

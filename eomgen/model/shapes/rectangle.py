@@ -1,12 +1,13 @@
 """Rectangle: a thin plate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, box_around, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,9 @@ class Rectangle(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (box_around(value(self.width), value(self.height)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (value(self.width) * (s[0] - HALF), value(self.height) * (s[1] - HALF), 0)
 
     def measure(self, value: Value) -> Any:
         return value(self.width) * value(self.height)

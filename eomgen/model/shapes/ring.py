@@ -1,12 +1,13 @@
 """Ring: a thin hoop."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +20,9 @@ class Ring(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius), s[0]), 0)
 
     def measure(self, value: Value) -> Any:
         return 2 * value(PI) * value(self.radius)

@@ -1,5 +1,6 @@
 """Rod: a thin straight line of mass."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -23,6 +24,9 @@ class Rod(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (((0.0, 0.0), (value(self.length), 0.0)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (value(self.length) * s[0], 0, 0)
 
     def measure(self, value: Value) -> Any:
         return value(self.length)

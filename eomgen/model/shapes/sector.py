@@ -1,12 +1,25 @@
 """Sector: a thin plate cut out of a disc by two radii."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, Opening
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, circle, diagonal, more_than_a_turn
+from eomgen.model.shapes.base import (
+    HALF,
+    Line,
+    MassProperties,
+    Shape,
+    Value,
+    around,
+    circle,
+    diagonal,
+    more_than_a_turn,
+    part_of_turn,
+)
 from eomgen.symbolic.expression.functions import over, sin
+from eomgen.symbolic.expression.spatial import Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +40,9 @@ class Sector(Shape):
 
     def impossible(self, value: Value) -> str:
         return more_than_a_turn(value(self.opening))
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (*around(value(self.radius) * s[0], (s[1] - HALF) * part_of_turn(value(self.opening))), 0)
 
     def measure(self, value: Value) -> Any:
         r = value(self.radius)

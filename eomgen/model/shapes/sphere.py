@@ -1,12 +1,13 @@
 """Sphere: a solid ball."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, on_ball
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,9 @@ class Sphere(Shape):
     def outline(self, value: Value) -> tuple[Line, ...]:
         r = value(self.radius)
         return circle(r), ((0.0, 0.0), (r, 0.0))
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return on_ball(value(self.radius) * s[0], s[1], s[2])
 
     def measure(self, value: Value) -> Any:
         return Fraction(4, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.radius)

@@ -1,12 +1,13 @@
 """Spherical shell: a thin hollow ball."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, on_ball
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +20,9 @@ class SphericalShell(Shape):
 
     def outline(self, value: Value) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return on_ball(value(self.radius), s[0], s[1])
 
     def measure(self, value: Value) -> Any:
         return 4 * value(PI) * value(self.radius) * value(self.radius)

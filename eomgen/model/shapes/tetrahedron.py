@@ -1,5 +1,6 @@
 """Tetrahedron: a solid with four corners."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar
@@ -30,6 +31,12 @@ class Tetrahedron(Shape):
 
     def impossible(self, value: Value) -> str:
         return "" if self.measure(value) else "its four vertices lie in one plane"
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        """a + s_1 (b - a) + s_1 s_2 (c - b) + s_1 s_2 s_3 (d - c)"""
+        a, b, c, d = self._corners(value)
+        steps = ((s[0], minus(b, a)), (s[0] * s[1], minus(c, b)), (s[0] * s[1] * s[2], minus(d, c)))
+        return vector_of(a[i] + sum(part * step[i] for part, step in steps) for i in range(3))
 
     def measure(self, value: Value) -> Any:
         first, *others = self._corners(value)

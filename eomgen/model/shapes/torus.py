@@ -1,12 +1,13 @@
 """Torus: a solid ring of round section."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,10 @@ class Torus(Shape):
 
     def impossible(self, value: Value) -> str:
         return "" if value(self.minor) <= value(self.major) else "'minor' is larger than 'major'"
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        out, z = around(value(self.minor) * s[0], s[1])
+        return (*around(value(self.major) + out, s[2]), z)
 
     def measure(self, value: Value) -> Any:
         return 2 * value(PI) * value(PI) * value(self.major) * value(self.minor) * value(self.minor)

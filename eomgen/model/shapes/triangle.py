@@ -1,11 +1,13 @@
 """Triangle: a thin right-angled plate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
 from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
+from eomgen.symbolic.expression.spatial import Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +25,9 @@ class Triangle(Shape):
     def outline(self, value: Value) -> tuple[Line, ...]:
         w, h = value(self.width), value(self.height)
         return (((0.0, 0.0), (w, 0.0), (0.0, h), (0.0, 0.0)),)
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        return (value(self.width) * s[0], value(self.height) * s[1] * (1 - s[0]), 0)
 
     def measure(self, value: Value) -> Any:
         return Fraction(1, 2) * value(self.width) * value(self.height)

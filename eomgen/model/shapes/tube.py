@@ -1,13 +1,14 @@
 """Tube: a round bar with a concentric bore."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, MassProperties, Value, diagonal
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Value, around, between, diagonal
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.expression.spatial import ZERO
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,10 @@ class Tube(Hollow):
     kind: ClassVar[str] = "tube"
     dimension: ClassVar[int] = 3
     length: Length
+
+    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+        radius = between(value(self.inner), value(self.radius), s[0])
+        return (*around(radius, s[1]), value(self.length) * (s[2] - HALF))
 
     def measure(self, value: Value) -> Any:
         R, r = value(self.radius), value(self.inner)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -14,6 +14,8 @@ from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import numbers_in
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate
+from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.inertia.picture import inertia_picture, values_at_start
@@ -61,12 +63,16 @@ class Inertia(Result):
         results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
         axes: the principal axes in numbers, the rows of R, by "plate" or "O".
         steps: how they are found.
+        stated: all of it, by the bodies of which it is said.
+        start: where moving bodies are taken in numbers; {}: parameters or the start have none.
     """
 
     system: System
     results: dict[str, Quantity]
     axes: dict[str, list[list[float]]]
     steps: tuple[Step, ...]
+    stated: tuple[Stated, ...] = ()
+    start: State = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Quantity:
         return self.results[name]
@@ -85,6 +91,10 @@ class Inertia(Result):
             MissingValues: parameters without a value.
         """
         return inertia_picture(self.system, self.axes)
+
+    def certify(self) -> Certificate:
+        """Check shapes, parts and all that is stated of them against quadratures of what the shapes fill."""
+        return Certificate(tuple(mass_checks(self.system.motion, self.stated, self.start or tried(self.system.scope))))
 
     def entries(self) -> dict[str, Any]:
         """For machines."""
@@ -115,6 +125,11 @@ class _Report:
     named: tuple[str, ...]
     about: str | None
     axis: str | None
+
+    @cached_property
+    def stated(self) -> list[Stated]:
+        """What was said so far."""
+        return []
 
     @cached_property
     def start(self) -> State:
@@ -162,7 +177,7 @@ class _Report:
         axes = {key or "together": rows for _, _, (key, rows) in made if rows is not None}
         steps = (data_step(self.system), _conventions(), *(step for step, _, _ in made))
         values = {name: self._quantity(r) for name, r in named_results(results).items()}
-        return Inertia(self.system, values, axes, steps)
+        return Inertia(self.system, values, axes, steps, tuple(self.stated), self.start)
 
     def _quantity(self, entry: InertiaEntry) -> Quantity:
         values = numbers_in((entry.value,), self.system.scope, self.start)
@@ -173,7 +188,7 @@ class _Report:
 
     def _centroidal(self, sum: Sum, of: str, bodies: tuple[str, ...]) -> Section:
         motion = self.system.motion
-        return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies))
+        return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies), bodies)
 
     def _step(self, title: str, key: str, section: Section, axis: tuple[Vector, Vector] | None = None) -> Any:
         """A section as a step, its results, and its principal axes in numbers."""
@@ -184,6 +199,7 @@ class _Report:
         if section.silent:
             silent = ", ".join(f"'{body}'" for body in section.silent)
             words = f"No moments: of the inertia of {silent} the model says nothing."
+            self._state(section, masses, None, None)
             return Step(key, title, (*statements, Prose((words,)))), masses, (section.of, None)
         statements += [*moments_grid(section), conventions_grid(section)]
         if any(text_size(result.value) > LONGEST for result in tensor):  # the table then holds numbers
@@ -193,7 +209,14 @@ class _Report:
         statements += [line(section, result) for result in more]
         principal, moments, rows = principal_statements(section)
         results = [*(masses if section.centroidal else []), *tensor, *more, *moments]
+        self._state(section, results, rows, axis)
         return Step(key, title, (*statements, *principal)), results, (section.of, rows)
+
+    def _state(self, section: Section, results: Sequence[InertiaEntry], rows: Any, axis: Any) -> None:
+        """What a section says, for its proof."""
+        values = {result.name.partition("(")[0]: result.value for result in results}
+        in_ground = not (section.centroidal and section.of)
+        self.stated.append(Stated(section.of, section.bodies, in_ground, section.point, values, rows, axis))
 
     def _about(self, bodies: tuple[str, ...]) -> Any:
         """The bodies together about a point, and about an axis through it."""
@@ -205,7 +228,7 @@ class _Report:
                 "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
             )
         flat = bool(flat_bodies(self.system.motion, bodies))
-        section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False)
+        section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies)
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
         return self._step(title, "inertia_about", section, axis)
 

@@ -46,6 +46,7 @@ class Section:
         flat: only the moment about z is known.
         centroidal: the point is the mass centre.
         silent: bodies that have a mass and say nothing of their inertia: no moments are known.
+        bodies: whose rows they are.
     """
 
     sum: Sum
@@ -54,6 +55,7 @@ class Section:
     flat: bool
     centroidal: bool
     silent: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
 
     @property
     def plane(self) -> bool:
@@ -242,15 +244,16 @@ def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | Non
 
 
 def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | None:
-    """The rows of R in floating point: the exact ones, else by the eigenvectors of the tensor."""
+    """The rows of R in floating point: the exact ones; eigenvectors of the tensor where these have no value, as where
+    a product vanishes in the state alone."""
     if found.axes is not None and len(order([x for row in found.axes for x in row])) < 5000:
         flat = section.sum.numbers([x for row in found.axes for x in row])
-        if flat is not None and np.isfinite(flat).all():
+        if flat is not None and np.allclose(np.reshape(flat, (3, 3)) @ np.reshape(flat, (3, 3)).T, np.eye(3)):
             return [list(row) for row in np.reshape(flat, (3, 3))]
-    entries = section.sum.numbers([x for row in section.tensor for x in row])
-    if entries is None:
+    entries, moments = (section.sum.numbers(x) for x in ([x for row in section.tensor for x in row], found.moments))
+    if entries is None or moments is None:
         return None
-    axes = np.linalg.eigh(np.reshape(entries, (3, 3)))[1].T
+    axes = np.linalg.eigh(np.reshape(entries, (3, 3)))[1].T[np.argsort(np.argsort(moments))]
     axes[2] = np.cross(axes[0], axes[1])
     return [list(map(float, row)) for row in axes]
 

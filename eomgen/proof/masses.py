@@ -1,0 +1,302 @@
+"""Bodies, what is stated of their masses -> checks: each shape against a quadrature of all that it fills.
+
+A shape is the image of [0, 1]^d under maps of its own (`cells`), which know nothing of mass or inertia. With weights
+w of Gauss and Legendre times the measure of the map, and from them alone,
+
+    S = sum w [r; 1] [r; 1]^T      (4 x 4; of a body that is elsewhere X S X^T, of several the sum)
+
+holds m, m r_C and the second moments P of a body about any origin; I = tr(P) 1 - P. No parallel axes are used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.model.composite import PlacedPiece, pose_of
+from eomgen.model.shapes import MassProperties, Shape
+from eomgen.model.shapes.base import Cell
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Pose, Vector
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
+IMAGINARY = 1e-30  # a step without rounding: the derivative of f is Im f(s + i h) / h
+QUADRATURE = "quadrature"
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What is stated of bodies about a point.
+
+    Args:
+        of: how they are called.
+        bodies: by name, of which the sum is taken.
+        in_ground: in ground axes; else in those of the one body.
+        point: about which, in these axes.
+        values: by name without what they are of: "m", "x_C", "I_xx", "J_xy", "I_1", "k_1", "P_x", "J_P", "J_axis".
+        axes: the principal axes, the rows of R, in numbers; None where they are not known.
+        axis: (a point of it, its direction) of "J_axis".
+    """
+
+    of: str
+    bodies: tuple[str, ...]
+    in_ground: bool
+    point: Vector
+    values: Mapping[str, Scalar]
+    axes: Sequence[Sequence[float]] | None = None
+    axis: tuple[Vector, Vector] | None = None
+
+
+def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node, float]) -> Iterator[Check]:
+    """Of every shape, of the parts of bodies, and of all that is stated.
+
+    Args:
+        numbers: of all symbols that stand in it.
+    """
+    proof = _Proof(motion, numbers)
+    bodies = tuple(dict.fromkeys(body for each in stated for body in each.bodies))
+    yield from proof.shapes(bodies)
+    composite = [body for body in bodies if motion.scope.model.bodies[body].parts is not None]
+    if composite:
+        wrong = next(filter(None, map(proof.wrong_parts, composite)), "")
+        yield checked("the parts of every body add up", wrong, QUADRATURE)
+    wrong = next((f"{name} of {each.of or 'all'}{why}" for each in stated for name, why in proof.wrong(each)), "")
+    yield checked("masses, centres, moments and products of inertia are those of the bodies' points", wrong, QUADRATURE)
+    principal = [each for each in stated if each.axes is not None]
+    if principal:
+        wrong = next(filter(None, map(proof.wrong_axes, principal)), "")
+        yield checked("principal axes are right-handed and make the tensor diagonal", wrong, "floating point")
+
+
+def tried(scope: Scope) -> dict[Node, float]:
+    """Values of parameters without one, and somewhere for what moves: what is stated holds anywhere."""
+    rng, symbols = Random(3), scope.symbols
+    known = {x: float(v) for x, v in values_of_parameters(scope, rng).items()}
+    return known | {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
+
+
+# -- quadrature ----------------------------------------------------------------------------------------------------
+
+
+def filled(shape: Shape, value: Any) -> tuple[float, np.ndarray]:
+    """(length, area or volume, S of the shape with mass 1)."""
+    if shape.is_point:
+        return 0.0, np.diag([0.0, 0.0, 0.0, 1.0])
+    parts = [_cell(cell, shape.dimension) for cell in shape.cells(value)]
+    weights, places = np.concatenate([w for w, _ in parts]), np.concatenate([r for _, r in parts])
+    measure = float(weights.sum())
+    rows = np.hstack([places, np.ones((len(places), 1))])
+    return abs(measure), (rows * (weights / measure)[:, None]).T @ rows
+
+
+def _cell(cell: Cell, dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """(weights, places) of the nodes of Gauss and Legendre in one cell."""
+    x, w = np.polynomial.legendre.leggauss(NODES[dimension - 1])
+    s = np.array(list(product((x + 1) / 2, repeat=dimension))).T
+    weights = np.prod(np.array(list(product(w / 2, repeat=dimension))), axis=1)
+    slopes = np.array([_at(cell, s + _step(dimension, k)).imag / IMAGINARY for k in range(dimension)])
+    return weights * _measure(slopes), _at(cell, s.astype(complex)).real.T
+
+
+def _step(dimension: int, k: int) -> np.ndarray:
+    return np.array([[IMAGINARY * 1j * (i == k)] for i in range(dimension)])
+
+
+def _at(cell: Cell, s: np.ndarray) -> np.ndarray:
+    return np.array([np.broadcast_to(x, s.shape[1:]) for x in cell(s)])
+
+
+def _measure(slopes: np.ndarray) -> np.ndarray:
+    """det(dr/ds) of a volume, and of a surface in the plane, with its sign; else sqrt(det(dr/ds . dr/ds))."""
+    columns = np.moveaxis(slopes, -1, 0)  # nodes x parts x 3
+    if columns.shape[1] == 3:
+        return np.linalg.det(columns)
+    if columns.shape[1] == 2 and not columns[:, :, 2].any():
+        return np.linalg.det(columns[:, :, :2])
+    found: np.ndarray = np.sqrt(np.linalg.det(columns @ np.swapaxes(columns, 1, 2)))
+    return found
+
+
+def _moments_of(mass: MassProperties, numbers: Any) -> np.ndarray:
+    """S of what is stated: P = tr(I) 1 / 2 - I + m c c^T."""
+    m, *flat = numbers((mass.m, *mass.com, *(x for row in mass.I for x in row)))
+    c, I = np.array(flat[:3]), np.reshape(flat[3:], (3, 3))
+    P = np.trace(I) / 2 * np.eye(3) - I + m * np.outer(c, c)
+    return np.block([[P, m * c[:, None]], [m * c[None, :], np.array([[m]])]])
+
+
+def _tensor(P: np.ndarray) -> np.ndarray:
+    found: np.ndarray = np.trace(P) * np.eye(3) - P
+    return found
+
+
+def _in_order(found: Mapping[str, float]) -> dict[str, float]:
+    """The principal moments and radii ascending, which stand in another order where it depends on the values."""
+    groups = [[name for name in (f"{letter}_{k}" for k in (1, 2, 3)) if name in found] for letter in "Ik"]
+    ordered = [dict(zip(names, sorted(found[name] for name in names), strict=True)) for names in groups]
+    return {**found, **ordered[0], **ordered[1]}
+
+
+def _differs(A: np.ndarray, B: np.ndarray) -> bool:
+    """Of the 4 x 4, each entry against the mass and the radius of the body."""
+    radius, mass = (
+        max(abs(x) for x in pair) ** 0.5 for pair in ((np.trace(A[:3, :3]), np.trace(B[:3, :3])), (A[3, 3], B[3, 3]))
+    )
+    sizes = np.array([radius, radius, radius, mass])
+    return bool(np.any(abs(A - B) > COMPUTED * np.outer(sizes, sizes)))
+
+
+@dataclass(frozen=True)
+class _Proof:
+    """What is wrong, in words.
+
+    Args:
+        motion: of the bodies.
+        values: of all symbols.
+    """
+
+    motion: Motion
+    values: Mapping[Node, float]
+
+    def numbers(self, scalars: Sequence[Scalar]) -> list[float]:
+        return [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
+
+    def value(self, expression: Expression) -> float:
+        return self.numbers((self.motion.scope.value(expression),))[0]
+
+    # -- shapes ----------------------------------------------------------------------------------------------
+
+    def shapes(self, bodies: Sequence[str]) -> Iterator[Check]:
+        """Each kind once, with the sizes that it has where it is met first."""
+        name = "every shape has the mass centre and the inertia of the points that it fills"
+        wrong, impossible, any_ = "", "", False
+        for body in bodies:
+            part = self.motion.scope.model.bodies[body]
+            for shape in [piece.shape for piece in part.parts or ()] + ([part.shape] if part.shape else []):
+                if shape.impossible(self.value):
+                    impossible = f"the sizes of a {shape.kind} of '{body}' have no values that it can have"
+                    continue
+                any_ = True
+                wrong = wrong or self._wrong_shape(body, shape)
+        if any_:
+            yield checked(name, wrong, QUADRATURE)
+        elif impossible:
+            yield unchecked(name, impossible, QUADRATURE)
+
+    def _wrong_shape(self, body: str, shape: Shape) -> str:
+        measure, S = filled(shape, self.value)
+        stated = shape.of_mass(1, self.motion.scope.value)
+        if _differs(S, _moments_of(stated, self.numbers)):
+            return f"the {shape.kind} of '{body}'"
+        (size,) = self.numbers((shape.measure(self.motion.scope.value),))
+        return f"the size of the {shape.kind} of '{body}'" if abs(size - measure) > COMPUTED * measure else ""
+
+    # -- bodies ----------------------------------------------------------------------------------------------
+
+    def own(self, body: str) -> np.ndarray:
+        """S of a body about its origin, its axes: by quadrature; what is given by numbers as it is given."""
+        if body not in self._known:
+            part = self.motion.scope.model.bodies[body]
+            if part.parts is not None:
+                self._known[body] = sum(map(self._piece, made_of(self.motion.scope, body).pieces))
+            elif part.shape is not None:
+                (m,) = self.numbers((mass_properties(self.motion.scope, body).m,))
+                self._known[body] = m * filled(part.shape, self.value)[1]
+            else:
+                self._known[body] = _moments_of(mass_properties(self.motion.scope, body), self.numbers)
+        return self._known[body]
+
+    @cached_property
+    def _known(self) -> dict[str, Any]:
+        return {}
+
+    def _piece(self, placed: PlacedPiece) -> np.ndarray:
+        X = self._matrix(pose_of(placed.piece, self.motion.scope.value))
+        (m,) = self.numbers((placed.mass.m,))
+        found: np.ndarray = placed.sign * m * (X @ filled(placed.piece.shape, self.value)[1] @ X.T)
+        return found
+
+    def _matrix(self, pose: Pose) -> np.ndarray:
+        """X of [r; 1]"""
+        flat = self.numbers((*(x for row in pose.R for x in row), *pose.p))
+        return np.block(
+            [[np.reshape(flat[:9], (3, 3)), np.array(flat[9:])[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]
+        )
+
+    def wrong_parts(self, body: str) -> str:
+        """The whole against the sum; parts that share a mass have one density."""
+        made = made_of(self.motion.scope, body)
+        if _differs(self.own(body), _moments_of(made.whole, self.numbers)):
+            return f"those of '{body}'"
+        shared = [p for p in made.pieces if p.piece.shape.mass is None]
+        if self.motion.scope.model.bodies[body].mass is None or not shared:
+            return ""
+        densities = [self.numbers((p.mass.m,))[0] / filled(p.piece.shape, self.value)[0] for p in shared]
+        return f"the densities of '{body}' differ" if np.ptp(densities) > COMPUTED * max(map(abs, densities)) else ""
+
+    # -- what is stated --------------------------------------------------------------------------------------
+
+    def about(self, stated: Stated, point: Sequence[float]) -> np.ndarray:
+        """S of its bodies about a point, in its axes."""
+        shift = np.eye(4)
+        shift[:3, 3] = -np.array(point)
+        S = np.zeros((4, 4))
+        for body in stated.bodies:
+            X = shift @ (self._matrix(self.motion.link(body).pose) if stated.in_ground else np.eye(4))
+            S = S + X @ self.own(body) @ X.T
+        return S
+
+    def wrong(self, stated: Stated) -> Iterator[tuple[str, str]]:
+        """(name, difference) of what is not as the points of the bodies say."""
+        expected, sizes = self._expected(stated)
+        names = [name for name in stated.values if name in expected]
+        found = dict(zip(names, self.numbers([stated.values[name] for name in names]), strict=True))
+        for name, x in _in_order(found).items():
+            if not abs(x - expected[name]) <= COMPUTED * sizes[name.partition("_")[0]]:
+                yield name, f": {x:.10g} against {expected[name]:.10g}"
+
+    def _expected(self, stated: Stated) -> tuple[dict[str, float], dict[str, float]]:
+        """(each value, what is large for its kind)"""
+        origin, S = self.about(stated, (0, 0, 0)), self.about(stated, self.numbers(stated.point))
+        m, P = S[3, 3], S[:3, :3]
+        I, moments = _tensor(P), np.linalg.eigvalsh(_tensor(P))
+        found = {"m": m, "J_P": float(np.trace(P))}
+        for i, x in enumerate(AXES):
+            found |= {f"P_{x}": P[i, i], f"I_{i + 1}": moments[i]}
+            found |= {f"I_{x}{y}": I[i, j] for j, y in enumerate(AXES)}
+            found |= {f"J_{x}{y}": P[i, j] for j, y in enumerate(AXES) if i != j}
+            if m:
+                found |= {f"{x}_C": origin[i, 3] / m, f"k_{i + 1}": np.sqrt(max(moments[i], 0.0) / m)}
+        if stated.axis is not None:
+            start, along = (np.array(self.numbers(v)) for v in stated.axis)
+            n = along / np.linalg.norm(along)
+            found["J_axis"] = n @ _tensor(self.about(stated, start)[:3, :3]) @ n
+        large, radius = float(np.trace(abs(I))), np.sqrt(np.trace(abs(origin[:3, :3])) / abs(m)) if m else 1.0
+        return found, {"m": abs(m), "k": radius, **dict.fromkeys("IJP", large), **dict.fromkeys(AXES, radius)}
+
+    def wrong_axes(self, stated: Stated) -> str:
+        """R R^T = 1, det R = 1, R I R^T = diag(I_1, I_2, I_3)."""
+        assert stated.axes is not None
+        R = np.array(stated.axes)
+        I = _tensor(self.about(stated, self.numbers(stated.point))[:3, :3])
+        if abs(R @ R.T - np.eye(3)).max() > COMPUTED or np.linalg.det(R) < 0:
+            return f"those of {stated.of or 'all'} are not three unit vectors, right-handed"
+        moments = self.numbers([stated.values[f"I_{k}"] for k in (1, 2, 3)])
+        left = R @ I @ R.T - np.diag(moments)
+        return f"those of {stated.of or 'all'}" if abs(left).max() > COMPUTED * abs(I).max() else ""

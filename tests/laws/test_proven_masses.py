@@ -1,0 +1,93 @@
+"""The proof of `inertia`: it sees errors that are planted in formulas of shapes, parts and sums."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from known_answers import MODELS
+
+import eomgen
+from eomgen.mechanics.bodies import composition
+from eomgen.model.shapes import MassProperties, Rod, Sector
+from eomgen.report.inertia import result, rows, steps
+from eomgen.verbs.inertia import inertia as verb
+
+PLATE = MODELS / "seeds" / "ch13_p1.toml"
+FRAME = MODELS / "seeds" / "ch18_p2.toml"
+
+
+def wrong_checks(path: Any, **asked: Any) -> list[str]:
+    """The checks that fail."""
+    return [check.name for check in eomgen.inertia(eomgen.load(path), **asked).certify().checks if check.ok is False]
+
+
+def test_a_wrong_shape_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rod of m l^2 / 3 about its middle."""
+    right = Rod.of_mass
+
+    def planted(self: Any, m: Any, value: Any) -> MassProperties:
+        found = right(self, m, value)
+        return replace(found, I=tuple(tuple(4 * x for x in row) for row in found.I))
+
+    monkeypatch.setattr(Rod, "of_mass", planted)
+    assert any(name.startswith("every shape") for name in wrong_checks(MODELS / "sliding_ladder.toml"))
+
+
+def test_parts_that_do_not_add_up_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """m r_C = sum m_k r_k, I = sum (I_k + m_k d_k^2)"""
+    assert eomgen.inertia(eomgen.load(PLATE)).certify()
+    right = composition.composite_of
+
+    def planted(*given: Any) -> Any:
+        made = right(*given)
+        return replace(made, whole=replace(made.whole, com=(made.whole.com[0] * 2, *made.whole.com[1:])))
+
+    monkeypatch.setattr(composition, "composite_of", planted)
+    assert "the parts of every body add up" in wrong_checks(PLATE)
+
+
+def test_wrong_parallel_axes_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """I_P = I_C + m (d.d 1 - d d^T)"""
+    right = rows.InertiaRow.shift
+    monkeypatch.setattr(
+        rows.InertiaRow, "shift", lambda self, point: tuple(tuple(-x for x in r) for r in right(self, point))
+    )
+    assert any(name.startswith("masses, centres") for name in wrong_checks(FRAME))
+
+
+def test_wrong_principal_axes_and_radii_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """R I R^T = diag(I_1, I_2, I_3), k = sqrt(I/m)"""
+    right = steps.axes_in_numbers
+    monkeypatch.setattr(steps, "axes_in_numbers", lambda *given: [[0, 0, 1], [1, 0, 0], [0, 1, 0]])
+    assert any(name.startswith("principal axes") for name in wrong_checks(FRAME))
+    monkeypatch.setattr(steps, "axes_in_numbers", right)
+    monkeypatch.setattr(steps, "_radius", lambda sum, moment: moment)
+    assert any(name.startswith("masses, centres") for name in wrong_checks(FRAME))
+
+
+def test_principal_axes_are_unit_vectors_where_a_product_vanishes_at_the_start() -> None:
+    """sin(theta) cos(theta) = 0 there, by whose sign the axes are told apart in closed form."""
+    for name in ("ball_on_free_hemisphere", "car_axis"):
+        axes = np.array(eomgen.inertia(eomgen.load(MODELS / f"{name}.toml")).axes["together"])
+        assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
+
+
+def test_sizes_that_no_body_has_are_not_called_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What could not be looked at is `unchecked`."""
+    text = '[bodies.b]\nshape = { kind = "sector", mass = 1, radius = 1, opening = 1 }\n'
+    model = eomgen.loads('eomgen = 1\nname = "s"\nspace = "plane"\n' + text)
+    monkeypatch.setattr(Sector, "impossible", lambda self, value: "more than a turn")
+    certificate = eomgen.inertia(model).certify()
+    assert certificate.checks[0].status == "unchecked"
+
+
+def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`certificate` in JSON, null where none is asked; a contradiction is a failure."""
+    model = eomgen.load(FRAME)
+    assert verb(model).payload["certificate"]["ok"] is True
+    assert verb(model, certify=False).payload["certificate"] is None
+    monkeypatch.setattr(result, "polar_results", lambda section: [section.named("J", "P", 1, "kg*m^2")])
+    assert "do not trust" in verb(model, about="AB.end").failed
