@@ -5,6 +5,7 @@
     equations.certify().ok                    # Certificate: the proof
     equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
+    eomgen.generate(model, ("c", "numpy"))    # Generated: texts, write(directory)
     eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
     eomgen.statics(model)                     # Statics: reactions by virtual work and by equilibrium, diagrams
@@ -59,6 +60,7 @@ _HOMES = {
     "model.samples": ("samples",),
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
+    "generated": ("Generated", "generate"),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),

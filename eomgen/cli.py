@@ -339,6 +339,7 @@ def simulate(
 @FOLLOW
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
+@NO_CERTIFY
 @click.option(
     "--baumgarte",
     nargs=2,
@@ -356,6 +357,7 @@ def codegen(
     actuated: str | None,
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
+    no_certify: bool,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen as generated
@@ -377,6 +379,7 @@ def codegen(
             inverse=inverse,
             actuated=names,
             baumgarte=baumgarte,
+            certify=not no_certify,
         )
     return deliver(outcome, _form(wants_json, None))
 

@@ -31,6 +31,7 @@ from eomgen.report.latex import equations_latex
 from eomgen.report.payload import equations_payload
 from eomgen.report.result import Result
 from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.work import Work
@@ -112,9 +113,13 @@ class Equations(Result):
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
         refuse_massless(self.system, self.graph)
+        return reactions_program(self.reaction_values, self._explicit, self.system.inputs)
+
+    @cached_property
+    def reaction_values(self) -> dict[str, Scalar]:
+        """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
         values = determinate(self.reactions)
-        found = dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
-        return reactions_program(found, self._explicit, self.system.inputs)
+        return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
 
     @property
     def _explicit(self) -> Assembly:

@@ -22,6 +22,7 @@ CHAIN = (
     ("equations",),
     ("running",),
     ("pipeline",),
+    ("generated",),
     ("verbs", "notebook"),
     ("shell",),
     ("cli",),

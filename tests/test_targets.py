@@ -19,7 +19,7 @@ from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 import eomgen
 from eomgen.codegen import build
-from eomgen.codegen.files import write_files
+from eomgen.codegen.files import texts_of, write_files
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets import ALL
@@ -205,7 +205,7 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
     assert 1 <= len(partial) < len(found) and all(v.result[1] == pytest.approx(v.x[0] + v.x[1]) for v in partial)
     for v in found:
         assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
-    paths = write_files("roots", program, Description("Roots", "", {}, found), targets=[target], directory=tmp_path)
+    paths = write_files(texts_of("roots", program, Description("Roots", "", {}, found), targets=[target]), tmp_path)
     assert sum(row["dx"][0] is None for row in json.loads(paths[-1].read_text())["vectors"]) == len(partial)
     if target == "c":
         assert self_test(paths[0]).returncode == 0
@@ -295,7 +295,7 @@ def described(program) -> Description:
 def written(tmp_path, target, assembly=None, inputs=None):
     program = right_hand_side(assembly or cart_pole(), {"F": 0} if inputs is None else inputs)
     return write_files(
-        "cart-pole", program, described(program), targets=[target], directory=tmp_path / "new" / "folder"
+        texts_of("cart-pole", program, described(program), targets=[target]), tmp_path / "new" / "folder"
     )
 
 
@@ -317,12 +317,8 @@ def reactions_written(tmp_path, target):
         description, vectors=vectors(reactions), role=REACTIONS, outputs=names, remarks=dict.fromkeys(names, "[N]")
     )
     return write_files(
-        "double_pendulum",
-        equations.program,
-        description,
-        targets=[target],
-        directory=tmp_path,
-        reactions=(reactions, told),
+        texts_of("double_pendulum", equations.program, description, targets=[target], reactions=(reactions, told)),
+        tmp_path,
     )
 
 
@@ -433,7 +429,7 @@ def test_nothing_half_written_is_left(tmp_path, monkeypatch):
     program = right_hand_side(pendulum())
     monkeypatch.setattr(Path, "write_text", full)
     with pytest.raises(RunFailed, match="No space left"):
-        write_files("a", program, described(program), targets=["c"], directory=tmp_path / "out")
+        write_files(texts_of("a", program, described(program), targets=["c"]), tmp_path / "out")
     assert list((tmp_path / "out").iterdir()) == []
 
 
@@ -441,7 +437,7 @@ def test_files_of_several_targets_lie_each_in_a_folder_of_its_own(tmp_path):
     """One target writes into DIR, several into DIR/X/, each with the same test vectors."""
     program = right_hand_side(pendulum())
     one, several = (
-        write_files("p", program, described(program), targets=names, directory=tmp_path / str(len(names)))
+        write_files(texts_of("p", program, described(program), targets=names), tmp_path / str(len(names)))
         for names in (TARGETS[:1], TARGETS)
     )
     assert {path.parent for path in one} == {tmp_path / "1"}

@@ -18,30 +18,24 @@ from eomgen.version import SCHEMA_VERSION
 Emitted = tuple[Program, Description]
 
 
-def write_files(
+def texts_of(
     name: str,
     program: Program,
     description: Description,
     *,
     targets: Sequence[str],
-    directory: Path,
     reactions: Emitted | None = None,
     inverse: Emitted | None = None,
-) -> list[Path]:
-    """Write NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
+) -> dict[str, str]:
+    """{path: text}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
 
     Args:
         name: of the functions: the model file's stem; what is no identifier is made one.
         program: the right-hand side.
         description: title, origin, remarks and test vectors.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
-        directory: where to; made if it is not there.
         reactions: their program and its description, or None where there are none.
         inverse: the same of inverse dynamics, where they are asked for.
-    Returns:
-        The paths written.
-    Raises:
-        RunFailed: the folder cannot be written; nothing is then left behind.
     """
     answers = vectors_text(program, description, reactions, inverse)
     texts: dict[str, str] = {}
@@ -52,6 +46,15 @@ def write_files(
                 files = target.files(emitted[0], identifier(name), emitted[1])
                 texts |= {f"{folder}{file}": text for file, text in files.items()}
         texts[f"{folder}test_vectors.json"] = answers
+    return texts
+
+
+def write_files(texts: Mapping[str, str], directory: Path) -> list[Path]:
+    """The files in their folder, which is made if it is not there; their paths.
+
+    Raises:
+        RunFailed: the folder cannot be written; nothing is then left behind.
+    """
     try:
         return _written(texts, directory)
     except OSError as error:

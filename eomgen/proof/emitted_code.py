@@ -9,7 +9,7 @@ code but the equations: neither the elimination, nor the order of its statements
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -33,37 +33,38 @@ Code = Callable[["Instant"], np.ndarray]
 
 @dataclass(frozen=True)
 class Instant:
-    """A state at which code is tried: t, (q, u), and inputs that are given in place of the model's own."""
+    """A state at which code is tried.
+
+    Args:
+        t, x, p: time, (q, u), parameters.
+        inputs: those that are given in place of the model's own, by name.
+        a: accelerations, where these are given.
+    """
 
     t: float
     x: np.ndarray
-    inputs: tuple[float, ...] | None = None
+    p: Sequence[float] | np.ndarray
+    inputs: Mapping[str, float] = field(default_factory=dict)
+    a: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The equations of one phase, and values of its parameters.
-
-    Args:
-        system, assembly: the equations.
-        p: the parameters, in the model's order.
-    """
+    """The equations of one phase."""
 
     system: System
     assembly: Assembly
-    p: Sequence[float] | np.ndarray
 
     def values(self, at: Instant) -> dict[Node, Any]:
         """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
         symbols = self.assembly.symbols
         nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
-        numbers = (at.t, *at.x, *self.p)
+        numbers = (at.t, *at.x, *at.p)
         found = {node: precise(float(value)) for node, value in zip(nodes, numbers, strict=True)}
-        inputs = symbols.inputs
-        if at.inputs is not None:
-            return found | {node: precise(float(x)) for node, x in zip(inputs.values(), at.inputs, strict=True)}
-        own = evaluate(tuple(self.system.inputs[name] for name in inputs), found, fifty_digits())
-        return found | dict(zip(inputs.values(), own, strict=True))
+        own = [name for name in symbols.inputs if name not in at.inputs]
+        values = evaluate(tuple(self.system.inputs[name] for name in own), found, fifty_digits())
+        given = {symbols.inputs[name]: precise(float(x)) for name, x in at.inputs.items()}
+        return found | given | {symbols.inputs[name]: x for name, x in zip(own, values, strict=True)}
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:
@@ -99,19 +100,22 @@ class Numbers:
         rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
         sizes = 1 + np.max(np.abs(self.rates), initial=0.0)
         parts = {"q' = N u + nu": np.max(np.abs(rates - self.rates), initial=0.0) / sizes}
-        parts["M a = forcing + J^T lam"] = self._of_forces(a)
+        parts["M a = forcing + J^T lam"] = self.left_of_forces(a)
         rows = np.abs(self.J @ a + self.gamma)
         terms = 1 + np.abs(self.J) @ np.abs(a) + np.abs(self.gamma)
         parts["J a + gamma = 0"] = float(np.max(rows / terms, initial=0.0))
         worst = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
         return float(parts[worst]), worst
 
-    def _of_forces(self, a: np.ndarray) -> float:
-        """Of M a - J^T lam = forcing, its rows weighted by 1/sqrt(M_kk), with the lam that leaves least."""
+    def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
+        """Of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), with the lam that leaves least.
+
+        A term counts as no smaller than that of an acceleration of 1 m/s^2 or rad/s^2.
+        """
         weights = np.diag(self.M)
         weights = 1 / np.sqrt(np.where(weights > 0, weights, np.max(weights, initial=0.0) or 1.0))
-        needed = weights * (self.M @ a - self.forcing)
-        terms = weights * (np.abs(self.M) @ np.abs(a) + np.abs(self.forcing))
+        needed = weights * (self.M @ a - self.forcing - acting)
+        terms = weights * (np.abs(self.M) @ (1 + np.abs(a)) + np.abs(self.forcing) + np.abs(acting))
         if not np.all(np.isfinite(needed)):
             return float("nan")
         if len(self.J):
@@ -148,7 +152,7 @@ def _sure(code: Code, instant: Instant) -> bool:
 def _beside(instant: Instant) -> tuple[Instant, ...]:
     """The state, each of its numbers a part in 1e12 larger or smaller by turns."""
     turns = np.where(np.arange(len(instant.x)) % 2, -SOLVED, SOLVED)
-    return tuple(Instant(instant.t, instant.x * (1 + sign * turns), instant.inputs) for sign in (1, -1))
+    return tuple(replace(instant, x=instant.x * (1 + sign * turns)) for sign in (1, -1))
 
 
 def values(

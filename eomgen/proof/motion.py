@@ -110,9 +110,9 @@ def _code(legs: Sequence[Leg]) -> Check:
 
 def _code_of(leg: Leg, name: str) -> Check:
     places = dict.fromkeys([0, *np.linspace(0, len(leg.t) - 1, VISITED)[1:].astype(int).tolist()])
-    at = [Instant(float(leg.t[i]), leg.x[i]) for i in places]
-    motion = Motion(leg.system, leg.assembly, leg.p)
-    return emitted_code.right_hand_side(motion, lambda instant: leg.code(instant.t, instant.x, leg.p), at, name)
+    at = [Instant(float(leg.t[i]), leg.x[i], leg.p) for i in places]
+    motion = Motion(leg.system, leg.assembly)
+    return emitted_code.right_hand_side(motion, lambda instant: leg.code(instant.t, instant.x, instant.p), at, name)
 
 
 # -- the steps -------------------------------------------------------------------------------------

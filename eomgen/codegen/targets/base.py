@@ -97,6 +97,10 @@ class Description:
     outputs: tuple[str, ...] = ()
 
 
+Called = Callable[[float, Sequence[float], Sequence[float], Sequence[float], Sequence[float] | None], Sequence[float]]
+"""(t, x, a, p, inputs or None) -> the outputs; a is () where it is no argument."""
+
+
 @dataclass(frozen=True)
 class Target:
     """A language that programs are written in.
@@ -107,6 +111,8 @@ class Target:
         text: (program, stem, role) -> its functions in the language.
         files: (program, stem, description) -> {file name: text}, ready to be used by others.
         load: the program, callable.
+        run: (those files, program, stem, role) -> (t, x, a, p, inputs or None) -> outputs: the very text that others
+            get, run here; None where nothing here runs the language.
     """
 
     name: str
@@ -114,6 +120,7 @@ class Target:
     text: Callable[[Program, str, Role], str]
     files: Callable[[Program, str, Description], dict[str, str]]
     load: Callable[[Program], Functions]
+    run: Callable[[Mapping[str, str], Program, str, Role], Called] | None = None
 
 
 @dataclass(frozen=True)

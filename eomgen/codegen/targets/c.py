@@ -6,12 +6,24 @@ The reactions alike: `NAME_reactions(..., double *out)`; inverse dynamics has th
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping, Sequence
 
 from eomgen.codegen.build import library
 from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    Functions,
+    Layout,
+    Role,
+    Target,
+    header,
+    layout,
+    used_symbols,
+)
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 from eomgen.codegen.targets.c_solving import solving_text
@@ -294,4 +306,25 @@ def files(program: Program, stem: str, description: Description) -> dict[str, st
     return {f"{name}.c": f"{defined}\n{test}", f"{name}.h": declared}
 
 
-TARGET = Target("c", "C99, no dependencies", c_text, files, load)
+def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Called:
+    """NAME_rhs of the files, compiled."""
+    name = role.main(stem)
+    text = texts[f"{name}.c"].replace(f'#include "{name}.h"\n', texts[f"{name}.h"], 1)
+    function, outputs = getattr(library(text), name), len(program.outputs)
+    reals = ctypes.POINTER(ctypes.c_double)
+    function.argtypes = [ctypes.c_double, *[reals] * (5 if program.accelerations else 4)]
+    function.restype = None
+
+    def called(
+        t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
+    ) -> Sequence[float]:
+        arrays = [(ctypes.c_double * max(len(y), 1))(*y) for y in ((x, a, p) if program.accelerations else (x, p))]
+        acting = None if inputs is None else (ctypes.c_double * max(len(inputs), 1))(*inputs)
+        found = (ctypes.c_double * max(outputs, 1))()
+        function(t, *arrays, acting, found)
+        return found[:outputs]
+
+    return called
+
+
+TARGET = Target("c", "C99, no dependencies", c_text, files, load, run)

@@ -4,13 +4,24 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from eomgen.codegen import solving
 from eomgen.codegen.expressions import Writer
 from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.targets.base import RHS, Description, Functions, Layout, Role, Target, header, layout, used_symbols
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    Functions,
+    Layout,
+    Role,
+    Target,
+    header,
+    layout,
+    used_symbols,
+)
 from eomgen.codegen.targets.samples import python_samples
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric import tolerances
@@ -164,6 +175,21 @@ def files(program: Program, stem: str, description: Description) -> dict[str, st
     return {f"{description.role.main(stem)}.py": f'"""{head}\n"""\n\n{text}'}
 
 
+def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Called:
+    """NAME_rhs of the file, executed."""
+    space: dict[str, Any] = {}
+    exec(compile(texts[f"{role.main(stem)}.py"], role.main(stem), "exec"), space)  # our own text, from the graph
+    function = space[role.main(stem)]
+
+    def called(
+        t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
+    ) -> Sequence[float]:
+        found: Sequence[float] = function(t, x, a, p, inputs) if program.accelerations else function(t, x, p, inputs)
+        return found
+
+    return called
+
+
 def _constants(bodies: Layout) -> list[str]:
     writer = Writer(bodies.calls(_call), bodies.names)
     parameters = list(bodies.program.symbols.parameters.values())
@@ -251,4 +277,4 @@ def _solving_text(solve: Solve) -> str:
     return "\n".join([*limits, "", text[text.index("\ndef ") :], "", sizes, zeros, _SOLVED])
 
 
-TARGET = Target("numpy", "Python with numpy", python_text, files, load)
+TARGET = Target("numpy", "Python with numpy", python_text, files, load, run)

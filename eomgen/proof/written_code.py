@@ -1,0 +1,152 @@
+"""Files of generated code -> checks: the very text that is written is run and held against the symbols."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eomgen.codegen.program import Program
+from eomgen.codegen.rhs import target_named
+from eomgen.codegen.targets.base import RHS, Role, Vector
+from eomgen.errors import RunFailed, ToolMissing
+from eomgen.mechanics.bodies.armature import joint_row
+from eomgen.mechanics.equations.system import System
+from eomgen.proof import emitted_code, trials
+from eomgen.proof.check import Check, unchecked
+from eomgen.proof.emitted_code import Code, Instant, Motion
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+
+@dataclass(frozen=True)
+class Written:
+    """One function of generated code.
+
+    Args:
+        target: name of the language.
+        texts: its files, {name: text}.
+        program, stem, role: what was written, under which names.
+        vectors: the states of its test vectors.
+    """
+
+    target: str
+    texts: Mapping[str, str]
+    program: Program
+    stem: str
+    role: Role
+    vectors: tuple[Vector, ...]
+
+    @property
+    def name(self) -> str:
+        return f"{self.role.main(self.stem)} in {self.target}"
+
+    @property
+    def instants(self) -> tuple[Instant, ...]:
+        """The states of the vectors."""
+        inputs = tuple(self.program.symbols.inputs)
+        return tuple(
+            Instant(
+                v.t, np.array(v.x), v.p, dict(zip(inputs, v.inputs, strict=True)) if v.inputs else {}, np.array(v.a)
+            )
+            for v in self.vectors
+        )
+
+    def code(self) -> Code | None:
+        """The function as it is written; None where nothing runs the language.
+
+        Raises:
+            ToolMissing, RunFailed: its compiler is not there, or refuses it.
+        """
+        run = target_named(self.target).run
+        if run is None:
+            return None
+        called, inputs = run(self.texts, self.program, self.stem, self.role), tuple(self.program.symbols.inputs)
+
+        def at(instant: Instant) -> np.ndarray:
+            given = [instant.inputs[name] for name in inputs] if inputs and instant.inputs else None
+            return np.array(called(instant.t, instant.x.tolist(), instant.a.tolist(), list(instant.p), given))
+
+        return at
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What a function of generated code is held against.
+
+    Args:
+        motion: the equations of motion.
+        values: of the role "reactions": its outputs by name, in q, u and a.
+        actuators: of the role "inverse": what its outputs act along.
+    """
+
+    motion: Motion
+    values: Mapping[str, Scalar]
+    actuators: Sequence[str] = ()
+
+    def check(self, written: Written, start: Sequence[Instant]) -> Check:
+        """The written function at the start and at the states of its test vectors."""
+        name = f"{written.name} gives the symbols' numbers"
+        try:
+            code = written.code()
+        except (ToolMissing, RunFailed) as error:
+            return unchecked(name, error.what, "run")
+        if code is None:
+            return unchecked(name, f"nothing here runs {written.target}", "run")
+        if written.role is RHS:
+            return emitted_code.right_hand_side(self.motion, code, (*start, *written.instants), name)
+        if self.actuators:
+            return self._inverse(code, written.instants, name)
+        return emitted_code.values(
+            name, self.motion, self.values, code, (*start, *written.instants), self._accelerations
+        )
+
+    def _accelerations(self, at: Instant) -> Mapping[Node, float]:
+        """a by dense linear algebra."""
+        found = trials.accelerations_at(self.motion.assembly, self.motion.values(at))
+        return dict(zip(self.motion.assembly.symbols.a, found.tolist(), strict=True))
+
+    def _inverse(self, code: Code, at: Iterable[Instant], name: str) -> Check:
+        """tau put back as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""
+        system = self.motion.system
+        columns = {actuator: acting(system, actuator) for actuator in self.actuators if actuator not in system.inputs}
+
+        def wrong(instant: Instant) -> str | None:
+            free = self.motion.numbers(instant)
+            a = instant.a
+            if len(free.J):
+                a = a - np.linalg.lstsq(free.J, free.J @ a + free.gamma, rcond=COMPUTED)[0]
+            tau = dict(zip(self.actuators, code(replace(instant, a=a)).tolist(), strict=True))
+            moved = replace(instant, inputs={**instant.inputs, **{n: x for n, x in tau.items() if n in system.inputs}})
+            numbers, values = self.motion.numbers(moved), self.motion.values(moved)
+            push = np.zeros(len(a))
+            for actuator, column in columns.items():
+                push += tau[actuator] * np.array([float(x) for x in evaluate(column, values, fifty_digits())])
+            left = numbers.left_of_forces(a, push)
+            return (
+                f"M a + c = Q is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
+                if not left <= COMPUTED
+                else ""
+            )
+
+        how = "its forces put into the equations with 50 digits"
+        return emitted_code.along(name, how, at, wrong, cost=len(order(self.motion.scalars)))
+
+
+def acting(system: System, name: str) -> tuple[Scalar, ...]:
+    """The generalized forces of a unit force along a coordinate or a speed, or in a body's joint."""
+    symbols = system.symbols
+    if name in [u.name for u in symbols.u]:
+        return tuple(int(u.name == name) for u in symbols.u)
+    if name in [q.name for q in symbols.q]:
+        return tuple(system.scope.N[[q.name for q in symbols.q].index(name)])
+    row = joint_row(system.motion, name, 0)
+    return tuple(row.get(k, 0) for k in range(len(symbols.u)))
+
+
+def start_of(t: float, x0: np.ndarray | None, p0: np.ndarray | None) -> tuple[Instant, ...]:
+    """The model's own start; () where a value is missing."""
+    return () if x0 is None or p0 is None else (Instant(t, x0, p0),)

@@ -1,0 +1,79 @@
+"""Generated code carries its proof: the text that is written is run, and an error in any function of it is seen."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.codegen import build
+from eomgen.codegen.targets import ALL
+
+MODELS = Path(__file__).parent.parent.parent / "models"
+needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
+each_target = pytest.mark.parametrize(
+    "target", [pytest.param(target.name, marks=needs_cc if target.name == "c" else ()) for target in ALL if target.run]
+)
+
+
+def generated(target: str, name: str = "cart_pole"):
+    actuated = () if name == "cart_pole" else ("alpha",)
+    return eomgen.generate(eomgen.load(MODELS / f"{name}.toml"), (target,), name=name, actuated=actuated)
+
+
+def failing(found) -> set[str]:
+    return {check.name for check in found.certify().checks if check.status == "fails"}
+
+
+@each_target
+@pytest.mark.parametrize("name", ["cart_pole", "four_bar"])
+def test_every_function_that_is_written_is_run(target, name):
+    """Equations, reactions and inverse dynamics in each language, trees and loops."""
+    certificate = generated(target, name).certify()
+    assert certificate.ok, str(certificate)
+    held = [check.name for check in certificate.checks if check.status == "holds"]
+    for role in ("rhs", "reactions", "inverse"):
+        assert f"{name}_{role} in {target} gives the symbols' numbers" in held
+
+
+@each_target
+@pytest.mark.parametrize("role", ["rhs", "reactions", "inverse"])
+def test_a_wrong_letter_in_one_file_is_seen(target, role):
+    """The cosine of a joint's angle written as its sine, in one function alone."""
+    found = generated(target)
+    texts = {p: t.replace("cos(theta)", "sin(theta)") if f"_{role}." in p else t for p, t in found.texts.items()}
+    assert texts != found.texts
+    found.__dict__["texts"] = texts
+    assert failing(found) == {f"cart_pole_{role} in {target} gives the symbols' numbers"}
+
+
+@needs_cc
+def test_code_that_is_wrong_is_not_written(monkeypatch, tmp_path):
+    """A compiler that bends sine: exit 3, no files, the certificate in JSON; with --no-certify the files come."""
+    script = tmp_path / "cc"
+    script.write_text(f'#!/bin/sh\nexec {build.compiler()} -Dsin=tanh "$@"\n')
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    words = ["codegen", str(MODELS / "simple_pendulum.toml"), "-o", str(tmp_path / "out"), "--json"]
+    found = CliRunner().invoke(main, words)
+    told = json.loads(found.stdout)
+    assert found.exit_code == 3 and told["files"] == [] and told["certificate"]["ok"] is False
+    assert not (tmp_path / "out").exists()
+    free = CliRunner().invoke(main, [*words, "--no-certify"])
+    assert free.exit_code == 0 and len(json.loads(free.stdout)["files"]) == 5
+
+
+def test_a_language_that_nothing_here_runs_is_unchecked(monkeypatch):
+    """No contradiction and no proof: 'could not be checked' is its own word."""
+    silent = [replace(target, run=None) for target in ALL]
+    monkeypatch.setattr("eomgen.codegen.rhs.ALL", tuple(silent))
+    certificate = generated("numpy").certify()
+    left = {check.name: check.detail for check in certificate.checks if check.status == "unchecked"}
+    assert left["cart_pole_rhs in numpy gives the symbols' numbers"] == "nothing here runs numpy"
+    assert certificate.ok  # the equations hold
