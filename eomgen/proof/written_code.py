@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
-from eomgen.codegen.targets.base import RHS, Role, Vector
+from eomgen.codegen.targets.base import RHS, Role, TestVector
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.system import System
@@ -38,7 +38,7 @@ class Written:
     program: Program
     stem: str
     role: Role
-    vectors: tuple[Vector, ...]
+    vectors: tuple[TestVector, ...]
 
     @property
     def name(self) -> str:
