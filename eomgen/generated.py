@@ -21,7 +21,7 @@ from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import Motion
 from eomgen.proof.written_code import Judged, Written, start_of
-from eomgen.running import pulling
+from eomgen.questions.run import pulling
 from eomgen.version import __version__
 
 

@@ -16,7 +16,7 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion
-from eomgen.running import run
+from eomgen.questions.run import run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_change import modes_at_start
 from eomgen.simulation.result import Trajectory

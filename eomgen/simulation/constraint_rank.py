@@ -18,6 +18,8 @@ REMEMBERED = 4  # steps
 ARMED = 1.4  # of what is near
 DEEP = 1e-3  # of an interval: how closely the least nearness in it is sought
 
+PLACE = "a dead centre or a change point"
+
 Measure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 

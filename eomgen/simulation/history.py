@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.model.parts import Model
-from eomgen.simulation.contact_phases import Plan, passed
 from eomgen.simulation.endings import Condition, met
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import told
+from eomgen.simulation.motion import Plan, passed
 from eomgen.simulation.phase_change import Course, at_start, course_of
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.phase_run import PhaseRun

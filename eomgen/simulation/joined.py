@@ -1,16 +1,19 @@
-"""Stretches -> Trajectory: all phases in one table."""
+"""The phases of a motion as they were run -> Trajectory: all in one table, reactions too."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from eomgen.errors import DerivationError
 from eomgen.simulation.configuration import changed
+from eomgen.simulation.first_slide import begun
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.phase_change import Course
 from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.simulation.step_states import measured
 
@@ -50,7 +53,7 @@ def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
 def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Coordinates and speeds of all phases, each in the order in which it comes."""
     coordinates = dict.fromkeys(name for stretch in runs for name in stretch.phase.coordinates)
-    speeds = dict.fromkeys(name for stretch in runs for name in stretch.phase.speeds)
+    speeds = dict.fromkeys(name for stretch in runs for name in stretch.phase.shown)
     return tuple(coordinates), tuple(speeds)
 
 
@@ -69,7 +72,27 @@ def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
     if not found:
         return None, None
     gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)
-    return float(gap), float(gap_rate)
+    holds = any(s.phase.projection is not None and s.phase.projection.speeds for s in runs)
+    return float(gap), float(gap_rate) if holds else None
+
+
+def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
+    """The trajectory with its reactions as columns; what has none, and why, in its remark.
+
+    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
+    """
+    try:
+        made = {id(s.phase): ReactionColumns(s.phase.reactions, s.phase.rhs) for s in runs}
+    except DerivationError as error:
+        return replace(full, remark=f"No reactions: {error.what}.")
+    found: dict[str, np.ndarray] = {}
+    for s, phase in zip(runs, full.phases, strict=True):
+        columns, model, t = made[id(s.phase)], s.phase, s.run.t
+        x = begun(t, model.inner(s.run.x), model.rhs.at(model.p), model.slowest)
+        for name, column in zip(columns.names, columns.along(t, x, model.p).T, strict=True):
+            found.setdefault(name, np.zeros(len(full.t)))[slice(*phase.rows)] = column
+    always = dict.fromkeys(name for columns in made.values() for name in columns.indeterminate)
+    return replace(full, reactions=found, units=_units(made.values()), remark=_remark(full.t, found, tuple(always)))
 
 
 def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajectory:
@@ -108,3 +131,24 @@ def told(course: Course, stretch: PhaseRun) -> str:
         return f"{after.failure} {when}"
     phrases = changed(course.model, stretch.here.configuration, after.configuration)
     return f"{', '.join(phrases) or 'the contacts change and return'} {when}" + after.impact * ", without rebound"
+
+
+def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
+    return {named.name: named.unit for each in columns for named in each.asked}
+
+
+def _remark(t: np.ndarray, found: dict[str, np.ndarray], always: tuple[str, ...]) -> str:
+    """What is nan, and since when."""
+    parts = []
+    if always:
+        parts.append(f"Statically indeterminate: {_few(always)}.")
+    at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
+    singular = [name for name, gone in at_times.items() if gone.any()]
+    if singular:
+        first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
+        parts.append(f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}.")
+    return " ".join(parts)
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"

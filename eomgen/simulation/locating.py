@@ -27,9 +27,9 @@ from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
 from eomgen.simulation.arrival import Arrival, first_arrival
 from eomgen.simulation.configurations import Configurations
+from eomgen.simulation.constraint_rank import PLACE
 from eomgen.simulation.measures import nearness_of
 from eomgen.simulation.projection import projection_of
-from eomgen.simulation.singular_crossing import PLACE
 from eomgen.simulation.ways import Way
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import inner

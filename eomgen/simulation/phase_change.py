@@ -14,13 +14,15 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.bodies.contact_modes import ContactMode
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.stabilization import PullBack
-from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.initial_state import Start
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
-from eomgen.simulation.configuration import Configuration, bounds_of, on_pieces, paths_of
+from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces, paths_of
 from eomgen.simulation.contact_decision import settled
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.impact import Loose
@@ -38,6 +40,7 @@ class PhaseStart:
         configuration: of the contacts from here on.
         impact: whether velocities jump here.
         failure: why it cannot go on, or "".
+        begun: of the first, what the start values were changed to.
     """
 
     t: float
@@ -45,6 +48,7 @@ class PhaseStart:
     configuration: Configuration
     impact: bool = False
     failure: str = ""
+    begun: Start | None = None
 
 
 @dataclass(frozen=True)
@@ -85,9 +89,15 @@ class Course:
         return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
-def course_of(model: Model, p: np.ndarray, target: str | None = None, rates: PullBack | None = None) -> Course:
-    """The phases of a model, none of them made yet; rates: of Baumgarte's rows."""
-    return Course(model, PhaseModels(model, p, target, rates))
+def course_of(
+    model: Model,
+    p: np.ndarray,
+    target: str | None = None,
+    rates: PullBack | None = None,
+    derived: tuple[System, Assembly] | None = None,
+) -> Course:
+    """The phases of a model, none of them made yet; rates, derived: as of PhaseModels."""
+    return Course(model, PhaseModels(model, p, target, rates, derived))
 
 
 def at_start(
@@ -99,9 +109,12 @@ def at_start(
         DerivationError: the ties do not hold at the start.
     """
     pieces = {body: 0 for body in paths_of(course.model)}
-    values, away = _closed_or_open(course, t, pieces, parameters, start)
+    (begun, values), away = _closed_or_open(course, t, pieces, parameters, start)
+    if not has_phases(course.model):
+        return PhaseStart(t, values, Configuration(), begun=begun)
     pieces = {body: _piece_at(course, body, t, values) for body in pieces}
-    return _decided(course, t, values, pieces, before=plain(course.model, pieces, away), ended=frozenset())
+    here = _decided(course, t, values, pieces, before=plain(course.model, pieces, away), ended=frozenset())
+    return replace(here, begun=begun)
 
 
 def _closed_or_open(
@@ -110,19 +123,18 @@ def _closed_or_open(
     pieces: Mapping[str, int],
     parameters: Mapping[str, float] | None,
     start: Mapping[str, float] | None,
-) -> tuple[dict[str, float], tuple[str, ...]]:
-    """(coordinates and rates at the start, the contacts open there): none, where the values allow it."""
+) -> tuple[tuple[Start, dict[str, float]], tuple[str, ...]]:
+    """((the start, coordinates and rates there), the contacts open there): none, where the values allow it."""
 
-    def values(away: Sequence[str]) -> dict[str, float]:
-        phase = course.phase_models.of(plain(course.model, pieces, away))
-        return phase.values(t, phase.state(start_state(phase.system, parameters, start)))
+    def values(away: Sequence[str]) -> tuple[Start, dict[str, float]]:
+        return course.phase_models.of(plain(course.model, pieces, away)).begun(t, parameters, start)
 
     try:
         return values(()), ()
     except DerivationError:
         if not course.phase_models.ends:
             raise
-    free = values(course.phase_models.ends)
+    _, free = values(course.phase_models.ends)
     _refuse_overlap(course, t, free)
     away = tuple(name for name, (gap, rate) in course.loose.gaps(t, free).items() if _apart(gap, rate, free))
     return values(away), away

@@ -10,18 +10,21 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.constraints.edges import edges_of
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import is_conservative, refuse_massless
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.constraint_rank import Nearness
 from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopped_below
-from eomgen.simulation.measures import nearness_of
+from eomgen.simulation.measures import Undetermined, nearness_of, undetermined_of
 from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.slopes import slope_of
@@ -40,12 +43,14 @@ class PhaseModel:
 
     Args:
         watch: its system, and what its contacts say.
+        declared: the system over the speeds that the model declares; the state may hold more (see `integrated_system`).
         assembly: the equations of motion, friction included.
         p: the parameters' values.
         target: of the emitted code.
     """
 
     watch: ContactEvents
+    declared: System
     assembly: Assembly
     p: np.ndarray
     target: str | None
@@ -100,6 +105,31 @@ class PhaseModel:
     def conservative(self) -> bool:
         return is_conservative(self.system, self.assembly)
 
+    @cached_property
+    def declared_assembly(self) -> Assembly:
+        """The equations of motion over the speeds that the model declares."""
+        if self.declared is self.system:
+            return self.assembly
+        return with_friction(self.declared, recursive.assemble(self.declared))
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The speeds that a user sees."""
+        return tuple(u.name for u in self.declared.symbols.u)
+
+    def begun(self, t: float, parameters: Values | None, start: Values | None) -> tuple[Start, dict[str, float]]:
+        """(the start at which all ties hold, coordinates, rates and speeds by name).
+
+        Raises:
+            DerivationError: the ties do not hold at the start.
+        """
+        begun = start_of_motion(self.declared, parameters, start)
+        x = self.state(begun.values)
+        found = self._kinematic(self.declared.scope.rates).many(np.array([t]), x[None, :], self.p)[0]
+        rates = {f"{q}'": float(rate) for q, rate in zip(self.coordinates, found, strict=True)}
+        slacks = {name: 0.0 for name in map(slack_name, self.loose)}
+        return begun, rates | begun.values | slacks
+
     def state(self, values: Values) -> np.ndarray:
         """x of the phase; a displacement that did not exist before is 0."""
         names = (*self.coordinates, *self.speeds, *map(slack_name, self.loose))
@@ -143,6 +173,11 @@ class PhaseModel:
         )
 
     @cached_property
+    def undetermined(self) -> tuple[Undetermined, ...]:
+        """What of the motion is not determined at singular positions."""
+        return undetermined_of(self.system, self.assembly, self.p)
+
+    @cached_property
     def slope(self) -> Slope | None:
         """d(x')/dx; None where it is found by differences."""
         return None if self.loose else slope_of(self.system, self.assembly, self.p, self.target)
@@ -177,6 +212,8 @@ class PhaseModel:
     def floors(self, t: float, x: np.ndarray) -> np.ndarray:
         """What is rounding in each of the bounds, at one state; a speed that has just come near to 0 may pass it."""
         n = len(self.coordinates)
+        if not self.bounds:
+            return np.zeros(0)
         places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
         size = {"force": COMPUTED * self.sizes(t, x)[0], "rate": COMPUTED * rates, "gap": COMPUTED * places}
         passing = [float(stopped_below(self.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.bounds]
@@ -184,10 +221,12 @@ class PhaseModel:
 
     def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The bounds along the states, n x k; nan where a reaction has no single value."""
+        if not self.bounds:
+            return np.zeros((len(t), 0))
         signals = self._along(t, x)
         ways = iter(self._ways.many(t, self.inner(x), self.p).T)
         found = [next(ways) if bound.kind == "piece" else self._left(bound, signals) for bound in self.bounds]
-        return np.column_stack(found) if found else np.zeros((len(t), 0))
+        return np.column_stack(found)
 
     def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
         """What is left of a bound of a contact."""

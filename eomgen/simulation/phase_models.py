@@ -14,19 +14,32 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.balance.release import released, stays_straight
 from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
+from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import freedoms, redundant_rows
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.stabilization import PullBack, stabilized
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
-from eomgen.simulation.configuration import Configuration, bounds_of, on_pieces
+from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces
 from eomgen.simulation.contact_events import ContactEvents, sliding_velocity
 from eomgen.simulation.impact import Loose
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression.graph import Scalar
 
 OPEN = ContactMode(closed=False)
+
+
+def integrated_system(system: System) -> System:
+    """The system that is integrated: every coordinate with a rate of its own, where `dependent` rates may be 0/0.
+
+    At a dead centre of the dependent coordinates u_d = A u_i + b divides by 0; M a + c = Q + J^T lam, J a + gamma = 0
+    over all rates does not, as long as the rows of J are independent.
+    """
+    if system.free is None or system.declared:
+        return system
+    return system.free if singular_blocks(system.elimination, system.scope) else system
 
 
 @dataclass(frozen=True)
@@ -61,10 +74,19 @@ class PhaseModels:
         p: the values of its parameters.
         target: of the emitted code.
         rates: alpha and beta of Baumgarte's rows; None: they do not pull.
+        derived: the system and the equations of the one phase of a model that has no other, where they are known.
     """
 
-    def __init__(self, model: Model, p: np.ndarray, target: str | None, rates: PullBack | None = None) -> None:
+    def __init__(
+        self,
+        model: Model,
+        p: np.ndarray,
+        target: str | None,
+        rates: PullBack | None = None,
+        derived: tuple[System, Assembly] | None = None,
+    ) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
+        self._derived = None if has_phases(model) else derived
         self._made: dict[Configuration, PhaseModel] = {}
         self._slides: dict[Configuration, Slides] = {}
 
@@ -102,12 +124,19 @@ class PhaseModels:
 
     def _phase(self, configuration: Configuration) -> PhaseModel:
         model = on_pieces(self.model, configuration.pieces)
-        system = self._system(model, configuration)
-        assembly = recursive.assemble(system)
-        assembly = with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
+        declared = self._system(model, configuration) if self._derived is None else self._derived[0]
+        system = integrated_system(declared)
+        assembly = self._assembly(system)
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
         watch = ContactEvents(configuration, contacts_of(model), lengths, system)
-        return PhaseModel(watch, assembly, self.p, self.target)
+        return PhaseModel(watch, declared, assembly, self.p, self.target)
+
+    def _assembly(self, system: System) -> Assembly:
+        """The equations of motion, friction and Baumgarte's rows included."""
+        if self._derived is not None and self._derived[0] is system and self.rates is None:
+            return self._derived[1]
+        assembly = recursive.assemble(system)
+        return with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
 
     def _system(self, model: Model, configuration: Configuration) -> System:
         """The system of a configuration.

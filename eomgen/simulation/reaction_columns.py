@@ -8,7 +8,7 @@ null space of A says which of the reactions asked have a single value all the sa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,13 +17,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.reactions import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.simulation.first_slide import begun
 from eomgen.simulation.leaf_to_root_balance import BodyBalance, balanced_from_leaves, steps_of
-from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE, SUMMED, UNBALANCED
@@ -172,67 +169,3 @@ def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
         return np.full(len(C), np.nan)
     traces = np.abs(C @ V[rank:].T).max(axis=1, initial=0.0)
     return np.where(traces > SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
-
-
-# -- over a trajectory -----------------------------------------------------------------------------
-
-
-def with_reactions(
-    run: Trajectory, reactions: Callable[[], Reactions], rhs: RightHandSide, p: np.ndarray
-) -> Trajectory:
-    """The trajectory with its reactions as columns; what has none, and why, in its remark.
-
-    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
-
-    Args:
-        reactions: gives those of the whole run, where it has no phases of its own.
-        rhs: of the whole run.
-        p: parameters.
-    """
-    if not len(run.t):
-        return run
-    try:
-        pieces = [(slice(*phase.rows), phase.model) for phase in run.phases if phase.model is not None]
-        own = [(rows, phase, phase.reactions, phase.rhs) for rows, phase in pieces]
-        parts = own or [(slice(None), None, reactions(), rhs)]
-    except DerivationError as error:
-        return replace(run, remark=f"No reactions: {error.what}.")
-    found: dict[str, np.ndarray] = {}
-    always: dict[str, None] = {}
-    made: dict[int, ReactionColumns] = {}
-    for rows, phase, balanced_by, equations in parts:
-        columns = made.setdefault(id(balanced_by), ReactionColumns(balanced_by, equations))
-        always |= dict.fromkeys(columns.indeterminate)
-        x = _states(run, rows, equations)
-        x = x if phase is None else begun(run.t[rows], x, phase.rhs.at(p), phase.slowest)
-        values = columns.along(run.t[rows], x, p)
-        for name, column in zip(columns.names, values.T, strict=True):
-            found.setdefault(name, np.zeros(len(run.t)))[rows] = column
-    return replace(run, reactions=found, units=_units(made.values()), remark=_remark(run.t, found, tuple(always)))
-
-
-def _states(run: Trajectory, rows: slice, rhs: RightHandSide) -> np.ndarray:
-    """x of a phase, of which the trajectory has the coordinates and speeds of all phases."""
-    names = run.coordinates + run.speeds
-    return run.x[rows][:, [names.index(name) for name in rhs.coordinates + rhs.speeds]]
-
-
-def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
-    return {named.name: named.unit for each in columns for named in each.asked}
-
-
-def _remark(t: np.ndarray, found: dict[str, np.ndarray], always: tuple[str, ...]) -> str:
-    """What is nan, and since when."""
-    parts = []
-    if always:
-        parts.append(f"Statically indeterminate: {_few(always)}.")
-    at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
-    singular = [name for name, gone in at_times.items() if gone.any()]
-    if singular:
-        first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
-        parts.append(f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}.")
-    return " ".join(parts)
-
-
-def _few(names: Sequence[str]) -> str:
-    return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"

@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.spheres import Places
-from eomgen.simulation.constraint_rank import Lookout, Nearness
+from eomgen.simulation.constraint_rank import PLACE, Lookout, Nearness
 from eomgen.simulation.event_location import Crossing, Events, EventSearch
 from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping, march
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.solvers import Rate, Slope
-from eomgen.symbolic.numeric.tolerances import FINEST_RUN, WIDE_STEP
+from eomgen.symbolic.numeric.tolerances import FAIR_RUN, FINEST_RUN, WIDE_STEP
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
 WINDOWS = ((20.0, 12), (40.0, 16), (10.0, 10))  # (W / tau, the degree)
@@ -32,8 +32,6 @@ SHORTEST = 4.0  # W / tau
 AGREE = 100.0  # tolerances of one step by which both polynomials may differ
 REACHES = 4  # how often the far side is sought further on
 BEYOND = 0.5  # of the nearness: how far from the singular position the far side is
-
-PLACE = "a dead centre or a change point"
 
 
 @dataclass(frozen=True)
@@ -224,7 +222,8 @@ def _continued(
         found, other = (np.array([fit(end) for fit in each]) for each in fits)
         if nearness.at(end, found) >= BEYOND * near:
             beyond = found if flow.projection is None else flow.projection.closed(end, found, 0.0)[0]
-            allowed = AGREE * (flow.how.rtol * (1 + np.max(np.abs(found))) + flow.how.atol)
+            rtol, atol = max(flow.how.rtol, FAIR_RUN), max(flow.how.atol, FAIR_RUN)
+            allowed = AGREE * (rtol * (1 + np.max(np.abs(found))) + atol)
             if np.max(np.abs(found - other)) > allowed or np.max(np.abs(beyond - found)) > allowed:
                 return None
             return Passage(t, end, lambda s: np.column_stack([fit(s) for fit in fits[0]])), beyond

@@ -5,6 +5,7 @@ The instants that a user asks for may be few, and all of them at rest.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -36,6 +37,11 @@ class StepStates:
         self.x.append(x.copy())
         if len(self.t) > MOST:
             self.t, self.x, self.every = self.t[1::2], self.x[1::2], 2 * self.every
+
+    def until(self, end: float) -> StepStates:
+        """Those up to an instant."""
+        n = bisect_right(self.t, end)
+        return StepStates(self.t[:n], self.x[:n], self.every, self.steps)
 
 
 def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[StepStates]) -> tuple[np.ndarray, np.ndarray]:

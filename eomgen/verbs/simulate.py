@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from eomgen import pipeline, running
+from eomgen import pipeline
 from eomgen.codegen.accelerations import accelerations_at
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
+from eomgen.questions.run import run as simulated
 from eomgen.report.document import plain_document
 from eomgen.report.statements import Grid, Prose, Statement
 from eomgen.simulation.integrator import Stepping
@@ -44,7 +45,7 @@ def simulate(
     parameters = _parameters(model, given)
     _check_ending(output)
     equations = pipeline.derive(model)
-    run = running.run(
+    run = simulated(
         equations,
         time=time,
         parameters=parameters,
@@ -79,7 +80,7 @@ def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: M
     if not len(run.t):
         return {"start_accelerations": {}, "start_multipliers": {}}
     phase, x = run.phases[0].model, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
-    system, assembly = (equations.system, equations.graph) if phase is None else (phase.system, phase.assembly)
+    system, assembly = phase.declared, phase.declared_assembly
     state = np.array([x[node.name] for node in (*system.symbols.q, *system.symbols.u)])
     p = parameter_vector(equations.model, parameters)
     found = accelerations_at(system, assembly, float(run.t[0]), state, p)

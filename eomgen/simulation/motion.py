@@ -1,30 +1,29 @@
-"""Model with contacts that change -> Trajectory: phase after phase, each with the equations of its own phase."""
+"""Start -> the phases of a motion, one after the other, each with its own equations; a plain model has one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eomgen.errors import UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
-from eomgen.model.parts import Model
-from eomgen.simulation.conditions import Condition as Ending
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.endings import Condition, ended
 from eomgen.simulation.event_location import TOUCH, Events
-from eomgen.simulation.integrate import instants_of
 from eomgen.simulation.integrator import Run, Stepping
-from eomgen.simulation.joined import joined
-from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
+from eomgen.simulation.phase_change import Course, PhaseStart
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_run import PhaseRun
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.simulation.solvers import IMPLICIT
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN
 
 MOST_PHASES = 1000
+STEPS_AGAIN = 10_000  # of the finer integration across one instant
 MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
 
 
@@ -45,36 +44,10 @@ class Plan:
     until: Condition | None = None
 
 
-def run_phases(
-    model: Model,
-    *,
-    time: float | tuple[float, float],
-    p: np.ndarray,
-    parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None,
-    target: str | None = None,
-    how: Stepping | None = None,
-    samples: int | Sequence[float] | None = None,
-    until: Ending | None = None,
-) -> Trajectory:
-    """The motion from the start values, through every change of its contacts.
-
-    Args:
-        p: the parameters' values; parameters: those of them that replace the model's.
-        start: start values and speeds that replace the model's.
-        until: what ends it where it becomes 0.
-        samples: as of `integrate`; given beside the beginning and the end of every phase (see `thinned`).
-    Raises:
-        DerivationError: the ties do not hold at the start; the reaction of a contact is indeterminate.
-    """
-    begin, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
-    instants = instants_of(samples, begin, end)
-    how = how or Stepping()
-    course = course_of(model, p, target, how.rates if how.stabilization == "baumgarte" else None)
-    first = at_start(course, begin, parameters, start)
-    condition = None if until is None else lambda phase: until(phase.system)
-    stretches = passed(course, first, Plan(end, how, instants, condition))
-    return joined(course, list(stretches if condition is None else ended(stretches, condition)))
+def through(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
+    """The phases of a motion, up to the first instant at which what ends it holds."""
+    runs = passed(course, here, plan)
+    return runs if plan.until is None else ended(runs, plan.until)
 
 
 def passed(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
@@ -90,11 +63,15 @@ def passed(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
         run = _run(phase, here, plan)
         crossing = run.crossing
         if crossing is None or crossing.index >= len(phase.bounds):
-            yield PhaseRun(here, phase, _at_edge(phase, run), None, None)
+            yield PhaseRun(here, phase, _determined(phase, _at_edge(phase, run), plan.how), None, None)
             return
         soon = run.end - here.t <= COMPUTED
         hasty, count = hasty + 1 if soon else 0, count + 1
         ended = frozenset({*(ended if soon else ()), here.configuration})
+        cut = _determined(phase, run, plan.how)
+        if cut.crossing is None:
+            yield PhaseRun(here, phase, cut, None, None)
+            return
         after = course.after(phase, crossing, ended)
         yield PhaseRun(here, phase, run, phase.bounds[crossing.index], after)
         here = after
@@ -115,6 +92,8 @@ def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | 
     """The bounds of the contacts, the edges of the ties, and last the condition; None without any."""
     floors = phase.floors(t, x)
     asked = () if plan.until is None else (plan.until(phase),)
+    if any(type(x) is not Node for x in asked):
+        raise UsageError("nothing in the condition moves: it holds always or never", mend='write "theta = pi/2"')
     further = (*left_of(phase.edges), *asked)
     if not further:
         return Events(phase.watched, floors) if phase.bounds else None
@@ -133,6 +112,26 @@ def _at_edge(phase: PhaseModel, run: Run) -> Run:
     if not 0 <= k < len(phase.edges):
         return run
     return replace(run, status="singular", message=stopped_at(phase.edges[k], run.end), crossing=None)
+
+
+def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
+    """The run, ended where the ties do not say how it goes on, and it went astray."""
+    if run.status == "singular":
+        return run
+    finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, knots=())
+    flow = Flow(phase.rate, finer, phase.rhs.spheres, phase.projection)
+
+    def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
+        found = flow.march((start, end), x, np.array([start, end]), None)
+        return found.last if found.status == "finished" else np.full_like(x, np.nan)
+
+    for what in phase.undetermined:
+        run = ended_where_singular(run, what, again, rtol=how.rtol)
+    return run
+
+
+def _finer(tolerance: float) -> float:
+    return max(tolerance / 1000, FINEST_RUN)
 
 
 def _endless(phase: PhaseModel, count: int, hasty: int) -> str:
