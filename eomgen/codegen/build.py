@@ -24,6 +24,7 @@ from eomgen.errors import RunFailed, ToolMissing
 
 FLAGS = ("-std=c99", "-O2", "-shared", "-fPIC")
 FLAGS_OF_LONG_TEXT = ("-std=c99", "-O1", "-shared", "-fPIC")
+FLAGS_OF_ONE_LOOK = ("-std=c99", "-O0", "-shared", "-fPIC")  # what is called a few times only is made soonest
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
 PATIENCE = 300  # seconds
 
@@ -36,15 +37,17 @@ def compiler() -> str | None:
         return None
 
 
-def library(text: str) -> ctypes.CDLL:
+def library(text: str, *, quickly: bool = False) -> ctypes.CDLL:
     """The text, compiled and loaded.
 
+    Args:
+        quickly: it is called a few times only.
     Raises:
         ToolMissing: there is no compiler, or none that starts.
         RunFailed: the compiler refuses the text, does not come back, or makes what is no library.
     """
     command = _command()
-    flags = FLAGS if len(text) < LONG_TEXT else FLAGS_OF_LONG_TEXT
+    flags = FLAGS_OF_ONE_LOOK if quickly else FLAGS if len(text) < LONG_TEXT else FLAGS_OF_LONG_TEXT
     key = "\0".join((text, *command, *flags, platform.platform(), platform.machine()))
     folder, name = _cache(), _digest(key.encode())
     for path in folder.glob(f"{name}-*.so"):

@@ -104,8 +104,24 @@ class Numbers:
         rows = np.abs(self.J @ a + self.gamma)
         terms = 1 + np.abs(self.J) @ np.abs(a) + np.abs(self.gamma)
         parts["J a + gamma = 0"] = float(np.max(rows / terms, initial=0.0))
+        self._refuse_contradiction()
         worst = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
         return float(parts[worst]), worst
+
+    def _refuse_contradiction(self) -> None:
+        """Redundant rows contradict one another where the ties are open.
+
+        Raises:
+            NoValue: no a fulfils J a + gamma = 0.
+        """
+        if not len(self.J):
+            return
+        sizes = np.linalg.norm(self.J, axis=1)
+        J = of_one_length(self.J)
+        gamma = self.gamma / np.where(sizes > 0, sizes, 1.0)
+        least = J @ np.linalg.lstsq(J, -gamma, rcond=COMPUTED)[0] + gamma
+        if np.max(np.abs(least)) > COMPUTED * (1 + np.max(np.abs(gamma))):
+            raise NoValue("the ties contradict one another")
 
     def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
         """Of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), with the lam that leaves least.

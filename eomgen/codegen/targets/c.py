@@ -310,7 +310,7 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
     """NAME_rhs of the files, compiled."""
     name = role.main(stem)
     text = texts[f"{name}.c"].replace(f'#include "{name}.h"\n', texts[f"{name}.h"], 1)
-    function, outputs = getattr(library(text), name), len(program.outputs)
+    function, outputs = getattr(library(text, quickly=True), name), len(program.outputs)
     reals = ctypes.POINTER(ctypes.c_double)
     function.argtypes = [ctypes.c_double, *[reals] * (5 if program.accelerations else 4)]
     function.restype = None
