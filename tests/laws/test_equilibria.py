@@ -13,6 +13,7 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.equilibria.loads_at_rest import holding_of
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.model.parts import Model
+from eomgen.report import rendered
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions
 from eomgen.verbs.statics import statics
@@ -439,9 +440,10 @@ def test_the_verb_of_statics_gives_the_places_of_rest():
     payload = statics(model).payload
     assert [e["coordinates"]["theta"]["exact"] for e in payload["equilibria"]] == ["0", "pi"]
     assert payload["complete"] and payload["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
-    text = statics(model).text
+    document = statics(model).document
+    text = rendered(document)
     assert "There are 2 places of rest" in text and "stable" in text
-    assert r"\frac{\partial^{2} V}{\partial q^{2}}" in statics(model, format="latex").text
+    assert r"\frac{\partial^{2} V}{\partial q^{2}}" in rendered(document, "latex")
     with pytest.raises(UsageError, match="structures that stand"):
         statics(model, reaction="reaction_x(rod)")
 

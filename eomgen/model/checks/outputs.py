@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from eomgen.errors import ExpressionError
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.references import missing_point
 from eomgen.model.constraints.members import ends_asked
@@ -154,7 +155,10 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
     if kind == "number":
         if "." in argument.name:
             return _unknown(argument, kind, catalog.allowed[""])
-        return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
+        try:
+            return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
+        except ExpressionError as error:
+            return error.what, error.mend, argument.column + error.column, error.length
     if kind.endswith("axis"):
         if argument.name in AXES:
             return None

@@ -113,9 +113,9 @@ class Polynomials:
 
 
 def _coprime(above: Element, below: Element) -> tuple[Element, Element]:
-    """The two without their common divisor; as they are where sympy finds none."""
-    try:
-        _, *found = above.cofactors(below)
-    except TypeError:  # its heuristic takes the root of a huge integer, and gets a float
-        return above, below
-    return found[0], found[1]
+    """The two without their common divisor, negative powers cleared in both: x^-2/(1 + x^-1) is 1/(x^2 + x)."""
+    lowest = [min(*powers, 0) for powers in zip(*above.monoms(), *below.monoms(), strict=True)]
+    if any(lowest):
+        above, below = (part.mul_monom(tuple(-e for e in lowest)) for part in (above, below))
+    _, above, below = above.cofactors(below)
+    return above, below

@@ -91,6 +91,8 @@ def _whole_power(a: AnyScalar, n: int) -> AnyScalar:
 
 def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
     """a ^ (m/n) of an exact number, in the arithmetic of pi."""
+    if a == 0 and b < 0:
+        raise Undefined(f"division by zero in 0^({b})")
     if type(pi) is Node:
         return pi.graph.pow(a, b)
     if b.denominator == 2:

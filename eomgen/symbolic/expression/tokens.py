@@ -10,6 +10,7 @@ from eomgen.errors import ExpressionError
 
 LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
 MOST_DIGITS = 320
+LARGEST_SIZE = 1000  # bits: a number still fits a double, and a product of two short ones
 
 _DIGITS = r"[0-9](?:_?[0-9])*"
 _NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
@@ -100,4 +101,7 @@ def number_of(token: Token) -> int | Fraction:
         what = f"the number {shown} has too many digits or too large an exponent"
         raise ExpressionError(what, token.start, f"at most {LARGEST_EXPONENT} in each", len(token.text))
     value = Fraction(f"{mantissa}e{exponent or 0}")
+    if value.numerator.bit_length() - value.denominator.bit_length() > LARGEST_SIZE:
+        what = f"{token.text[:24]}... is too large for a number"
+        raise ExpressionError(what, token.start, f"at most 1e{LARGEST_EXPONENT}", len(token.text))
     return value.numerator if value.denominator == 1 else value

@@ -17,7 +17,7 @@ import numpy as np
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate
+from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, nearest
 
 _ON_ARRAYS: dict[str, Callable[..., Any]] = {
     "neg": operator.neg,
@@ -34,10 +34,10 @@ _ON_ARRAYS: dict[str, Callable[..., Any]] = {
     "max": np.maximum,
     "select": np.where,
     "pi": lambda: np.pi,
-    "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, float, np.pi), otypes=[float]),
+    "sampled": np.vectorize(lambda t, k: sampled_of(k).at(t, nearest, np.pi), otypes=[float]),
     **{op: getattr(np, op) for op in "sqrt sin cos tan sinh cosh tanh exp log abs sign less less_equal".split()},
 }
-ARRAYS = Arithmetic("arrays", float, _ON_ARRAYS, lambda x: np.nan)
+ARRAYS = Arithmetic("arrays", nearest, _ON_ARRAYS, lambda x: np.nan)
 """Floats, or arrays of them: many states at once."""
 
 Layer = tuple[str, slice, tuple[np.ndarray, ...]]

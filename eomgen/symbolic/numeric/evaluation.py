@@ -152,7 +152,8 @@ def _refusing(ops: str, arithmetic: str) -> dict[str, Callable[..., Any]]:
     return {op: _meaningless(op, arithmetic) for op in ops.split()}
 
 
-def _nearest(x: Number) -> float:
+def nearest(x: Number) -> float:
+    """An exact number as a double; beyond all doubles it is inf."""
     try:
         return float(x)
     except OverflowError:
@@ -161,7 +162,7 @@ def _nearest(x: Number) -> float:
 
 FLOAT = Arithmetic(
     "floats",
-    _nearest,
+    nearest,
     _RING
     | _ORDERED
     | {op: getattr(math, op) for op in "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()}

@@ -8,16 +8,18 @@ have moved them. Where nothing can be said it is (-inf, inf).
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from eomgen.symbolic.expression.graph import Node, Number
-from eomgen.symbolic.numeric.evaluation import Arithmetic, NoMeaning, NoValue
-from eomgen.symbolic.numeric.tolerances import OUTWARDS
+from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue, nearest
+from eomgen.symbolic.numeric.tolerances import OUTWARDS, TINIEST
 
 Interval = tuple[Any, Any]
+LARGEST = sys.float_info.max
 
 
 def interval(low: Any, high: Any) -> Interval:
@@ -28,7 +30,9 @@ def interval(low: Any, high: Any) -> Interval:
 
 
 def _number(c: Number) -> Interval:
-    x = float(c)
+    x = nearest(c)
+    if math.isinf(x):
+        return (LARGEST, x) if x > 0 else (x, -LARGEST)
     return (x, x) if c == x else interval(x, x)
 
 
@@ -62,7 +66,7 @@ def _even(a: Interval, n: int) -> Interval:
 
 def _pow(a: Interval, n: Interval) -> Interval:
     if np.ndim(n[0]) or n[0] * n[1] < 0:
-        raise NoMeaning("a power that is no number")
+        return _any_power(a, n)
     e = float(n[0])
     if n[0] == n[1] and e == int(e):
         whole = abs(int(e))
@@ -81,6 +85,12 @@ def _rising(function: Callable[[Any], Any], low: float = -np.inf, high: float = 
             return interval(function(np.clip(a[0], low, high)), function(np.clip(a[1], low, high)))
 
     return of
+
+
+def _any_power(a: Interval, n: Interval) -> Interval:
+    """a^n = exp(n log a); of an a that may be negative what is known is that a power is positive."""
+    low, high = _rising(np.exp)(_mul(n, _rising(np.log, TINIEST)(a)))
+    return np.where(a[0] > 0, low, 0.0), np.where(a[0] > 0, high, np.inf)
 
 
 def _cos(a: Interval) -> Interval:
