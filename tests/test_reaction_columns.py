@@ -23,7 +23,7 @@ from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.trials import accelerations_at
+from eomgen.proof.accelerations import accelerations_at
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse

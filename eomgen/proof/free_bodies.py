@@ -27,7 +27,8 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
@@ -44,7 +45,6 @@ from eomgen.symbolic.expression.spatial import (
 )
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-State = dict[Node, Any]
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 STEP = Fraction(1, 10**15)  # of differences: with 50 digits their error is below 1e-28
 

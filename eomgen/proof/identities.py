@@ -1,4 +1,4 @@
-"""System, Assembly -> checks that are identities: the same functions by independent routes, exactly.
+"""System, Assembly -> claims that are identities: the same functions by independent routes, exactly.
 
 Energies and their derivatives (Lagrange), twists and wrenches (projection), recursion over the tree.
 """
@@ -6,6 +6,7 @@ Energies and their derivatives (Lagrange), twists and wrenches (projection), rec
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -18,7 +19,8 @@ from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.proof.states import States
+from eomgen.symbolic.exact.equality import Verdict, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -26,17 +28,37 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 Pairs = list[tuple[Scalar, Scalar]]
 
 
-def _compared(name: str, pairs: Pairs, labels: Sequence[str]) -> Check:
-    """A check that the two of each pair are the same function."""
+@dataclass(frozen=True)
+class Claim:
+    """What must hold, as pairs of scalars that are the same function; labels: what each pair is about."""
+
+    name: str
+    pairs: Pairs
+    labels: Sequence[str]
+
+
+def compared(claims: Sequence[Claim], states: States | None = None) -> list[Check]:
+    """A check of each claim: in a prime field, which holds at every state; where that cannot tell at real ones.
+
+    Args:
+        states: real states that come before random ones.
+    """
+    verdicts = equal_in_field([claim.pairs for claim in claims])
+    return [_checked(claim, verdict, states) for claim, verdict in zip(claims, verdicts, strict=True)]
+
+
+def _checked(claim: Claim, verdict: Verdict | None, states: States | None) -> Check:
+    given = () if states is None else [(place.state for place in supply) for _, supply in states.supplies]
     try:
-        verdict = equal_at_random_states(pairs)
+        found = verdict or equal_at_real_states(claim.pairs, given=given)
     except DerivationError as error:
-        return unchecked(name, error.what, "no state found")
-    differs = "" if verdict.culprit is None else f"{labels[verdict.culprit]} differs"
-    return checked(name, differs, verdict.arithmetic)
+        return unchecked(claim.name, error.what, "no state found")
+    differs = "" if found.culprit is None else f"{claim.labels[found.culprit]} differs"
+    how = f"{found.arithmetic}, {found.states} states" if found.states else found.arithmetic
+    return checked(claim.name, differs, how)
 
 
-def rates(system: System, assembly: Assembly) -> Check:
+def rates(system: System, assembly: Assembly) -> Claim:
     """q' = N u + nu are the rates in which everything else is differentiated."""
     u = assembly.symbols.u
     rows = [
@@ -44,10 +66,10 @@ def rates(system: System, assembly: Assembly) -> Check:
         for row, bias in zip(assembly.N, assembly.nu, strict=True)
     ]
     pairs = list(zip(rows, system.scope.rates, strict=True))
-    return _compared("N u + nu are the rates of the coordinates", pairs, [q.name for q in assembly.symbols.q])
+    return Claim("N u + nu are the rates of the coordinates", pairs, [q.name for q in assembly.symbols.q])
 
 
-def routes(system: System, assembly: Assembly) -> Iterable[Check]:
+def routes(system: System, assembly: Assembly) -> Iterable[Claim]:
     """The equations along a motion with any accelerations a: against energies, wrenches and inverse dynamics.
 
     M a is linear in a, so that at random a a wrong entry of M shows with the chance with which it shows by itself.
@@ -63,20 +85,18 @@ def routes(system: System, assembly: Assembly) -> Iterable[Check]:
             for own, other in zip((Ma, assembly.c, Q), formulation.along(system), strict=True)
             for pair in zip(own, other, strict=True)
         ]
-        yield _compared(f"M a, c and Q agree with those by {formulation.title}", pairs, labels)
+        yield Claim(f"M a, c and Q agree with those by {formulation.title}", pairs, labels)
     left = [x - b + f for x, b, f in zip(Ma, assembly.forcing, friction, strict=True)]
     pairs = [*zip(left, inverse_residual(system), strict=True)]
     pairs += [(b, x - y) for b, x, y in zip(assembly.forcing, assembly.Q, assembly.c, strict=True)]
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
-    yield _compared("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
+    yield Claim("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
     if friction != (0,) * len(assembly.Q):
         other = with_friction(system, lagrange.assemble(system)).friction
-        yield _compared(
-            "friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds
-        )
+        yield Claim("friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds)
 
 
-def mass_matrix(assembly: Assembly) -> Check:
+def mass_matrix(assembly: Assembly) -> Claim:
     """M a is the derivative of dT/du along a, and M and its transpose are the same."""
     u, a = assembly.symbols.u, assembly.symbols.a
     slope = tangent(gradient(assembly.T, u), dict(zip(u, a, strict=True)))
@@ -88,10 +108,10 @@ def mass_matrix(assembly: Assembly) -> Check:
         if row[j] is not assembly.M[j][i]
     ]
     labels = [f"M a [{x.name}]" for x in u] + ["M or its transpose"] * (len(pairs) - len(u))
-    return _compared("M is symmetric and is the second derivative of T", pairs, labels)
+    return Claim("M is symmetric and is the second derivative of T", pairs, labels)
 
 
-def energy(system: System, assembly: Assembly) -> Check:
+def energy(system: System, assembly: Assembly) -> Claim:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
     With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself. Where dependent
@@ -104,7 +124,7 @@ def energy(system: System, assembly: Assembly) -> Check:
         power = power + u * (inertia - assembly.Q[k])
     H = energy_function(assembly)
     left = scope.with_accelerations((H,))[0]
-    return _compared("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
+    return Claim("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
 
 
 def energy_function(assembly: Assembly) -> Scalar:
@@ -145,7 +165,7 @@ def _own_motion(scope: Any) -> dict[Node, Scalar]:
     return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True))}
 
 
-def closing_rows(system: System, assembly: Assembly) -> Check:
+def closing_rows(system: System, assembly: Assembly) -> Claim:
     """J u + sigma = dphi/dt where there is a gap, and J a + gamma its derivative."""
     scope, symbols = system.scope, assembly.symbols
     pairs, labels = [], []
@@ -159,4 +179,4 @@ def closing_rows(system: System, assembly: Assembly) -> Check:
         second = sum((x * a for x, a in zip(assembly.J[i], symbols.a, strict=True)), start=assembly.gamma[i])
         pairs.append((second, scope.with_accelerations((row,))[0]))
         labels.append(f"J a + gamma of row {i + 1}")
-    return _compared("the closing rows are the derivatives of their gaps", pairs, labels)
+    return Claim("the closing rows are the derivatives of their gaps", pairs, labels)

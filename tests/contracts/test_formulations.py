@@ -19,7 +19,7 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
 from eomgen.mechanics.formulations.free_bodies import free_body_accelerations
 from eomgen.model.unbuilt import unbuilt
-from eomgen.proof.trials import accelerations_at
+from eomgen.proof.accelerations import accelerations_at
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 pytestmark = pytest.mark.slow

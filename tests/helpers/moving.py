@@ -11,7 +11,7 @@ import numpy as np
 import eomgen
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
-from eomgen.proof.trials import real_state
+from eomgen.proof.states import real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

@@ -24,7 +24,8 @@ from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
 from eomgen.model.unknowns import in_loads
-from eomgen.proof.trials import accelerations_at, closed_state
+from eomgen.proof.accelerations import accelerations_at
+from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric.evaluation import fifty_digits

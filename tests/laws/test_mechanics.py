@@ -12,7 +12,8 @@ import pytest
 import eomgen
 from eomgen.equations import Equations
 from eomgen.model.unknowns import in_loads
-from eomgen.proof.trials import accelerations_at, closed_state, real_state
+from eomgen.proof.accelerations import accelerations_at
+from eomgen.proof.states import closed_state, real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Scalar, is_zero

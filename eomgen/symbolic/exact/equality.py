@@ -7,9 +7,10 @@ theorems. Modulo a prime of 61 bits two different expressions agree there with a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 from math import lcm
 from random import Random
 from typing import Any
@@ -32,6 +33,7 @@ REAL_TRIES = 60
 RANGES = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))  # of the symbols at a real state
 EXPONENTS = (-4, 2)  # of their sizes in every other later state: beside a length of 0.08 stands a radius of 0.03
 TOLERANCE = Fraction(1, 10**30)  # of a comparison at 50 digits, relative to the larger of the two and 1
+Pair = tuple[Scalar, Scalar]
 ALGEBRAIC = frozenset("symbol neg add sub mul div".split())
 
 
@@ -56,14 +58,16 @@ class Verdict:
         equal: yes or no.
         arithmetic: "prime field" (exact) or "50 digits".
         culprit: index of the first pair that differs, or None.
+        states: at how many the pairs were found equal.
     """
 
     equal: bool
     arithmetic: str
     culprit: int | None = None
+    states: int = 0
 
 
-def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int = 1, states: int = 2) -> Verdict:
+def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int = 2) -> Verdict:
     """Whether the two of each pair are the same function of the symbols.
 
     In a prime field; where functions have no meaning there and the field cannot tell, at real states with 50 digits.
@@ -75,19 +79,61 @@ def equal_at_random_states(pairs: Iterable[tuple[Scalar, Scalar]], *, seed: int 
     Raises:
         DerivationError: no real state was found at which the expressions have values.
     """
-    _, flat = united([x for pair in pairs for x in pair])
-    rng, nodes = Random(seed), order(flat)
+    pairs = tuple(pairs)
+    (verdict,) = equal_in_field((pairs,), seed=seed, states=states)
+    return equal_at_real_states(pairs, seed=seed, states=states) if verdict is None else verdict
+
+
+def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: int = 2) -> list[Verdict | None]:
+    """Of every group whether its pairs are equal in a prime field; None: the field cannot tell.
+
+    All groups are evaluated at once: what they share is found once.
+    """
+    rng, flat = Random(seed), [x for pairs in groups for pair in pairs for x in pair]
+    _, flat = united(flat)
+    nodes, culprits, sure = order(flat), [None] * len(groups), True
+    ends = list(accumulate(2 * len(pairs) for pairs in groups))
     try:
         for _ in range(states):
             state, values = _valued(flat, nodes, rng)
-            culprit = _first_different(values)
-            if culprit is not None:
-                if state.independent:
-                    return Verdict(False, PRIME_FIELD.name, culprit)
-                raise NoMeaning("the field's values of dependent functions are independent")
-        return Verdict(True, PRIME_FIELD.name)
+            sure = sure and state.independent
+            parts = (values[end - 2 * len(pairs) : end] for pairs, end in zip(groups, ends, strict=True))
+            culprits = [k if k is not None else _first_different(part) for k, part in zip(culprits, parts, strict=True)]
     except NoMeaning:
-        return _at_fifty_digits(flat, rng, states)
+        return [None] if len(groups) == 1 else [equal_in_field((x,), seed=seed, states=states)[0] for x in groups]
+    return [None if k is not None and not sure else Verdict(k is None, PRIME_FIELD.name, k) for k in culprits]
+
+
+def equal_at_real_states(
+    pairs: Iterable[Pair], *, seed: int = 1, states: int = 2, given: Iterable[Iterable[Mapping[Node, Any]]] = ()
+) -> Verdict:
+    """The same at real states with 50 digits.
+
+    Args:
+        given: states that come before the random ones; of each row the first at which the expressions have values.
+    Raises:
+        DerivationError: no real state was found at which the expressions have values.
+    """
+    arithmetic, rng = fifty_digits(), Random(seed)
+    _, flat = united([x for pair in pairs for x in pair])
+    found = 0
+    for row in given:
+        values = next((x for state in row if (x := _values_at(flat, state, arithmetic)) is not None), None)
+        if values is not None:
+            found += 1
+            if (culprit := _first_apart(values)) is not None:
+                return Verdict(False, arithmetic.name, culprit)
+    for _ in range(states):
+        try:
+            values = real_values(flat, rng, arithmetic)
+        except DerivationError:
+            if not found:
+                raise
+            break
+        found += 1
+        if (culprit := _first_apart(values)) is not None:
+            return Verdict(False, arithmetic.name, culprit)
+    return Verdict(True, arithmetic.name, states=found)
 
 
 def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> ExactState:
@@ -237,16 +283,19 @@ def _first_different(values: Sequence[Any]) -> int | None:
     return next((i for i in range(len(values) // 2) if values[2 * i] != values[2 * i + 1]), None)
 
 
-def _at_fifty_digits(flat: Sequence[Scalar], rng: Random, states: int) -> Verdict:
-    arithmetic = fifty_digits()
-    tolerance = arithmetic.number(TOLERANCE)
-    for _ in range(states):
-        values = real_values(flat, rng, arithmetic)
-        for i in range(len(values) // 2):
-            a, b = values[2 * i], values[2 * i + 1]
-            if abs(a - b) > tolerance * max(1, abs(a), abs(b)):
-                return Verdict(False, arithmetic.name, i)
-    return Verdict(True, arithmetic.name)
+def _values_at(flat: Sequence[Scalar], state: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any] | None:
+    """The values at a state; None where there are none."""
+    try:
+        return evaluate(flat, state, arithmetic)
+    except (NoValue, ZeroDivisionError):
+        return None
+
+
+def _first_apart(values: Sequence[Any]) -> int | None:
+    """The first pair that differs by more than the rounding of 50 digits."""
+    tolerance = fifty_digits().number(TOLERANCE)
+    pairs = enumerate(zip(values[::2], values[1::2], strict=True))
+    return next((i for i, (a, b) in pairs if abs(a - b) > tolerance * max(1, abs(a), abs(b))), None)
 
 
 def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:

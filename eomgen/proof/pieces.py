@@ -1,0 +1,108 @@
+"""Scalars -> what their pieces hang on: quantities that move, and where one piece ends and the next begins.
+
+A comparison, min, max, abs or sign changes where the difference of its two sides passes 0, samples where their argument
+passes one of their places. Differences that are the same up to what stands still are one quantity with several ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from eomgen.symbolic.expression.derivative import gradient, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, COMPUTED
+
+STEPS = 40  # of Newton's method to a value of a quantity
+SHARES = (Fraction(1, 2), Fraction(1, 8), Fraction(7, 8))  # of a piece, where it is entered
+BEYOND = (Fraction(1, 2), Fraction(1, 20), Fraction(1, 200))  # of the nearest piece's width, outside of all
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A quantity, and the values of it at which something changes its form.
+
+    Args:
+        quantity: what moves.
+        ends: what stands still: numbers and parameters.
+    """
+
+    quantity: Scalar
+    ends: tuple[Scalar, ...]
+
+    def places(self, state: State) -> list[Any]:
+        """The ends in ascending order, each once, with the numbers of the state."""
+        return sorted(set(evaluate(self.ends, state, fifty_digits())))
+
+    def piece(self, state: State) -> int | None:
+        """In which piece the quantity lies, from 0; None: between two."""
+        value = evaluate((self.quantity,), state, fifty_digits())[0]
+        places = self.places(state)
+        if any(abs(value - end) <= COMPUTED * (1 + abs(end)) for end in places):
+            return None
+        return sum(value > end for end in places)
+
+    def targets(self, state: State) -> list[list[Any]]:
+        """Of every piece some values of the quantity inside."""
+        places, number = self.places(state), fifty_digits().number
+        widths = [b - a for a, b in pairwise(places)] or [1 + abs(places[0])]
+        inside = [[a + number(share) * (b - a) for share in SHARES] for a, b in pairwise(places)]
+        below = [places[0] - number(share) * widths[0] for share in BEYOND]
+        return [below, *inside, [places[-1] + number(share) * widths[-1] for share in BEYOND]]
+
+    def moved(self, state: State, value: Any, moving: frozenset[Node]) -> State | None:
+        """The nearest state at which the quantity has that value; None where Newton's method finds none.
+
+        Raises:
+            NoValue: the quantity has none on the way.
+        """
+        free = [x for x in symbols_of((self.quantity,)) if x in moving]
+        slopes = gradient(self.quantity, free)
+        for _ in range(STEPS):
+            now, *slope = evaluate((self.quantity, *slopes), state, fifty_digits())
+            if abs(value - now) <= CERTAIN_AT_50 * (1 + abs(value)):
+                return state
+            square = sum(x * x for x in slope)
+            if square == 0:
+                return None
+            state = state | {x: state[x] + s * (value - now) / square for x, s in zip(free, slope, strict=True)}
+        return None
+
+
+def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Switch, ...]:
+    """Every switch in the scalars that something that moves can throw."""
+    nodes = order(scalars)
+    active: set[Any] = set(moving)
+    for x in nodes:
+        if x.op != "symbol" and any(type(a) is Node and a in active for a in x.args):
+            active.add(x)
+    found: dict[tuple[tuple[int, Any], ...], tuple[Scalar, dict[Scalar, None]]] = {}
+    for x in nodes:
+        for terms, ends in _thrown_by(x):
+            parts = sorted(((y, c) for y, c in terms.items() if y in active), key=lambda part: part[0].index)
+            if not parts:
+                continue
+            first = Fraction(parts[0][1])
+            still = sum((c if y is None else c * y for y, c in terms.items() if y not in active), start=0)
+            key = tuple((y.index, Fraction(c) / first) for y, c in parts)
+            quantity = sum(((Fraction(c) / first) * y for y, c in parts), start=0)
+            _, known = found.setdefault(key, (quantity, {}))
+            known |= dict.fromkeys((end - still) * (1 / first) for end in ends)
+    return tuple(Switch(quantity, tuple(ends)) for quantity, ends in found.values())
+
+
+def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
+    """(terms, the values of their sum at which x changes its form)."""
+    if x.op in ("less", "less_equal", "min", "max"):
+        yield linear_terms(x.args[0] - x.args[1]), (0,)
+    elif x.op in ("abs", "sign"):
+        yield linear_terms(x.args[0]), (0,)
+    elif x.op == "sampled":
+        yield linear_terms(x.args[0]), sampled_of(x.args[1]).spline.bounds

@@ -1,0 +1,213 @@
+"""System -> the states at which it is proved: its own start, one inside each piece of what it is made of, random ones.
+
+A state at which something has no value is not a failure: another near it is taken, and where there is none, none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.mechanics.constraints.closure import closed, generic_state, movable, number, on_unit_spheres
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.model.values import exact_parameters
+from eomgen.proof.pieces import Switch, switches_of
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+
+TRIES = 20  # random states, for one with a value
+NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
+MOST = 12  # pieces of one quantity that are visited, evenly spread; 1000 samples are one formula
+
+
+@dataclass(frozen=True)
+class TrialState:
+    """A state, and what is to be said where something differs there."""
+
+    state: State
+    remark: str = ""
+
+
+class Supply:
+    """Places that are made when they are asked for, and kept."""
+
+    def __init__(self, source: Iterable[TrialState]) -> None:
+        self._source, self._kept = iter(source), list[TrialState]()
+
+    def __iter__(self) -> Iterator[TrialState]:
+        k = 0
+        while True:
+            if k == len(self._kept):
+                found = next(self._source, None)
+                if found is None:
+                    return
+                self._kept.append(found)
+            yield self._kept[k]
+            k += 1
+
+
+@dataclass(frozen=True)
+class States:
+    """The states of a system; of each supply the first one is taken at which there are values.
+
+    Args:
+        scalars: all that is looked at: what of it has pieces is looked at in each of them.
+    """
+
+    system: System
+    scalars: tuple[Scalar, ...]
+
+    @cached_property
+    def supplies(self) -> tuple[tuple[str, Supply], ...]:
+        """(where, states): "at the start", then "in a piece" of each quantity, then "at random"."""
+        pieces = [("in a piece", Supply(found)) for found in self._pieces()]
+        return ("at the start", Supply(self._at_the_start())), *pieces, ("at random", Supply(self._at_random()))
+
+    @cached_property
+    def switches(self) -> tuple[Switch, ...]:
+        """What decides between pieces, and moves."""
+        symbols = self.system.symbols
+        moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
+        return switches_of(self.scalars, moving)
+
+    def _inside(self, state: State) -> bool:
+        """Whether the state lies between no two pieces."""
+        return all(switch.piece(state) is not None for switch in self.switches)
+
+    def _at_the_start(self) -> Iterator[TrialState]:
+        """The model's own start and numbers, then states near it."""
+        rng = Random(5)
+        start = _own_state(self.system, rng)
+        if start is not None:
+            yield from self._if_inside(start)
+            for spread in (*NEAR, *NEAR):
+                yield from self._if_inside(_shaken(self.system, start, spread, rng))
+
+    def _if_inside(self, state: State) -> Iterator[TrialState]:
+        try:
+            if self._inside(state):
+                yield TrialState(state, " (at the start)")
+        except (NoValue, ZeroDivisionError):
+            return
+
+    def _pieces(self) -> Iterator[Iterator[TrialState]]:
+        """Of every piece of every quantity its states, in motion and with the model's own numbers."""
+        rng = Random(6)
+        start = _own_state(self.system, rng) if self.switches else None
+        if start is None:
+            return
+        visited: set[tuple[int, int]] = set()
+        for k, switch in enumerate(self.switches):
+            count = len(switch.places(start)) + 1
+            for j in sorted({round(i * (count - 1) / (min(count, MOST) - 1)) for i in range(min(count, MOST))}):
+                if (k, j) not in visited:
+                    yield self._in_piece((k, j), start, visited, rng)
+
+    def _in_piece(
+        self, piece: tuple[int, int], start: State, visited: set[tuple[int, int]], rng: Random
+    ) -> Iterator[TrialState]:
+        """States in one piece; what else they lie in is visited with them."""
+        k, j = piece
+        switch, symbols = self.switches[k], self.system.symbols
+        moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
+        for target in switch.targets(start)[j]:
+            try:
+                found = switch.moved(_set_moving(self.system, start, rng), target, moving)
+                if found is None:
+                    continue
+                place = self._closed(found, switch, j)
+                if not self._inside(place.state):
+                    continue
+                visited |= {(i, s.piece(place.state) or 0) for i, s in enumerate(self.switches)}
+            except (NoValue, ZeroDivisionError):
+                continue
+            yield place
+
+    def _closed(self, state: State, switch: Switch, piece: int) -> TrialState:
+        """The state with its ties closed where that leaves it in its piece."""
+        state = state | on_unit_spheres(self.system.scope.quaternions, state)
+        ties = self.system.ties
+        if all(row.identical for row in ties.rows):
+            return TrialState(state, " (in one of its pieces)")
+        found = closed(ties, state, movable(ties))
+        if found is None or switch.piece(found) != piece:
+            return TrialState(state, " (in one of its pieces, its ties open)")
+        return TrialState(found, " (in one of its pieces)")
+
+    def _at_random(self) -> Iterator[TrialState]:
+        rng = Random(7)
+        for _ in range(TRIES):
+            state, remark = closed_state(self.system, rng)
+            yield TrialState(state, remark)
+
+
+def _own_state(system: System, rng: Random) -> State | None:
+    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold."""
+    model, symbols = system.scope.model, system.symbols
+    known = exact_parameters(model)
+    drawn = {name: round(rng.uniform(0.7, 1.3), 6) for name in symbols.parameters if name not in known}
+    try:
+        values = start_state(system, drawn)
+    except (DerivationError, ModelError, UsageError):
+        return None
+    known = {**exact_parameters(model, drawn), **values}
+    given = {node: known[name] for name, node in symbols.parameters.items()}
+    given |= {node: known[node.name] for node in (*symbols.q, *symbols.u)}
+    state = {
+        node: number(value) if isinstance(value, float) else fifty_digits().number(value)
+        for node, value in given.items()
+    }
+    state |= {symbols.t: number(0.0)} | {x: number(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
+    state |= on_unit_spheres(system.scope.quaternions, state)
+    if not all(row.identical for row in system.ties.rows):
+        state = closed(system.ties, state, movable(system.ties)) or state
+    own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
+    return state | dict(zip(symbols.inputs.values(), own, strict=True))
+
+
+def _set_moving(system: System, state: State, rng: Random) -> State:
+    """The state with speeds of its own."""
+    return state | {u: state[u] + number(rng.uniform(-1, 1)) for u in system.symbols.u}
+
+
+def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
+    """A state near another one, its ties closed where they close."""
+    symbols = system.symbols
+    shifted = {x: state[x] + number(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
+    shifted[symbols.t] = state[symbols.t] + number(rng.uniform(0, spread))
+    state = state | shifted
+    state |= on_unit_spheres(system.scope.quaternions, state)
+    if all(row.identical for row in system.ties.rows):
+        return state
+    return closed(system.ties, state, movable(system.ties)) or state
+
+
+def real_state(system: System, rng: Random) -> State:
+    """Random values of all symbols, at 50 digits; parameters and times positive."""
+    arithmetic = fifty_digits()
+    symbols = system.symbols
+
+    def draw(low: int, high: int) -> Any:
+        return arithmetic.number(1) * rng.randint(low * 10**12, high * 10**12) / 10**12
+
+    state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
+    state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
+    state[symbols.t] = draw(0, 1)
+    return state | on_unit_spheres(system.scope.quaternions, state)
+
+
+def closed_state(system: System, rng: Random) -> tuple[State, str]:
+    """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
+    state = real_state(system, rng)
+    if all(row.identical for row in system.ties.rows):
+        return state, ""
+    try:
+        return state | generic_state(system.ties, rng), ""
+    except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant
+        return state, f" ({error.what})"
