@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints.closure import closed, generic_state, movable, number, on_unit_spheres
+from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_spheres
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import exact_parameters
@@ -160,10 +160,10 @@ def _own_state(system: System, rng: Random) -> State | None:
     given = {node: known[name] for name, node in symbols.parameters.items()}
     given |= {node: known[node.name] for node in (*symbols.q, *symbols.u)}
     state = {
-        node: number(value) if isinstance(value, float) else fifty_digits().number(value)
+        node: of_50_digits(value) if isinstance(value, float) else fifty_digits().number(value)
         for node, value in given.items()
     }
-    state |= {symbols.t: number(0.0)} | {x: number(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
+    state |= {symbols.t: of_50_digits(0.0)} | {x: of_50_digits(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
     state |= on_unit_spheres(system.scope.quaternions, state)
     if not all(row.identical for row in system.ties.rows):
         state = closed(system.ties, state, movable(system.ties)) or state
@@ -173,14 +173,14 @@ def _own_state(system: System, rng: Random) -> State | None:
 
 def _set_moving(system: System, state: State, rng: Random) -> State:
     """The state with speeds of its own."""
-    return state | {u: state[u] + number(rng.uniform(-1, 1)) for u in system.symbols.u}
+    return state | {u: state[u] + of_50_digits(rng.uniform(-1, 1)) for u in system.symbols.u}
 
 
 def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
     """A state near another one, its ties closed where they close."""
     symbols = system.symbols
-    shifted = {x: state[x] + number(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
-    shifted[symbols.t] = state[symbols.t] + number(rng.uniform(0, spread))
+    shifted = {x: state[x] + of_50_digits(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
+    shifted[symbols.t] = state[symbols.t] + of_50_digits(rng.uniform(0, spread))
     state = state | shifted
     state |= on_unit_spheres(system.scope.quaternions, state)
     if all(row.identical for row in system.ties.rows):

@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
 from eomgen.mechanics.bodies.contact_modes import CLOSED
 from eomgen.mechanics.bodies.kinematics import spin_between
-from eomgen.mechanics.constraints.closure import number
+from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
@@ -202,7 +202,7 @@ class Trials:
         groups = ((*symbols.q, *symbols.u), symbols.parameters.values(), symbols.inputs.values())
 
         def check(state: State) -> str:
-            state = {node: number(float(value)) for node, value in state.items()}
+            state = {node: of_50_digits(float(value)) for node, value in state.items()}
             x, p, inputs = ([float(state[s]) for s in group] for group in groups)
             rates = [float(v) for v in evaluate(self.system.scope.rates, state, digits)]
             dx = rhs(float(state[symbols.t]), x, p, inputs)
