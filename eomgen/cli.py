@@ -201,7 +201,10 @@ def statics(model: str, wants_json: bool, output: str | None, format_: str | Non
     metavar='"POINT in BODY"',
     help="Motion of a point on a moving body: transport, relative, Coriolis.",
 )
-def kinematics(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+@NO_CERTIFY
+def kinematics(
+    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
+) -> int:
     """Give velocities and centres of rotation at one instant.
 
     Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
@@ -209,7 +212,7 @@ def kinematics(model: str, wants_json: bool, output: str | None, format_: str | 
     """
     from eomgen.verbs.kinematics import kinematics as found
 
-    return _write(found, model, wants_json, output, format_, **options)
+    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
 @main.command()

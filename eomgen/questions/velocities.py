@@ -133,7 +133,8 @@ def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
         (u,) = symbols.u
         return replace(found, moving={**moving, u: u}, rate=u.name, symbol=u)
     accelerated, rounded = _with_accelerations(phase, moving, numbers)
-    return replace(found, accelerated=accelerated, rounded=rounded)
+    assembly = phase.assembly if accelerated else None
+    return replace(found, accelerated=accelerated, rounded=rounded, assembly=assembly)
 
 
 def _sees_time(phase: PhaseEquations) -> bool:

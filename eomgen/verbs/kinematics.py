@@ -8,7 +8,7 @@ from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
 from eomgen.verbs.given import nearest
-from eomgen.verbs.outcome import Outcome, told
+from eomgen.verbs.outcome import Outcome, proven, told
 
 
 def kinematics(
@@ -18,6 +18,7 @@ def kinematics(
     at: str | None = None,
     given: Sequence[str] = (),
     relative: Sequence[str] = (),
+    certify: bool = True,
 ) -> Outcome:
     """The motion at one instant.
 
@@ -26,6 +27,7 @@ def kinematics(
         at: the instant, an equation; None: the start, or the one configuration.
         given: velocities besides those of the model: "omega(crank) = 2".
         relative: points as they are seen from moving bodies: "P in disc".
+        certify: whether it is proven.
     Raises:
         UsageError: no equation; no such point or body.
     """
@@ -38,7 +40,7 @@ def kinematics(
         if not given:
             raise
         raise UsageError(f"--given: {error.what}", mend=error.mend) from error
-    return told(found, plot=plot)
+    return proven(told(found, plot=plot), found.certify() if certify else None)
 
 
 def _asked(at: str | None, given: Sequence[str]) -> str:

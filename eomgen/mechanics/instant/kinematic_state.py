@@ -9,6 +9,7 @@ from functools import cached_property
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import is_particle
+from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
@@ -45,6 +46,7 @@ class KinematicState:
         symbol: of it.
         exact: whether the state is known in closed form.
         rounded: whether the accelerations are numbers although the state has a closed form.
+        assembly: the equations of motion by which it goes on; None where only the instant is known.
     """
 
     system: System
@@ -58,6 +60,7 @@ class KinematicState:
     symbol: Node | None = None
     exact: bool = True
     rounded: bool = False
+    assembly: Assembly | None = None
 
     @property
     def state(self) -> State:

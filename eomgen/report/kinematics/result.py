@@ -7,11 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.certificate import certify
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.body_motion import body_motions
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import RotationCenter
+from eomgen.proof.check import Certificate
+from eomgen.proof.instant import instant_checks
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
@@ -49,6 +52,13 @@ class Kinematics(Result):
         """The centres that a drawing finds elsewhere than the velocities; "" as it must be."""
         wrong = self.state.disagreement
         return f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
+
+    def certify(self) -> Certificate:
+        """Check the equations of motion where the motion follows them, and all velocities by differences of places."""
+        state = self.state
+        base = Certificate(()) if state.assembly is None else certify(state.system, state.assembly)
+        bodies = body_motions(state.system, state.state) if state.accelerated and state.is_short else ()
+        return base + instant_checks(state, bodies, self.relative)
 
     @cached_property
     def derivation(self) -> Document:

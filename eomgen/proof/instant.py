@@ -1,0 +1,381 @@
+"""KinematicState -> checks of velocities, accelerations and centres at one instant, against differences of places.
+
+The motion through the state, to second order: q(t + h) = q + h q' + h^2/2 q''. Places and axes of the bodies at t - h,
+t and t + h, with 50 digits, give every velocity and acceleration again; no rate of a twist, no field and no law of
+relative motion is used. Shared: the poses as functions of q and t, and q' = N u + nu (both proven with the equations).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from random import Random
+from typing import Any
+
+from eomgen.mechanics.fields.relative_motion import composition_of
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.instant.body_motion import BodyMotion
+from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.mechanics.instant.mechanism import FIXED
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.nearby import Nearby
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.expressions import parse_equation
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Vector,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50
+
+STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
+DIFFERENCES = "differences at 50 digits"
+MOST_TRIPLES = 60  # of bodies whose three centres are looked at
+
+
+def instant_checks(
+    state: KinematicState, motions: Sequence[BodyMotion] = (), relative: Sequence[tuple[str, str]] = ()
+) -> Iterator[Check]:
+    """Of what is printed of a state.
+
+    Args:
+        motions: of the bodies, as they are printed.
+        relative: (point, body): the points that are seen from bodies.
+    """
+    proof = _Proof(state)
+    checks = [
+        ("the ties stay closed along the motion", proof.wrong_ties),
+        ("what is given holds", proof.wrong_given),
+        ("velocities and accelerations of points are the differences of their places", proof.wrong_points),
+        ("spins and angular accelerations are the differences of the bodies' axes", proof.wrong_fields),
+        ("centres of rotation have no velocity against each other", proof.wrong_centers),
+        ("any three centres are on one line (Kennedy)", proof.wrong_lines),
+        ("centres by drawing and by velocities agree", lambda: state.disagreement),
+        ("poles, inflection circles and slowest points are such", lambda: proof.wrong_motions(motions)),
+        ("v = v_t + v_r, a = a_t + a_r + a_C, each found by itself", lambda: proof.wrong_relative(relative)),
+        ("accelerations satisfy the equations of motion", proof.wrong_accelerations),
+    ]
+    for name, wrong in checks:
+        try:
+            found = wrong()
+        except (NoValue, ZeroDivisionError) as error:
+            yield unchecked(name, str(error) or "no value there", DIFFERENCES)
+            continue
+        if found is not None:
+            yield checked(name, found, DIFFERENCES)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A rigid body by differences of its poses, ground axes.
+
+    Args:
+        p, v, a: of its origin.
+        R: its axes.
+        R1, R2: the rates of these.
+        w, e: spin and angular acceleration.
+    """
+
+    p: Vector
+    v: Vector
+    a: Vector
+    R: Matrix
+    R1: Matrix
+    R2: Matrix
+    w: Vector
+    e: Vector
+
+    def velocity(self, place: Vector) -> Vector:
+        return plus(self.v, cross(self.w, minus(place, self.p)))
+
+    def acceleration(self, place: Vector) -> Vector:
+        r = minus(place, self.p)
+        return plus(self.a, plus(cross(self.e, r), cross(self.w, cross(self.w, r))))
+
+
+NONE: Matrix = (ZERO, ZERO, ZERO)
+REST = Seen(ZERO, ZERO, ZERO, IDENTITY, NONE, NONE, ZERO, ZERO)
+
+
+@dataclass(frozen=True)
+class _Proof:
+    """What is wrong with each, in words; None where there is nothing to look at.
+
+    Args:
+        state: what is printed.
+    """
+
+    state: KinematicState
+
+    # -- the motion ------------------------------------------------------------------------------------------
+
+    @cached_property
+    def values(self) -> Mapping[Node, Any]:
+        """Of every symbol at the instant; parameters and rates that have none are something."""
+        state, rng = self.state, Random(3)
+        known: dict[Node, Any] = values_of_parameters(state.system.scope, rng)
+        scalars = tuple(state.state.values())
+        for x in symbols_of(scalars):
+            if x not in known:
+                known[x] = fifty_digits().number(rng.randint(50, 90)) / 60
+        found = dict(zip(state.state, evaluate(scalars, known, fifty_digits()), strict=True))
+        return {**known, **found}
+
+    @property
+    def accelerated(self) -> bool:
+        return bool(self.state.accelerated)
+
+    @cached_property
+    def way(self) -> tuple[Mapping[Node, Any], ...]:
+        """The values h earlier, now, and h later."""
+        system, values = self.state.system, dict(self.values)
+        symbols, scope, h = system.symbols, system.scope, STEP
+        for a in symbols.a:
+            values.setdefault(a, 0)
+        first = evaluate(scope.rates, values, fifty_digits())
+        second = evaluate(scope.with_accelerations(scope.rates), values, fifty_digits())
+
+        def later(t: Any) -> dict[Node, Any]:
+            places = zip(symbols.q, first, second, strict=True)
+            speeds = {u: values[u] + t * values[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
+            moved = {q: values[q] + t * v + t * t / 2 * a for q, v, a in places}
+            return {**values, **speeds, **moved, symbols.t: values[symbols.t] + t}
+
+        return later(-h), values, later(h)
+
+    def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
+        """(scalars, their first and second rates) by differences."""
+        early, now, late = (evaluate(tuple(scalars), each, fifty_digits()) for each in self.way)
+        first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
+        second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
+        return now, first, second
+
+    def here(self, scalars: Sequence[Scalar]) -> Vector:
+        return vector_of(evaluate(tuple(scalars), self.way[1], fifty_digits()))
+
+    def one(self, x: Scalar) -> Any:
+        return evaluate((x,), self.way[1], fifty_digits())[0]
+
+    @cached_property
+    def bodies(self) -> dict[str, Seen]:
+        """Every body by differences."""
+        return {link.name: self._seen(link.pose) for link in self.state.system.motion.links} | {FIXED: REST}
+
+    def _seen(self, pose: Any) -> Seen:
+        now, first, second = self.along([*pose.p, *(x for row in pose.R for x in row)])
+        R, R1, R2 = (matrix_of((x[3:6], x[6:9], x[9:12])) for x in (now, first, second))
+        p, v, a = (vector_of(x[:3]) for x in (now, first, second))
+        return Seen(p, v, a, R, R1, R2, _turning(R1, R), _turning(R2, R))
+
+    @cached_property
+    def size(self) -> tuple[Any, Any]:
+        """What is usual of velocities and of accelerations."""
+        speeds = [abs(x) for body in self.bodies.values() for x in (*body.v, *body.w)]
+        rates = [abs(x) for body in self.bodies.values() for x in (*body.a, *body.e)]
+        return max(speeds, default=0), max(rates, default=0)
+
+    def differs(self, stated: Sequence[Any], found: Sequence[Any], order: int, tolerance: float = 0.0) -> bool:
+        """Whether velocities (order 1) or accelerations (2) are not the same."""
+        tolerance = tolerance or DIFFERENCE_AT_50
+        size = self.size[order - 1] + max(map(abs, found), default=0)
+        floor = DIFFERENCE_AT_50 * max(map(abs, (self.size[0], 1)))
+        return any(abs(x - y) > tolerance * size + floor for x, y in zip(stated, found, strict=True))
+
+    @property
+    def tolerance(self) -> float:
+        """Of what equations say of the state, which may be known in doubles only."""
+        return DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else COMPUTED
+
+    # -- ties and what is given ------------------------------------------------------------------------------
+
+    def wrong_ties(self) -> str | None:
+        """phi stays 0: its first and second differences; of velocity rows W^T xi + s_t and its difference."""
+        rows = self.state.system.ties.rows
+        gaps = [row for row in rows if row.gap is not None]
+        _, first, second = self.along([row.gap for row in gaps if row.gap is not None])
+        rolling = [row for row in rows if row.gap is None]
+        slip, rate, _ = self.along([row.velocity for row in rolling])
+        for row, v, a in [*zip(gaps, first, second, strict=True), *zip(rolling, slip, rate, strict=True)]:
+            if self.differs((v,), (0,), 1, self.tolerance):
+                return f"'{row.tie}' opens at {float(v):.3g} m/s"
+            if self.accelerated and self.differs((a,), (0,), 2, self.tolerance):
+                return f"'{row.tie}' opens at {float(a):.3g} m/s^2"
+        return "" if rows else None
+
+    def wrong_given(self) -> str | None:
+        """left = right at the state."""
+        if not self.state.given:
+            return None
+        quantities = Quantities(self.state.system, self.state.state)
+        names = self.state.system.scope.names
+        for text in self.state.given:
+            sides = [side.evaluate(names, quantities.value) for side in parse_equation(text)]
+            left, right = evaluate(sides, self.way[1], fifty_digits())
+            if abs(left - right) > self.tolerance * (abs(left) + abs(right) + self.size[0]):
+                return f"{text}: {float(left):.10g} and {float(right):.10g}"
+        return ""
+
+    # -- points and bodies -----------------------------------------------------------------------------------
+
+    def wrong_points(self) -> str | None:
+        motion = self.state.system.motion
+        for names, r, v, a in self.state.points:
+            for name in names.split(", "):
+                place, first, second = self.along(motion.position(motion.place(name)))
+                if self.differs(self.here(r), place, 1, self.tolerance) or self.differs(self.here(v), first, 1):
+                    return f"velocity of {name}"
+                if a is not None and self.differs(self.here(a), second, 2):
+                    return f"acceleration of {name}"
+        return "" if self.state.points else None
+
+    def wrong_fields(self) -> str | None:
+        for name, field in self.state.fields.items():
+            seen = self.bodies[name]
+            if self.differs(self.here(field.w), seen.w, 1) or self.differs(self.here(field.v), seen.v, 1):
+                return f"'{name}'"
+            if self.accelerated and self.differs((*self.here(field.e), *self.here(field.a)), (*seen.e, *seen.a), 2):
+                return f"'{name}': accelerations"
+        return "" if self.state.fields else None
+
+    # -- centres ---------------------------------------------------------------------------------------------
+
+    def wrong_centers(self) -> str | None:
+        """v_i = v_j there; at infinity w_i = w_j and v_j - v_i across the direction."""
+        mechanism = self.state.mechanism
+        if mechanism is None or not mechanism.centers:
+            return None
+        for pair, center in mechanism.centers.items():
+            i, j = (self.bodies[body] for body in pair)
+            point = self.here(center.point)
+            if center.at_infinity:
+                apart = minus(j.velocity(i.p), i.velocity(i.p))
+                left: tuple[Any, ...] = (j.w[2] - i.w[2], dot(apart, point) / dot(point, point) ** 0.5)
+            else:
+                place = (point[0], point[1], 0)
+                left = minus(j.velocity(place), i.velocity(place))[:2]
+            if self.differs(left, (0,) * len(left), 1, self.tolerance * (1 + max(map(abs, point)))):
+                return center.name
+        return ""
+
+    def wrong_lines(self) -> str | None:
+        """det(c_ij, c_jk, c_ik) = 0"""
+        mechanism = self.state.mechanism
+        if mechanism is None or len(mechanism.blocks) < 3:
+            return None
+        for three in list(combinations(mechanism.blocks, 3))[:MOST_TRIPLES]:
+            points = [_unit(self.here(mechanism.centers[pair].point)) for pair in combinations(three, 2)]
+            if abs(dot(points[0], cross(points[1], points[2]))) > self.tolerance:
+                return f"those of {', '.join(three)}"
+        return ""
+
+    # -- bodies, further -------------------------------------------------------------------------------------
+
+    def wrong_motions(self, motions: Sequence[BodyMotion]) -> str | None:
+        looked = False
+        for motion in motions:
+            seen = self.bodies[motion.body]
+            for what, left, order in self._points_of(motion, seen):
+                looked = True
+                if self.differs(left, (0,) * len(left), order, self.tolerance):
+                    return f"{what} of '{motion.body}'"
+        return "" if looked else None
+
+    def _points_of(self, motion: BodyMotion, seen: Seen) -> Iterator[tuple[str, Sequence[Any], int]]:
+        """(what, what vanishes there, of which order)."""
+        if motion.center is not None:
+            yield "the centre", seen.velocity(self.here(motion.center)), 1
+        if motion.pole is not None and self.accelerated:
+            yield "the pole", seen.acceleration(self.here(motion.pole)), 2
+        if motion.inflection is not None and self.accelerated:
+            (x, y, _), radius = self.here(motion.inflection[0]), self.one(motion.inflection[1])
+            for c, s in ((5, 0), (-3, 4)):
+                place = (x + c * radius / 5, y + s * radius / 5, 0)
+                v = seen.velocity(place)
+                if (size := dot(v, v) ** 0.5) > COMPUTED * self.size[0]:  # not the centre of rotation itself
+                    yield "the inflection circle", (cross(v, seen.acceleration(place))[2] / size,), 2
+        if motion.slowest is not None:
+            first, last, least = motion.slowest
+            ends = [seen.velocity(self.here(place)) for _, place in motion.ends]
+            yield f"the least speed between {first} and {last}", (self.one(least) - _least(*ends),), 1
+
+    # -- relative motion -------------------------------------------------------------------------------------
+
+    def wrong_relative(self, relative: Sequence[tuple[str, str]]) -> str | None:
+        for point, body in relative:
+            stated = composition_of(self.state.system.motion, point, body)
+            for what, order, found in self._parts(point, body):
+                if order == 2 and not self.accelerated:
+                    continue
+                if self.differs(self.here(getattr(stated, what)), found, order):
+                    return f"{what.replace('_', ' ')} of {point} in {body}"
+        return "" if relative else None
+
+    def _parts(self, point: str, body: str) -> Iterator[tuple[str, int, Vector]]:
+        """(part of a `Composition`, its order, the part by differences)."""
+        system = self.state.system
+        motion, carrier = system.motion, self.bodies[body]
+        pose = motion.link(body).pose
+        place = motion.position(motion.place(point))
+        r, v, a = map(vector_of, self.along(place))
+        _, v_r, a_r = map(vector_of, self.along(apply(transposed(pose.R), minus(place, pose.p))))
+        v_r, a_r = apply(carrier.R, v_r), apply(carrier.R, a_r)
+        arm = apply(transposed(carrier.R), minus(r, carrier.p))
+        v_t, a_t = plus(carrier.v, apply(carrier.R1, arm)), plus(carrier.a, apply(carrier.R2, arm))
+        yield from (("velocity", 1, v), ("relative_velocity", 1, v_r), ("transport_velocity", 1, v_t))
+        yield from (("acceleration", 2, a), ("relative_acceleration", 2, a_r), ("transport_acceleration", 2, a_t))
+        yield "coriolis", 2, minus(a, plus(a_t, a_r))
+        outwards = minus(r, carrier.p)
+        yield "euler", 2, cross(carrier.e, outwards)
+        yield "centripetal", 2, cross(carrier.w, cross(carrier.w, outwards))
+
+    # -- the law ---------------------------------------------------------------------------------------------
+
+    def wrong_accelerations(self) -> str | None:
+        """M a = forcing + J^T lam, J a + gamma = 0, where the motion follows from forces."""
+        system, assembly = self.state.system, self.state.assembly
+        if assembly is None or not self.accelerated:
+            return None
+        known = dict(self.way[1])
+        inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
+        known |= dict(zip(inputs, evaluate(tuple(inputs.values()), known, fifty_digits()), strict=True))
+        free = Nearby(system, assembly, (), known, system.symbols.q, system.symbols.u).going(known)
+        for u, a in zip(system.symbols.u, system.symbols.a, strict=True):
+            if self.differs((known[a],), (free.a[u],), 2, self.tolerance):
+                return f"{a.name} is {float(known[a]):.10g} against {float(free.a[u]):.10g}"
+        return ""
+
+
+def _turning(rate: Matrix, R: Matrix) -> Vector:
+    """The spin of R' R^T, and the angular acceleration of R'' R^T: half of what is skew."""
+    A = product(rate, transposed(R))
+    half = fifty_digits().number(1) / 2
+    return times(half, (A[2][1] - A[1][2], A[0][2] - A[2][0], A[1][0] - A[0][1]))
+
+
+def _unit(v: Vector) -> Vector:
+    return times(1 / dot(v, v) ** 0.5, v)
+
+
+def _least(start: Vector, end: Vector) -> Any:
+    """The least size of v between two values, on the way from the one to the other."""
+    step = minus(end, start)
+    square = dot(step, step)
+    part = min(max(-dot(start, step) / square, 0), 1) if square else 0
+    v = plus(start, times(part, step))
+    return dot(v, v) ** 0.5
