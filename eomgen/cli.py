@@ -104,30 +104,30 @@ def main() -> None:
     """
 
 
-@main.command()
+@main.command("new")
 @click.argument("name")
 @JSON
-def new(name: str, wants_json: bool) -> int:
+def new_command(name: str, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
-    from eomgen.verbs.new import new as made
+    from eomgen.verbs.new import new_outcome as made
 
     return deliver(made(name), _form(wants_json, None))
 
 
-@main.command()
+@main.command("check")
 @_common
-def check(model: str, wants_json: bool, output: str | None, format_: str | None) -> int:
+def check_command(model: str, wants_json: bool, output: str | None, format_: str | None) -> int:
     """Validate a model; count its degrees of freedom.
 
     By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
     integrable; how the loops close at the start, and in which other ways they could.
     """
-    from eomgen.verbs.check import check as checked
+    from eomgen.verbs.check import check_outcome as checked
 
     return _write(checked, model, wants_json, output, format_)
 
 
-@main.command()
+@main.command("derive")
 @_common
 @click.option(
     "--method",
@@ -138,60 +138,62 @@ def check(model: str, wants_json: bool, output: str | None, format_: str | None)
 )
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @NO_CERTIFY
-def derive(
+def derive_command(
     model: str, wants_json: bool, output: str | None, method: str, format_: str | None, full: bool, no_certify: bool
 ) -> int:
     """Derive the equations of motion and certify them."""
-    from eomgen.verbs.derive import derive as derived
+    from eomgen.verbs.derive import derive_outcome as derived
 
     return _write(derived, model, wants_json, output, format_, method=method, certify=not no_certify, full=full)
 
 
-@main.command()
+@main.command("solve")
 @_common
 @FOLLOW
-def solve(model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...]) -> int:
+def solve_command(
+    model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...]
+) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
-    from eomgen.verbs.solve import solve as solved
+    from eomgen.verbs.solve import solve_outcome as solved
 
     return _write(solved, model, wants_json, output, format_, follow)
 
 
-@main.command()
+@main.command("reactions")
 @_common
 @click.option(
     "--at", metavar="EQUATION", help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".'
 )
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
-def reactions(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+def reactions_command(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
     coordinates and rates with its number at the start; with --at, exactly and as a number at that instant.
     """
-    from eomgen.verbs.reactions import reactions as found
+    from eomgen.verbs.reactions import reactions_outcome as found
 
     return _write(found, model, wants_json, output, format_, **options)
 
 
-@main.command()
+@main.command("statics")
 @_written
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
-def statics(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+def statics_command(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
     """Give reactions at rest by virtual work, or the places of rest.
 
     Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
     mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
     system that is free to move: where it is at rest, and whether that is stable.
     """
-    from eomgen.verbs.statics import statics as found
+    from eomgen.verbs.statics import statics_outcome as found
 
     return _write(found, model, wants_json, output, format_, **options)
 
 
-@main.command()
+@main.command("kinematics")
 @_written
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
@@ -210,18 +212,18 @@ def kinematics(
     Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
     rotation with the lines on which they are found, spins, velocities and accelerations of points, kinds of motion.
     """
-    from eomgen.verbs.kinematics import kinematics as found
+    from eomgen.verbs.kinematics import kinematics_outcome as found
 
     return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
-@main.command()
+@main.command("inertia")
 @_written
 @click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
 @click.option("--about", metavar="POINT", help="About this point too.")
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
 @NO_CERTIFY
-def inertia(
+def inertia_command(
     model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
 ) -> int:
     """Give masses, mass centres, moments of inertia, principal axes.
@@ -229,12 +231,12 @@ def inertia(
     Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
     tensor (minus) and of the textbook (plus).
     """
-    from eomgen.verbs.inertia import inertia as found
+    from eomgen.verbs.inertia import inertia_outcome as found
 
     return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
-@main.command()
+@main.command("linearize")
 @_written
 @click.option(
     "--about",
@@ -244,7 +246,7 @@ def inertia(
 )
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
 @NO_CERTIFY
-def linearize(
+def linearize_command(
     model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
 ) -> int:
     """Give small motions about rest or a steady motion.
@@ -252,12 +254,12 @@ def linearize(
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
-    from eomgen.verbs.linearize import linearize as found
+    from eomgen.verbs.linearize import linearize_outcome as found
 
     return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
-@main.command()
+@main.command("simulate")
 @MODEL
 @JSON
 @FORMAT
@@ -296,7 +298,7 @@ def linearize(
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
 @NO_CERTIFY
-def simulate(
+def simulate_command(
     model: str,
     wants_json: bool,
     format_: str | None,
@@ -317,7 +319,7 @@ def simulate(
     kept closed, and how well, and how well energy is kept, is said.
     """
     from eomgen.simulation.integrator import RATES, Stepping
-    from eomgen.verbs.simulate import simulate as simulated
+    from eomgen.verbs.simulate import simulate_outcome as simulated
 
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
@@ -331,7 +333,7 @@ def simulate(
     return deliver(outcome, _form(wants_json, format_), on_stderr=output is not None and not asked)
 
 
-@main.command()
+@main.command("codegen")
 @click.argument("model", required=False, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 @JSON
 @click.option(
@@ -350,7 +352,7 @@ def simulate(
     metavar="ALPHA BETA",
     help="Closing rows that pull back what has opened, with these rates [1/s].",
 )
-def codegen(
+def codegen_command(
     model: str | None,
     wants_json: bool,
     targets: tuple[str, ...],
@@ -363,7 +365,7 @@ def codegen(
     no_certify: bool,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
-    from eomgen.verbs.codegen import codegen as generated
+    from eomgen.verbs.codegen import codegen_outcome as generated
     from eomgen.verbs.codegen import languages
 
     if wants_list:
@@ -387,21 +389,21 @@ def codegen(
     return deliver(outcome, _form(wants_json, None))
 
 
-@main.command()
+@main.command("schema")
 @JSON
 @OUTPUT
-def schema(wants_json: bool, output: str | None) -> int:
+def schema_command(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
-    from eomgen.verbs.schema import schema as written
+    from eomgen.verbs.schema import schema_outcome as written
 
     return deliver(written(), _form(wants_json, None), output)
 
 
-@main.command()
+@main.command("doctor")
 @JSON
 @OUTPUT
-def doctor(wants_json: bool, output: str | None) -> int:
+def doctor_command(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
-    from eomgen.verbs.doctor import doctor as examined
+    from eomgen.verbs.doctor import doctor_outcome as examined
 
     return deliver(examined(), _form(wants_json, None), output)

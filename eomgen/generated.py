@@ -19,7 +19,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.emitted_code import Motion
+from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_of
 from eomgen.questions.run import pulling
 from eomgen.version import __version__
@@ -101,10 +101,10 @@ class Generated:
         values = {}
         if self.reactions is not None:
             values = self.equations.reaction_values
-        judged = {RHS: Judged(Motion(self.equations.system, self.equations.graph), values)}
+        judged = {RHS: Judged(PhaseMotion(self.equations.system, self.equations.graph), values)}
         judged[REACTIONS] = judged[RHS]
         if self.inverse is not None:
-            judged[INVERSE] = Judged(Motion(plain.system, plain.graph), {}, self.inverse[1].outputs)
+            judged[INVERSE] = Judged(PhaseMotion(plain.system, plain.graph), {}, self.inverse[1].outputs)
         for target in self.targets:
             for emitted in (self.motion, self.reactions, self.inverse):
                 if emitted is not None:

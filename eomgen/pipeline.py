@@ -46,7 +46,7 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     system = system_of(model, modes_at_start(model))
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
-    return Equations(model, method, system, with_friction(system, recursive.assemble(system)))
+    return Equations(model, method, system, with_friction(system, recursive.assembled_by_recursion(system)))
 
 
 def inverse_dynamics(model: Model, actuated: Sequence[str] = ()) -> InverseDynamics:

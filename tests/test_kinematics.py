@@ -201,7 +201,7 @@ def test_the_order_in_which_bodies_are_declared_changes_nothing(order):
     results = []
     for names in (tuple(BODIES), order):
         system = written(AROUND.format(bodies="".join(BODIES[name] for name in names)))
-        assembly = recursive.assemble(system)
+        assembly = recursive.assembled_by_recursion(system)
         results.append(at([*(x for row in assembly.M for x in row), *assembly.forcing], state_of(system)))
         parents = [link.parent for link in system.motion.links]
         assert all(parent < i for i, parent in enumerate(parents)), "parents come before children"

@@ -16,8 +16,8 @@ from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import equations_latex, unit_latex, value_latex
 from eomgen.report.latex_lines import LINE, pieces, rows_of, runs_of
 from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import escaped, notation, symbol_latex
-from eomgen.report.markdown import escaped as escaped_markdown
+from eomgen.report.latex_names import latex_escaped, notation, symbol_latex
+from eomgen.report.markdown import markdown_escaped as escaped_markdown
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Scalar
@@ -196,7 +196,7 @@ def test_no_two_symbols_of_a_derivation_look_alike(name):
 
 def test_a_users_text_is_never_markup():
     """each special character stands for itself"""
-    assert escaped(r"50% of #1 & {a_b}^$\x$ ~<>") == (
+    assert latex_escaped(r"50% of #1 & {a_b}^$\x$ ~<>") == (
         r"50\% of \#1 \& \{a\_b\}\textasciicircum{}\$\textbackslash{}x\$ \textasciitilde{}\textless{}\textgreater{}"
     )
     assert escaped_markdown("a|b *c* <b> $x$\n# d") == r"a\|b \*c\* \<b\> \$x\$ \# d"

@@ -202,7 +202,7 @@ def test_speed_and_acceleration_are_magnitudes():
 def moving(text: str) -> Motion:
     """The model moving as its equations say."""
     motion = Motion(text)
-    assembly = recursive.assemble(motion.system)
+    assembly = recursive.assembled_by_recursion(motion.system)
     found = accelerations_and_multipliers(motion.system, assembly)
     motion.state |= {node: motion.number(found[node]) for node in motion.system.symbols.a}
     return motion

@@ -274,7 +274,7 @@ def test_stiff_methods_take_few_steps_where_the_others_need_many(method):
 def test_baumgartes_rows_close_a_gap_as_a_damped_oscillation():
     """phi'' + 2 alpha phi' + beta^2 phi = 0: with alpha = beta from rest phi = phi0 (1 + beta t) exp(-beta t)."""
     system = eomgen.derive(eomgen.loads(TIED)).system
-    pulling = stabilized(system, recursive.assemble(system), (5.0, 5.0))
+    pulling = stabilized(system, recursive.assembled_by_recursion(system), (5.0, 5.0))
     found = integrate(compiled(right_hand_side(pulling), "numpy"), time=2.0, x0=[0.6, -0.85, 0, 0], p=[])
     gap = (found["x"] ** 2 + found["y"] ** 2 - 1) / 2
     t, first = found.t, (0.6**2 + 0.85**2 - 1) / 2

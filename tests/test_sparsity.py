@@ -13,7 +13,7 @@ from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import layout
-from eomgen.codegen.targets.parts import LONG, parts_of
+from eomgen.codegen.targets.parts import LONG, program_parts
 from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.functions import cos, sin
@@ -148,7 +148,7 @@ def long_row(n: int) -> Assembly:
 def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):
     """Parts hand each other what they share: dx against 50 digits."""
     program = right_hand_side(long_row(n))
-    assert len(parts_of(layout(program)).all) > 2
+    assert len(program_parts(layout(program)).all) > 2
     assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
     function = compiled(program, target)
     for v in vectors(program, count=2):
@@ -173,7 +173,7 @@ def test_a_tree_of_twenty_bodies_in_space_is_cut_and_runs():
         ]
     text += ["[forces.weight]", 'kind = "gravity"', 'acceleration = [0, 0, "-g"]']
     equations = eomgen.derive(eomgen.loads("\n".join(text)))
-    assert parts_of(layout(equations.program)).all
+    assert program_parts(layout(equations.program)).all
     in_c, in_numpy = equations.rhs("c"), equations.rhs("numpy")
     x = in_c.x0 + np.random.default_rng(3).normal(size=40) / 3
     for inputs in ((), (0.7,)):

@@ -10,7 +10,7 @@ from random_expressions import POINT, on_graph, smooth, trigonometric, with_floa
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.print.sympy_form import Rate, from_sympy, symbol, to_sympy
+from eomgen.symbolic.print.sympy_form import RateSymbol, from_sympy, symbol, to_sympy
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_a_rate_is_printed_with_dots():
     """theta1' is \\dot{\\theta}_{1}, x'' is \\ddot{x}; a rate is not the symbol without the prime."""
     assert sympy.latex(symbol("theta1'")) == r"\dot{\theta}_{1}"
     assert sympy.latex(symbol("x''") ** 2) == r"\ddot{x}^{2}"
-    assert isinstance(symbol("theta'"), Rate)
+    assert isinstance(symbol("theta'"), RateSymbol)
     assert symbol("theta'") != symbol("theta")
     assert symbol("theta'") == symbol("theta'")
 

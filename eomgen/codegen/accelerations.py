@@ -28,7 +28,7 @@ class Accelerations:
     lam: dict[str, float | None]
 
 
-def accelerations_at(system: System, assembly: Assembly, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
+def closing_accelerations(system: System, assembly: Assembly, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
     """The accelerations and multipliers at one state; none has a single value where branches meet.
 
     Args:

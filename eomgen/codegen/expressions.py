@@ -18,11 +18,11 @@ SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
 LONGEST_INLINE = 60
 LARGEST_WHOLE = 2**53  # up to here every whole number is a double
 
-Text = tuple[str, int]
-Call = Callable[[str, list[str]], str]
+RankedText = tuple[str, int]
+CallText = Callable[[str, list[str]], str]
 
 
-class Writer:
+class ExpressionWriter:
     """Texts of the nodes of one function body; grows while the body is written.
 
     Args:
@@ -31,9 +31,9 @@ class Writer:
         prefix: of our variables, v1, v2, ...
     """
 
-    def __init__(self, call: Call, names: Mapping[Node, str], prefix: str = "v") -> None:
+    def __init__(self, call: CallText, names: Mapping[Node, str], prefix: str = "v") -> None:
         self._call, self._prefix = call, prefix
-        self._texts: dict[Node, Text] = {node: (text, ATOM) for node, text in names.items()}
+        self._texts: dict[Node, RankedText] = {node: (text, ATOM) for node, text in names.items()}
         self._count = 0
 
     def assignments(self, nodes: Iterable[Node], once: frozenset[Node]) -> list[tuple[str, str]]:
@@ -58,19 +58,19 @@ class Writer:
         """The text of a scalar whose node was assigned."""
         return self._text(x)[0]
 
-    def _text(self, x: Scalar) -> Text:
+    def _text(self, x: Scalar) -> RankedText:
         if not isinstance(x, Node):
-            return number(x)
+            return ranked_number(x)
         known = self._texts.get(x)
         if known is None:
             if x.op == "neg":
                 known = f"-{_held(self._text(x.args[0]), PRODUCT)}", SUM
             else:  # an exact constant: sqrt(2), pi/2
-                known = number(Fraction(evaluate([x], {}, FLOAT)[0]))
+                known = ranked_number(Fraction(evaluate([x], {}, FLOAT)[0]))
             self._texts[x] = known
         return known
 
-    def _operation(self, x: Node) -> Text:
+    def _operation(self, x: Node) -> RankedText:
         arguments = [self._text(a) for a in x.args]
         if x.op in ("add", "sub"):
             a, b = arguments
@@ -97,10 +97,10 @@ def used_once(bodies: Iterable[tuple[Sequence[Node], Sequence[Scalar]]]) -> froz
     return frozenset(node for node, count in uses.items() if count == 1)
 
 
-def number(a: Number) -> Text:
+def ranked_number(a: Number) -> RankedText:
     """The nearest double of an exact number; 1/3 stays a quotient, for the reader."""
     if a < 0:
-        return f"-{_held(number(-a), PRODUCT)}", SUM
+        return f"-{_held(ranked_number(-a), PRODUCT)}", SUM
     a = Fraction(a)
     try:
         value = float(a)
@@ -111,6 +111,6 @@ def number(a: Number) -> Text:
     return f"{float(a.numerator)!r}/{float(a.denominator)!r}", PRODUCT
 
 
-def _held(text: Text, strength: int) -> str:
+def _held(text: RankedText, strength: int) -> str:
     """The text, in parentheses where it holds together less than it must."""
     return text[0] if text[1] >= strength else f"({text[0]})"

@@ -15,7 +15,7 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 
-def solved(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
+def factor_solution(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
     """The accelerations a of M a = F, as expressions.
 
     M = L^T D L,  L^T z = F,  a = L^-1 D^-1 z
@@ -48,7 +48,7 @@ def elimination_order(M: Sequence[MatrixRow]) -> list[int]:
 
 
 def operation_count(M: Sequence[MatrixRow]) -> int:
-    """About how many operations `solved` takes, from the zeros of M alone.
+    """About how many operations `factor_solution` takes, from the zeros of M alone.
 
     Sum over pivots with d partners: d quotients, d (d + 1) in the matrix, 4 d + 1 in the right side.
     """

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Literal
 
 from eomgen.codegen import factorization
-from eomgen.codegen.sparsity import Places, Zeros, zeros_of, zeros_with_ties
+from eomgen.codegen.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.derivative import substituted
@@ -70,7 +70,7 @@ class Solve:
         return self.plain, zeros_with_ties(self.matrix, self.border)
 
     @property
-    def lists(self) -> tuple[tuple[Places, Places, Places], ...]:
+    def lists(self) -> tuple[tuple[PlaceLists, PlaceLists, PlaceLists], ...]:
         """The same as plain lists, as codegen/solving.py reads them."""
         return tuple((way.partners, way.reach, way.rows) for way in self.zeros)
 
@@ -80,7 +80,7 @@ class Solve:
         return self.plain.operations
 
 
-Statement = Assign | Solve
+ProgramStatement = Assign | Solve
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Program:
     defaults: ScalarRow
     preamble: tuple[Assign, ...]
     hoisted: tuple[Assign, ...]
-    statements: tuple[Statement, ...]
+    statements: tuple[ProgramStatement, ...]
     outputs: ScalarRow
     count: Count
     accelerations: tuple[Node, ...] = ()
@@ -129,7 +129,7 @@ def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = No
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
     """
-    return program_in_motion((*kinematics(assembly), *assembly.symbols.a), assembly, inputs)
+    return program_in_motion((*kinematic_rates(assembly), *assembly.symbols.a), assembly, inputs)
 
 
 def program_in_motion(outputs: ScalarRow, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
@@ -154,7 +154,7 @@ def _explicit_accelerations(assembly: Assembly) -> list[ScalarRow]:
     """a written out: as the formulation gives them, and by a factorization that is not too long."""
     found = [] if assembly.accelerations is None else [assembly.accelerations]
     if not assembly.friction and _is_short(assembly):
-        found.append(factorization.solved(assembly.M, assembly.forcing))
+        found.append(factorization.factor_solution(assembly.M, assembly.forcing))
     return found
 
 
@@ -167,7 +167,7 @@ def _explicit(outputs: ScalarRow, assembly: Assembly, a: ScalarRow, inputs: Mapp
     return program_of(substituted(outputs, known), assembly.symbols, inputs=inputs)
 
 
-def kinematics(assembly: Assembly) -> ScalarRow:
+def kinematic_rates(assembly: Assembly) -> ScalarRow:
     """q' = N u + nu"""
     u = assembly.symbols.u
     rates = []
@@ -269,7 +269,7 @@ def _is_computed(x: Node, depth: Mapping[Node, int]) -> bool:
     return x.op not in FREE and depth[x] != _CONSTANT
 
 
-def _scheduled(moving: Sequence[Node], solve: Solve | None) -> tuple[Statement, ...]:
+def _scheduled(moving: Sequence[Node], solve: Solve | None) -> tuple[ProgramStatement, ...]:
     """In index order, but what the solve needs, then the solve, then the rest."""
     if solve is None:
         return tuple(map(Assign, moving))

@@ -64,9 +64,9 @@ class RightHandSide:
             raise _wrong_length("inputs", self.inputs, len(inputs))
         return self._one(t, x, known[1], inputs)
 
-    def at(self, p: Any) -> Rate:
+    def at(self, p: Any) -> RateFunction:
         """(t, x) -> dx for given parameters and the model's own inputs: a call without checks, for integrators."""
-        return Rate(self._functions, self._constants(p))
+        return RateFunction(self._functions, self._constants(p))
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
         """dx at n states at once: t n or one number, x n x states, inputs () or n x inputs -> n x outputs."""
@@ -98,7 +98,7 @@ class RightHandSide:
         return p
 
 
-class Rate:
+class RateFunction:
     """(t, x) -> dx; `address` is where a compiled one lies, None of others."""
 
     def __init__(self, functions: Functions, known: Any) -> None:

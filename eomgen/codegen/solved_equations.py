@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
-from eomgen.codegen.factorization import solved
+from eomgen.codegen.factorization import factor_solution
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import values_at_a_state
 from eomgen.mechanics.equations.assembly import Assembly
@@ -32,7 +32,7 @@ def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[No
         found = dict(zip(symbols.a, assembly.accelerations, strict=True))
         return found | _multipliers(system, assembly, found)
     if not assembly.J:
-        return dict(zip(symbols.a, solved(assembly.M, assembly.forcing), strict=True))
+        return dict(zip(symbols.a, factor_solution(assembly.M, assembly.forcing), strict=True))
     kept = regular_rows(system)
     if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
         return by_determinants(assembly, kept)
@@ -46,10 +46,10 @@ def _by_factors(assembly: Assembly, kept: Sequence[int]) -> dict[Node, Scalar]:
     """a = X F + X J^T lam,  (J X J^T) lam = -(gamma + J X F),  X = M^-1, never formed: M is solved for each column."""
     symbols, J = assembly.symbols, [assembly.J[i] for i in kept]
     M, forcing = _weighted(assembly, kept) if _some_massless(assembly) else (assembly.M, assembly.forcing)
-    free = solved(M, forcing)
-    columns = [solved(M, row) for row in J]
+    free = factor_solution(M, forcing)
+    columns = [factor_solution(M, row) for row in J]
     S = [[inner(row, column) for column in columns] for row in J]
-    lam = solved(S, [-(assembly.gamma[i] + inner(row, free)) for i, row in zip(kept, J, strict=True)])
+    lam = factor_solution(S, [-(assembly.gamma[i] + inner(row, free)) for i, row in zip(kept, J, strict=True)])
     a = tuple(a + inner(lam, [column[k] for column in columns]) for k, a in enumerate(free))
     multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}

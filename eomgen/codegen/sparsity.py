@@ -14,7 +14,7 @@ from functools import cached_property
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 MatrixRow = Sequence[Scalar]
-Places = tuple[tuple[int, ...], ...]
+PlaceLists = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,11 @@ class Zeros:
         reach: of each row of J the columns of its row of L^-1 J^T.
     """
 
-    partners: Places
-    reach: Places
+    partners: PlaceLists
+    reach: PlaceLists
 
     @cached_property
-    def rows(self) -> Places:
+    def rows(self) -> PlaceLists:
         """Of each column the rows of J that reach it."""
         return tuple(tuple(m for m, row in enumerate(self.reach) if j in row) for j in range(len(self.partners)))
 

@@ -9,17 +9,17 @@ import numpy as np
 
 from eomgen.codegen.program import Program
 
-Places = tuple[int, ...]
+SpherePlaces = tuple[int, ...]
 
 
-def spheres_of(program: Program) -> tuple[Places, ...]:
+def spheres_of(program: Program) -> tuple[SpherePlaces, ...]:
     """Of every quaternion among the states, the places of its four numbers."""
     place = {node: k for k, node in enumerate(program.states)}
     spheres = program.symbols.graph.spheres
     return tuple(tuple(place[x] for x in symbols) for symbols in spheres if all(x in place for x in symbols))
 
 
-def on_spheres(x: Any, spheres: Sequence[Places]) -> Any:
+def on_spheres(x: Any, spheres: Sequence[SpherePlaces]) -> Any:
     """The state, or one state a row, with every quaternion over its norm; 0 stays."""
     found = np.array(x, dtype=float)
     for places in spheres:

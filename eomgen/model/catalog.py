@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Equation, Leaf
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Leaf, WrittenEquation
+from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
@@ -126,6 +127,6 @@ def owner_of(point: str) -> str:
 def _expressions_in(value: Any) -> Iterator[Expression]:
     if isinstance(value, Expression):
         yield value
-    elif isinstance(value, Equation):
+    elif isinstance(value, WrittenEquation):
         yield value.left
         yield value.right

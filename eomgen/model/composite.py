@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.joints.base import Z, oriented, unit, vector
+from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
-from eomgen.model.shapes.base import Value
 from eomgen.symbolic.expression.functions import cos, over, sin
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import (
@@ -59,7 +59,7 @@ class Composite:
     whole: MassProperties
 
 
-def composite_of(pieces: Sequence[Any], mass: Any, value: Value) -> Composite:
+def composite_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> Composite:
     """The whole body.
 
     Args:
@@ -86,7 +86,7 @@ def matrix_times(k: Any, A: Matrix) -> Matrix:
     return (times(k, A[0]), times(k, A[1]), times(k, A[2]))
 
 
-def masses_of(pieces: Sequence[Any], mass: Any, value: Value) -> tuple[Any, ...]:
+def masses_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> tuple[Any, ...]:
     """The mass of each piece: its own, or its share by measure (length, area or volume) in what is left [kg].
 
     Without the mass of the whole, a hole has the density of the one piece of its dimension.
@@ -110,7 +110,7 @@ def sources(pieces: Sequence[Any], hole: int) -> tuple[int, ...]:
     return tuple(k for k, p in enumerate(pieces) if not p.hole and p.shape.dimension == dimension)
 
 
-def _density(pieces: Sequence[Any], given: Sequence[Any], of: tuple[int, ...], value: Value) -> tuple[Any, Any]:
+def _density(pieces: Sequence[Any], given: Sequence[Any], of: tuple[int, ...], value: ValueOf) -> tuple[Any, Any]:
     (k,) = of
     return given[k], pieces[k].shape.measure(value)
 
@@ -119,7 +119,7 @@ def _sign(piece: Any) -> int:
     return -1 if piece.hole else 1
 
 
-def _placed(piece: Any, m: Any, value: Value) -> MassProperties:
+def _placed(piece: Any, m: Any, value: ValueOf) -> MassProperties:
     """The mass properties of a piece in the body's axes."""
     own = piece.shape.of_mass(m, value)
     pose = pose_of(piece, value)
@@ -127,7 +127,7 @@ def _placed(piece: Any, m: Any, value: Value) -> MassProperties:
     return MassProperties(m, pose.point(own.com), I)
 
 
-def pose_of(piece: Any, value: Value) -> Pose:
+def pose_of(piece: Any, value: ValueOf) -> Pose:
     """Where a piece's frame stands in the body: turned as `turned` says, then by `angle` about `axis`."""
     R = oriented(piece.turned, value)
     if piece.angle is not None:
@@ -136,7 +136,7 @@ def pose_of(piece: Any, value: Value) -> Pose:
     return Pose(R, vector(piece.at, value))
 
 
-def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: Value) -> list[Any]:
+def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: ValueOf) -> list[Any]:
     """What the mass centre is weighted with: masses; measures where all of them share, so that it needs no mass."""
     if all(piece.shape.mass is None for piece in pieces):
         return [_sign(piece) * piece.shape.measure(value) for piece in pieces]

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Decimal, DocumentPath, Finding, shown
+from eomgen.model.findings import Decimal, Finding, shown
+from eomgen.model.positions import DocumentPath
 from eomgen.model.table import Table
 
 

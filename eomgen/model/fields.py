@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.findings import Decimal, DocumentPath, Finding, article, nearest, shown, unknown_keys
+from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression, parse_equation
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
@@ -133,7 +134,7 @@ class OutputRule:
 
 
 @dataclass(frozen=True)
-class Equation:
+class WrittenEquation:
     """left = right, as it was written."""
 
     left: Expression
@@ -147,14 +148,14 @@ class EquationRule:
 
     scope: str = EVERYTHING
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Equation | None:
-        if isinstance(raw, Equation):
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> WrittenEquation | None:
+        if isinstance(raw, WrittenEquation):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
             found.append(Finding(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
             return None
         try:
-            return Equation(*parse_equation(raw), text=raw)
+            return WrittenEquation(*parse_equation(raw), text=raw)
         except ExpressionError as error:
             found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None

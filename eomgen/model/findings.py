@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from itertools import islice
 from typing import Any
 
-DocumentPath = tuple[str | int, ...]
+from eomgen.model.positions import DocumentPath
 
 
 class Decimal(str):

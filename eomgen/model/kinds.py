@@ -1,6 +1,7 @@
 """The concepts that several parts share, each with its rule: what a mass, a length, a point's name may be."""
 
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import (
@@ -19,7 +20,9 @@ from eomgen.model.fields import (
 from eomgen.model.samples import TimeLawRule
 from eomgen.symbolic.expression.expressions import Expression
 
-Vector = tuple[Expression, ...]
+ValueOf = Callable[[Expression], Any]
+"""What an expression is worth, in the arithmetic of whoever asks."""
+VectorFormula = tuple[Expression, ...]
 
 Formula = Annotated[Expression, FormulaRule()]
 Mass = Annotated[Expression, FormulaRule("kg", "nonnegative")]
@@ -29,7 +32,7 @@ NaturalLength = Annotated[Expression | str, FormulaRule("m", "nonnegative", TIME
 ConstantAngle = Annotated[Expression, FormulaRule("rad")]
 Opening = Annotated[Expression, FormulaRule("rad", "positive")]
 RestAngle = Annotated[Expression, FormulaRule("rad", "", TIME)]
-InertiaTensor = Annotated[Vector, AxialRule(FormulaRule("kg*m^2"), (3, 6))]
+InertiaTensor = Annotated[VectorFormula, AxialRule(FormulaRule("kg*m^2"), (3, 6))]
 RotorInertia = Annotated[Expression, FormulaRule(None, "nonnegative")]
 RestLength = Annotated[Expression, FormulaRule("m", "", TIME)]
 LinearStiffness = Annotated[Expression, FormulaRule("N/m", "", TIME)]
@@ -53,19 +56,19 @@ TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
 MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic",))]
 RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic", "linear"))]
 
-Place = Annotated[Vector, VectorRule(FormulaRule("m"))]
-MovingPlace = Annotated[Vector, VectorRule(FormulaRule("m", "", CONFIGURATION))]
-GroundPlace = Annotated[Vector | str, VectorRule(FormulaRule("m"), point=True)]
-MovingGroundPlace = Annotated[Vector | str, VectorRule(FormulaRule("m", "", CONFIGURATION), point=True)]
-Direction = Annotated[Vector, VectorRule(FormulaRule(None), nonzero=True)]
-SpaceDirection = Annotated[Vector, VectorRule(FormulaRule(None), length=3, nonzero=True)]
-ForceVector = Annotated[Vector, VectorRule(FormulaRule("N", "", MOTION))]
-LineLoad = Annotated[Vector, VectorRule(FormulaRule("N/m", "", MOTION))]
-TwoLineLoads = Annotated[tuple[Vector, ...], ListRule(VectorRule(FormulaRule("N/m", "", MOTION)), 2, 2)]
-Acceleration = Annotated[Vector, VectorRule(FormulaRule("m/s^2", "", TIME))]
-CoupleFormula = Annotated[Vector, AxialRule(FormulaRule("N*m", "", MOTION))]
-Size = Annotated[Vector, VectorRule(FormulaRule("m", "positive"), length=3)]
-PlaneSize = Annotated[Vector, VectorRule(FormulaRule("m", "positive"), length=2)]
+Place = Annotated[VectorFormula, VectorRule(FormulaRule("m"))]
+MovingPlace = Annotated[VectorFormula, VectorRule(FormulaRule("m", "", CONFIGURATION))]
+GroundPlace = Annotated[VectorFormula | str, VectorRule(FormulaRule("m"), point=True)]
+MovingGroundPlace = Annotated[VectorFormula | str, VectorRule(FormulaRule("m", "", CONFIGURATION), point=True)]
+Direction = Annotated[VectorFormula, VectorRule(FormulaRule(None), nonzero=True)]
+SpaceDirection = Annotated[VectorFormula, VectorRule(FormulaRule(None), length=3, nonzero=True)]
+ForceVector = Annotated[VectorFormula, VectorRule(FormulaRule("N", "", MOTION))]
+LineLoad = Annotated[VectorFormula, VectorRule(FormulaRule("N/m", "", MOTION))]
+TwoLineLoads = Annotated[tuple[VectorFormula, ...], ListRule(VectorRule(FormulaRule("N/m", "", MOTION)), 2, 2)]
+Acceleration = Annotated[VectorFormula, VectorRule(FormulaRule("m/s^2", "", TIME))]
+CoupleFormula = Annotated[VectorFormula, AxialRule(FormulaRule("N*m", "", MOTION))]
+Size = Annotated[VectorFormula, VectorRule(FormulaRule("m", "positive"), length=3)]
+PlaneSize = Annotated[VectorFormula, VectorRule(FormulaRule("m", "positive"), length=2)]
 
 BodyName = Annotated[str, NameRule("body")]
 PointName = Annotated[str, NameRule("point")]

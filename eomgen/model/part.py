@@ -8,7 +8,8 @@ from typing import Any, ClassVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, in_si
-from eomgen.model.findings import DocumentPath, Finding, nearest, shown, unknown_keys, whereabouts
+from eomgen.model.findings import Finding, nearest, shown, unknown_keys, whereabouts
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 
 
@@ -102,7 +103,7 @@ def title_of(cls: Any) -> str:
     return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
 
 
-def made(cls: Any, values: Mapping[str, Any]) -> Any:
+def part_of_values(cls: Any, values: Mapping[str, Any]) -> Any:
     """A part from values that were read already."""
     part: Any = object.__new__(cls)
     for slot in slots_of(cls):
@@ -128,7 +129,7 @@ class PartRule:
 
     def _shorthand(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         (slot,) = (s for s in slots_of(self.cls) if s.name == self.cls.shorthand)
-        return made(self.cls, {slot.name: slot.rule.read(raw, path, found)})
+        return part_of_values(self.cls, {slot.name: slot.rule.read(raw, path, found)})
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)
@@ -155,12 +156,12 @@ def read_part(cls: Any, raw: Mapping, path: DocumentPath, found: list[Finding], 
         elif slot.required:
             found.append(Finding(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'"))
             values[slot.name] = None
-    return made(cls, _in_si(cls, values, raw))
+    return part_of_values(cls, _in_si(cls, values, raw))
 
 
 def altered(part: Any, **changes: Any) -> Any:
     """The part with some fields changed to values that were read already."""
-    return made(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
+    return part_of_values(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
 
 
 def leaves_of(part: Any, path: DocumentPath) -> Iterator[Leaf]:

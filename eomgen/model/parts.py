@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
 from eomgen.model.containers import ListRule, TableRule
-from eomgen.model.fields import UNIT, AtRest, Equation, EquationRule, InstantRule, NameRule, OutputRule, TextRule
+from eomgen.model.fields import UNIT, AtRest, EquationRule, InstantRule, NameRule, OutputRule, TextRule, WrittenEquation
 from eomgen.model.forces import Force
 from eomgen.model.joints import Joint
 from eomgen.model.joints.base import Turns
@@ -182,7 +182,7 @@ class Linearize(Part):
     coordinates: Coordinates | None = None
 
 
-OutputEquations = Annotated[tuple[Equation, ...], ListRule(EquationRule(), single=True)]
+OutputEquations = Annotated[tuple[WrittenEquation, ...], ListRule(EquationRule(), single=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,7 +219,7 @@ class Output(Part):
     shorthand: ClassVar[str] = "value"
     title: ClassVar[str] = "output"
     value: Annotated[Expression, OutputRule()]
-    at: Annotated[Equation | AtRest, InstantRule()] | None = None
+    at: Annotated[WrittenEquation | AtRest, InstantRule()] | None = None
     from_: Annotated[str, TextRule(("start", "rest"))] | None = None
     side: Annotated[str, TextRule(("before", "after"))] | None = None
     unit: UnitText | None = None

@@ -7,7 +7,8 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.fields import FormulaRule, TextRule
-from eomgen.model.findings import DocumentPath, Finding, shown, unknown_keys
+from eomgen.model.findings import Finding, shown, unknown_keys
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.scalar_operations import is_exact
 from eomgen.symbolic.expression.splines import ENDS, WAYS, Sampled, spline_of

@@ -6,7 +6,7 @@ the rows of one tie T.
 
 from eomgen.model.constraints.members import Members
 from eomgen.model.joints.placed import Placed
-from eomgen.model.part import altered, made
+from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Body, Model, Truss
 from eomgen.model.shapes.particle import Particle
 from eomgen.model.table import Table
@@ -28,12 +28,12 @@ def in_parts(model: Model) -> Model:
 
 
 def _node(at: tuple[Expression, ...]) -> Body:
-    point = made(Particle, {"mass": Expression.number(0)})
-    return made(Body, {"shape": point, "joint": made(Placed, {"at": at})})
+    point = part_of_values(Particle, {"mass": Expression.number(0)})
+    return part_of_values(Body, {"shape": point, "joint": part_of_values(Placed, {"at": at})})
 
 
 def _members(name: str, truss: Truss) -> Members:
-    return made(Members, {"truss": name, "members": truss.members})
+    return part_of_values(Members, {"truss": name, "members": truss.members})
 
 
 def is_node(body: str) -> bool:

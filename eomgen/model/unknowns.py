@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from eomgen.errors import DerivationError
-from eomgen.model.findings import DocumentPath
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 
 ASKED = ("given", "outputs", "unknowns")

@@ -49,7 +49,7 @@ class Instant:
 
 
 @dataclass(frozen=True)
-class Motion:
+class PhaseMotion:
     """The equations of one phase."""
 
     system: System
@@ -73,7 +73,7 @@ class Motion:
         matrices = (x for row in (*assembly.M, *assembly.J) for x in row)
         return (*self.system.scope.rates, *matrices, *assembly.forcing, *assembly.gamma)
 
-    def numbers(self, at: Instant) -> Numbers:
+    def numbers(self, at: Instant) -> RunNumbers:
         """The coefficients at a state.
 
         Raises:
@@ -82,11 +82,11 @@ class Motion:
         found = np.array([float(x) for x in evaluate(self.scalars, self.values(at), fifty_digits())])
         n, k = len(self.assembly.M), len(self.assembly.J)
         rates, M, J, forcing, gamma = np.split(found, np.cumsum([len(self.system.scope.rates), n * n, k * n, n]))
-        return Numbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma)
+        return RunNumbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma)
 
 
 @dataclass(frozen=True)
-class Numbers:
+class RunNumbers:
     """The coefficients of the equations at one state."""
 
     rates: np.ndarray
@@ -141,7 +141,7 @@ class Numbers:
         return float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
 
 
-def right_hand_side(motion: Motion, code: Code, at: Iterable[Instant], name: str) -> Check:
+def right_hand_side(motion: PhaseMotion, code: Code, at: Iterable[Instant], name: str) -> Check:
     """The code's accelerations fulfil the equations at states; one next to a singular position says nothing."""
 
     def wrong(instant: Instant) -> str | None:
@@ -173,7 +173,7 @@ def _beside(instant: Instant) -> tuple[Instant, ...]:
 
 def values(
     name: str,
-    motion: Motion,
+    motion: PhaseMotion,
     scalars: Mapping[str, Scalar],
     code: Code,
     at: Iterable[Instant],

@@ -15,8 +15,9 @@ from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import powered_forces, summed
-from eomgen.mechanics.formulations import lagrange, projection
-from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.formulations import lagrange
+from eomgen.mechanics.formulations.lagrange import energies_along, free_rates
+from eomgen.mechanics.formulations.projection import wrenches_along
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
@@ -24,6 +25,9 @@ from eomgen.symbolic.exact.equality import Verdict, equal_at_real_states, equal_
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
+
+ROUTES = (("Lagrange's equations", energies_along), ("projection of Newton-Euler", wrenches_along))
+
 
 Pairs = list[tuple[Scalar, Scalar]]
 
@@ -79,20 +83,20 @@ def routes(system: System, assembly: Assembly) -> Iterable[Claim]:
     Ma = tuple(inner(row, symbols.a) for row in assembly.M)
     Q = tuple(x - f for x, f in zip(assembly.Q, friction, strict=True))
     labels = [f"{word} [{name}]" for word in ("M a", "c", "Q") for name in speeds]
-    for formulation in (lagrange, projection):
+    for title, along in ROUTES:
         pairs = [
             pair
-            for own, other in zip((Ma, assembly.c, Q), formulation.along(system), strict=True)
+            for own, other in zip((Ma, assembly.c, Q), along(system), strict=True)
             for pair in zip(own, other, strict=True)
         ]
-        yield Claim(f"M a, c and Q agree with those by {formulation.title}", pairs, labels)
+        yield Claim(f"M a, c and Q agree with those by {title}", pairs, labels)
     left = [x - b + f for x, b, f in zip(Ma, assembly.forcing, friction, strict=True)]
     pairs = [*zip(left, inverse_residual(system), strict=True)]
     pairs += [(b, x - y) for b, x, y in zip(assembly.forcing, assembly.Q, assembly.c, strict=True)]
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
     yield Claim("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
     if friction != (0,) * len(assembly.Q):
-        other = with_friction(system, lagrange.assemble(system)).friction
+        other = with_friction(system, lagrange.assembled_by_energies(system)).friction
         yield Claim("friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds)
 
 

@@ -32,10 +32,9 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
-IMAGINARY = 1e-30  # a step without rounding: the derivative of f is Im f(s + i h) / h
 QUADRATURE = "quadrature"
 AXES = "xyz"
 
@@ -110,12 +109,12 @@ def _cell(cell: Cell, dimension: int) -> tuple[np.ndarray, np.ndarray]:
     x, w = np.polynomial.legendre.leggauss(NODES[dimension - 1])
     s = np.array(list(product((x + 1) / 2, repeat=dimension))).T
     weights = np.prod(np.array(list(product(w / 2, repeat=dimension))), axis=1)
-    slopes = np.array([_at(cell, s + _step(dimension, k)).imag / IMAGINARY for k in range(dimension)])
+    slopes = np.array([_at(cell, s + _step(dimension, k)).imag / IMAGINARY_STEP for k in range(dimension)])
     return weights * _measure(slopes), _at(cell, s.astype(complex)).real.T
 
 
 def _step(dimension: int, k: int) -> np.ndarray:
-    return np.array([[IMAGINARY * 1j * (i == k)] for i in range(dimension)])
+    return np.array([[IMAGINARY_STEP * 1j * (i == k)] for i in range(dimension)])
 
 
 def _at(cell: Cell, s: np.ndarray) -> np.ndarray:

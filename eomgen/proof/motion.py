@@ -15,7 +15,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.proof.emitted_code import Instant, Motion
+from eomgen.proof.emitted_code import Instant, PhaseMotion
 from eomgen.proof.power import Energies, followed
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
@@ -111,7 +111,7 @@ def _code(legs: Sequence[Leg]) -> Check:
 def _code_of(leg: Leg, name: str) -> Check:
     places = dict.fromkeys([0, *np.linspace(0, len(leg.t) - 1, VISITED)[1:].astype(int).tolist()])
     at = [Instant(float(leg.t[i]), leg.x[i], leg.p) for i in places]
-    motion = Motion(leg.system, leg.assembly)
+    motion = PhaseMotion(leg.system, leg.assembly)
     return emitted_code.right_hand_side(motion, lambda instant: leg.code(instant.t, instant.x, instant.p), at, name)
 
 

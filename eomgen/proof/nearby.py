@@ -25,10 +25,10 @@ from eomgen.symbolic.numeric.tolerances import MET_AT_50, ZERO_AT_50
 STEPS = 12  # of Newton's method with the slope of the start; from doubles two or three are taken
 
 State = Mapping[Node, Any]
-Numbers = list[Any]
+DigitRow = list[Any]
 
 
-def solved(rows: Sequence[Sequence[Any]]) -> Numbers | None:
+def solved_nearby(rows: Sequence[Sequence[Any]]) -> DigitRow | None:
     """x of consistent rows [A | b] by elimination with full pivots; None where A leaves an x open.
 
     Rows that follow from others are not looked at.
@@ -47,7 +47,7 @@ def solved(rows: Sequence[Sequence[Any]]) -> Numbers | None:
         left = [_without(other, row, k) for other in left]
     if columns:
         return None
-    x: Numbers = [0] * unknowns
+    x: DigitRow = [0] * unknowns
     for k, row in reversed(chosen):
         x[k] = (row[-1] - sum(row[j] * x[j] for j in range(unknowns) if j != k and row[j])) / row[k]
     return x
@@ -99,7 +99,7 @@ class Nearby:
     q: tuple[Node, ...]
     u: tuple[Node, ...]
 
-    def at(self, scalars: Sequence[Scalar], state: State) -> Numbers:
+    def at(self, scalars: Sequence[Scalar], state: State) -> DigitRow:
         return evaluate(tuple(scalars), state, fifty_digits())
 
     def state(self, given: Mapping[Node, Any]) -> State:
@@ -119,7 +119,7 @@ class Nearby:
             [*(row[k] for k in columns), -s - sum(row[k] * state[u[k]] for k in known)]
             for row, s in zip(J, sigma, strict=True)
         ]
-        found = solved(rows)
+        found = solved_nearby(rows)
         if found is None:
             raise NoValue("the ties do not determine the dependent speeds")
         return {**state, **dict(zip(self._dependent_u, found, strict=True))}
@@ -151,7 +151,7 @@ class Nearby:
 
     # -- the ties --------------------------------------------------------------------------------------------
 
-    def _rows(self, state: State, bias: Sequence[Scalar]) -> tuple[list[Numbers], Numbers]:
+    def _rows(self, state: State, bias: Sequence[Scalar]) -> tuple[list[DigitRow], DigitRow]:
         """(J, a bias of it) at a state."""
         J, n = self.assembly.J, len(self.assembly.M)
         flat = self.at([*(x for row in J for x in row), *bias], state)
@@ -167,7 +167,7 @@ class Nearby:
         return tuple(q for q in self.system.symbols.q if q not in self.q and not coordinates[q.name].driven)
 
     @cached_property
-    def _slopes(self) -> list[Numbers]:
+    def _slopes(self) -> list[DigitRow]:
         """d relations/d dependent coordinates, at the state."""
         rows = jacobian(self.relations, self._dependent_q)
         flat, n = self.at([x for row in rows for x in row], self.numbers), len(self._dependent_q)
@@ -179,7 +179,7 @@ class Nearby:
             return state
         for _ in range(STEPS):
             open_ = self.at(self.relations, state)
-            step = solved([[*row, -x] for row, x in zip(self._slopes, open_, strict=True)])
+            step = solved_nearby([[*row, -x] for row, x in zip(self._slopes, open_, strict=True)])
             if step is None:
                 raise NoValue("the ties do not determine the dependent coordinates")
             state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
@@ -188,9 +188,9 @@ class Nearby:
         raise NoValue("the ties do not close beside the state")
 
 
-def _first(rows: Sequence[Sequence[Any]], n: int) -> Numbers | None:
+def _first(rows: Sequence[Sequence[Any]], n: int) -> DigitRow | None:
     """The first n unknowns, the multipliers of rows that follow from others at 0; None where they are open."""
-    found = solved(rows)
+    found = solved_nearby(rows)
     if found is not None:
         return found[:n]
     kept, independent = list(range(n)), list[Sequence[Any]]()
@@ -198,5 +198,5 @@ def _first(rows: Sequence[Sequence[Any]], n: int) -> Numbers | None:
         if not follows_in_digits(independent, row[:n]):
             independent.append(row[:n])
             kept.append(r)
-    found = solved([[*(rows[i][j] for j in kept), rows[i][-1]] for i in kept]) if len(kept) < len(rows) else None
+    found = solved_nearby([[*(rows[i][j] for j in kept), rows[i][-1]] for i in kept]) if len(kept) < len(rows) else None
     return None if found is None else found[:n]

@@ -36,7 +36,7 @@ STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
 BY_DIFFERENCES = "differences at 50 digits"
 
-Column = Sequence[Any]
+DigitColumn = Sequence[Any]
 
 
 @dataclass(frozen=True)
@@ -49,12 +49,12 @@ class Beside:
         w: of the inputs.
     """
 
-    q: Column
-    q1: Column
-    q2: Column
-    u: Column
-    a: Column
-    w: Column
+    q: DigitColumn
+    q1: DigitColumn
+    q2: DigitColumn
+    u: DigitColumn
+    a: DigitColumn
+    w: DigitColumn
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Differences:
             given |= dict(zip(four, _unit(_product([here[e] for e in four], (1, *arm))), strict=True))
         return given
 
-    def _read(self, late: Going, early: Going) -> Iterator[tuple[Column, Column]]:
+    def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
         """Of the coordinates that are printed where they are, and their first and second rates."""
         labels = self.moved if self.is_part else self.small.numbers.coordinates
         readings = [[self._one(going, label) for label in labels] for going in (late, early)]
@@ -172,7 +172,7 @@ class Differences:
         found: np.ndarray = back.T @ M @ back
         return found
 
-    def energy_along(self, step: Mapping[Node, Any]) -> tuple[Any, Column, Column]:
+    def energy_along(self, step: Mapping[Node, Any]) -> tuple[Any, DigitColumn, DigitColumn]:
         """(second difference of T, the rates of coordinates and the speeds along a step of the speeds)."""
         T, now = self.small.first.assembly.T, self.origin
         states = [self.nearby.state(self._moved(step, sign)) for sign in (1, -1)]
@@ -181,7 +181,7 @@ class Differences:
         return late + early - 2 * here, one.q1, one.u
 
 
-def _product(a: Column, b: Column) -> list[Any]:
+def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:
     """Of quaternions."""
     a0, a1, a2, a3 = a
     b0, b1, b2, b3 = b
@@ -193,11 +193,11 @@ def _product(a: Column, b: Column) -> list[Any]:
     ]
 
 
-def _conjugate(e: Column) -> list[Any]:
+def _conjugate(e: DigitColumn) -> list[Any]:
     return [e[0], -e[1], -e[2], -e[3]]
 
 
-def _unit(e: Column) -> list[Any]:
+def _unit(e: DigitColumn) -> list[Any]:
     size = fifty_digits().functions["sqrt"](sum(x * x for x in e))
     return [x / size for x in e]
 
@@ -318,11 +318,11 @@ def _in_energy(differences: Differences, M: list[list[Any]], rng: Random, tolera
     )
 
 
-def _terms(row: Column, x: Column, sign: int = 1) -> list[Any]:
+def _terms(row: DigitColumn, x: DigitColumn, sign: int = 1) -> list[Any]:
     return [sign * a * b for a, b in zip(row, x, strict=True)]
 
 
-def _left(terms: Column, tolerance: float, unit: Any = 1) -> str:
+def _left(terms: DigitColumn, tolerance: float, unit: Any = 1) -> str:
     """What is left of terms that cancel one another; "" where it is rounding, of them or of a rate of one unit."""
     left, size = sum(terms), sum(map(abs, terms))
     return (

@@ -15,7 +15,7 @@ from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code, trials
 from eomgen.proof.check import Check, unchecked
-from eomgen.proof.emitted_code import Code, Instant, Motion
+from eomgen.proof.emitted_code import Code, Instant, PhaseMotion
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -83,7 +83,7 @@ class Judged:
         actuators: of the role "inverse": what its outputs act along.
     """
 
-    motion: Motion
+    motion: PhaseMotion
     values: Mapping[str, Scalar]
     actuators: Sequence[str] = ()
 

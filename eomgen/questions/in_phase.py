@@ -72,7 +72,7 @@ class PhaseEquations:
             DerivationError: a force is unknown.
         """
         refuse_motion(self.model)
-        assembly = with_friction(self.system, recursive.assemble(self.system))
+        assembly = with_friction(self.system, recursive.assembled_by_recursion(self.system))
         refuse_massless(self.system, assembly)
         return assembly
 

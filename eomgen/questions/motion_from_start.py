@@ -20,14 +20,14 @@ from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.model.fields import Equation
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
 from eomgen.questions.first_instant import Instant, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.simulation.configuration import by_the_law, has_phases
-from eomgen.simulation.history import Passage, history
+from eomgen.simulation.history import PassedPhase, history
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
 from eomgen.simulation.phase_model import PhaseModel
@@ -122,7 +122,7 @@ class MotionFromStart:
 
     # -- on the way ------------------------------------------------------------------------------
 
-    def until(self, condition: Equation, side: str | None = None) -> StateAtInstant:
+    def until(self, condition: WrittenEquation, side: str | None = None) -> StateAtInstant:
         """The first time after the start at which the condition holds.
 
         Args:
@@ -146,14 +146,14 @@ class MotionFromStart:
         """Those that were sought already, and why some are never reached."""
         return {}
 
-    def _until(self, condition: Equation, side: str | None) -> StateAtInstant:
+    def _until(self, condition: WrittenEquation, side: str | None) -> StateAtInstant:
         if self._is_start(condition):
             return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
         if self.course is None or self._starts_in_balance(self.phase):
             return self._within(self.phase, condition, self.start, self.numbers)
         return self._through(self._passages(condition), side)
 
-    def _is_start(self, condition: Equation) -> bool:
+    def _is_start(self, condition: WrittenEquation) -> bool:
         """Whether an instant is asked for by the time t = 0.
 
         Raises:
@@ -171,7 +171,11 @@ class MotionFromStart:
         return holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
     def _within(
-        self, phase: PhaseEquations, condition: Equation, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
+        self,
+        phase: PhaseEquations,
+        condition: WrittenEquation,
+        start: Mapping[Node, Scalar],
+        numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """In one phase."""
         instant = _reached(phase, _difference(phase, condition), start, numbers)
@@ -214,7 +218,7 @@ class MotionFromStart:
 
     # -- through several phases -------------------------------------------------------------------
 
-    def _passages(self, condition: Equation) -> tuple[Passage, ...]:
+    def _passages(self, condition: WrittenEquation) -> tuple[PassedPhase, ...]:
         """The phases up to the one in which the condition is met.
 
         Raises:
@@ -233,7 +237,7 @@ class MotionFromStart:
                 raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].message}")
         raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
 
-    def _through(self, passages: tuple[Passage, ...], side: str | None) -> StateAtInstant:
+    def _through(self, passages: tuple[PassedPhase, ...], side: str | None) -> StateAtInstant:
         """The end of the last phase, every end before it sought in closed form."""
         moment = StateAtInstant(self.phase, self.start, {}, "")
         for k, passage in enumerate(passages):
@@ -249,7 +253,7 @@ class MotionFromStart:
         return StateAtInstant(phase, exact, _numbers(phase, passages[-1].t_1, values), moment.method)
 
 
-def _end_of(phase: PhaseEquations, passage: Passage, start: Mapping[Node, Scalar]) -> StateAtInstant:
+def _end_of(phase: PhaseEquations, passage: PassedPhase, start: Mapping[Node, Scalar]) -> StateAtInstant:
     """The end of a phase: in numbers as it was run, exact where that agrees."""
     numbers = _numbers(phase, passage.t_1, passage.end)
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
@@ -285,7 +289,7 @@ def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
     return any(depends_on(scalar, moving) for scalar in (*phase.accelerations, *bounds))
 
 
-def _difference(phase: PhaseEquations, condition: Equation) -> Scalar:
+def _difference(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
     return phase.of_state(condition.left) - phase.of_state(condition.right)
 

@@ -19,7 +19,7 @@ from eomgen.proof import motion
 from eomgen.proof.check import Certificate
 from eomgen.simulation.breakpoints import knots_of
 from eomgen.simulation.conditions import condition_of
-from eomgen.simulation.integrate import SAMPLES, check, instants_of
+from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import joined, thinned, with_reactions
 from eomgen.simulation.motion import Plan, through
@@ -91,7 +91,7 @@ def run(
     how, samples = how or Stepping(), SAMPLES if samples is None else samples
     model, p = equations.model, parameter_vector(equations.model, parameters)
     condition = None if until is None else condition_of(model, until)
-    check(0.0, time, how)
+    refuse_bad_run(0.0, time, how)
     _refuse_given(model, start or {})
     pulled = how.rates if how.stabilization == "baumgarte" else None
     course = course_of(model, p, target, pulled, (equations.system, equations.graph))
@@ -148,7 +148,9 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
         UsageError: see `stabilized`.
     """
     system = equations.system
-    return replace(equations, graph=with_friction(system, stabilized(system, recursive.assemble(system), rates)))
+    return replace(
+        equations, graph=with_friction(system, stabilized(system, recursive.assembled_by_recursion(system), rates))
+    )
 
 
 def _told(found: Trajectory, until: str | None) -> Trajectory:

@@ -17,8 +17,8 @@ from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
-from eomgen.model.fields import Equation
-from eomgen.model.part import altered, made
+from eomgen.model.fields import WrittenEquation
+from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Given, Model
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
@@ -33,7 +33,7 @@ from eomgen.symbolic.print.text import text_size
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
 
 
-def state_of(model: Model, at: Equation | None = None) -> KinematicState:
+def state_of(model: Model, at: WrittenEquation | None = None) -> KinematicState:
     """The motion of a model at an instant.
 
     Args:
@@ -112,7 +112,7 @@ def _rests(state: KinematicState) -> bool:
 # -- a motion in time ---------------------------------------------------------------------------------
 
 
-def _on_the_way(model: Model, at: Equation | None) -> KinematicState:
+def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     moment = _moment(MotionFromStart(model, at_rest=False), at)
     when = "at the start" if at is None else f"when {at.text}"
     phase, exact, numbers = moment.phase, moment.exact, moment.numbers
@@ -143,7 +143,7 @@ def _sees_time(phase: PhaseEquations) -> bool:
     return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
 
 
-def _moment(motion: MotionFromStart, at: Equation | None) -> StateAtInstant:
+def _moment(motion: MotionFromStart, at: WrittenEquation | None) -> StateAtInstant:
     """The start, or where the condition is met."""
     if at is not None:
         return motion.until(at)
@@ -175,9 +175,9 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
 
 def kinematics(
     model: Model,
-    at: Equation | str | None = None,
+    at: WrittenEquation | str | None = None,
     *,
-    given: Sequence[Equation | str] = (),
+    given: Sequence[WrittenEquation | str] = (),
     relative: Sequence[tuple[str, str]] = (),
 ) -> Kinematics:
     """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
@@ -198,13 +198,13 @@ def kinematics(
     return Kinematics(state, kinds, tuple(relative))
 
 
-def _equation(text: Equation | str) -> Equation:
-    return text if isinstance(text, Equation) else Equation(*parse_equation(text), text=text)
+def _equation(text: WrittenEquation | str) -> WrittenEquation:
+    return text if isinstance(text, WrittenEquation) else WrittenEquation(*parse_equation(text), text=text)
 
 
-def _with_given(model: Model, equations: Sequence[Equation]) -> Model:
+def _with_given(model: Model, equations: Sequence[WrittenEquation]) -> Model:
     """The model that gives these velocities too, checked as a whole."""
     if not equations:
         return model
-    own = model.given or made(Given, {})
+    own = model.given or part_of_values(Given, {})
     return dataclasses.replace(model, given=altered(own, velocity=(*(own.velocity or ()), *equations)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.report.latex_names import escaped
+from eomgen.report.latex_names import latex_escaped
 from eomgen.report.reading import Reader, omitted
 from eomgen.report.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement
 from eomgen.report.text import side_text
@@ -46,9 +46,9 @@ def tabled(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]]) -> tuple[Sta
 def _named(first: Cell, what: str) -> Law:
     """What a cell is, by its row and its column."""
     if isinstance(first, Law):
-        return Law(f"{first.text}, {what}", rf"{first.latex},\ \text{{{escaped(what)}}}")
+        return Law(f"{first.text}, {what}", rf"{first.latex},\ \text{{{latex_escaped(what)}}}")
     words = f"{first if isinstance(first, str) else side_text(first)}, {what}"
-    return Law(words, rf"\text{{{escaped(words)}}}")
+    return Law(words, rf"\text{{{latex_escaped(words)}}}")
 
 
 def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:

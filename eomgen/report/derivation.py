@@ -109,7 +109,7 @@ def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple
 
 def _is_integrable(system: System, assembly: Assembly) -> bool:
     """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
-    _, c = lagrange.inertia_side(system.motion, kinetic_energy(system.motion))
+    _, c = lagrange.inertia_by_energies(system.motion, kinetic_energy(system.motion))
     return equal_at_random_states(zip(c, assembly.c, strict=True)).equal
 
 
@@ -151,7 +151,7 @@ def _by_maggi(
     )
     result = None if assembly.friction else maggi_equations(system, free, reader, assembly, momenta, forces)
     if result is None:
-        own = lagrange.assemble(system)
+        own = lagrange.assembled_by_energies(system)
         rule = ("Put together along the motions that the constraints allow, ", MAGGI, ":")
         result = equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), rule)
     return steps, result
@@ -173,7 +173,7 @@ def _lagrange_sides(assembly: Assembly, momenta: Momenta, forces: tuple[Scalar, 
 
 
 def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
-    own = projection.assemble(system)
+    own = projection.assembled_by_wrenches(system)
     steps: tuple[Step, ...] = (
         motion_steps.positions_step(system, reader),
         *motion_steps.speeds_step(system, reader),

@@ -10,7 +10,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, per_speed
 from eomgen.model.forces.load import Couple, Load, PointForce
 from eomgen.report.bounded import page
-from eomgen.report.motion_steps import Pair, axes, components
+from eomgen.report.motion_steps import Pair, axes, component_pairs
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Side, Statement, Step
@@ -109,7 +109,7 @@ def _force(system: System, force: Applied) -> list[Pair]:
 
 def _load(system: System, load: Load, name: str) -> list[Pair]:
     if isinstance(load, PointForce) and load.place[0] is not None and load.axes is None:
-        return components(system, "F", name, load.force)
+        return component_pairs(system, "F", name, load.force)
     if isinstance(load, Couple) and len(axes(system)) == 2:
         return [(Name("couple", name), load.couple[2])]
     return []

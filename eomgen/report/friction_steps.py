@@ -34,7 +34,7 @@ WORDS = (
 
 
 @dataclass(frozen=True)
-class Friction:
+class FrictionTerms:
     """What rubbing contacts add to a derivation.
 
     Args:
@@ -50,7 +50,7 @@ class Friction:
     solved: tuple[Step, ...]
 
 
-def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
+def friction_of(system: System, reader: Reader, assembly: Assembly) -> FrictionTerms:
     """The friction of every contact by its normal reaction, and that by the bodies' balance."""
     readings = readings_of(system, reader, assembly)
     letters = lettered(readings.ways[0], system.scope.names)
@@ -72,7 +72,7 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> Friction:
         row = rub.along if rub.normals else substituted(rub.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
-    return Friction(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
+    return FrictionTerms(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
 
 
 def _of_round(

@@ -15,7 +15,7 @@ from eomgen.mechanics.first_integrals.integrals import Integral, energy_integral
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
-from eomgen.report.setting_steps import listed
+from eomgen.report.setting_steps import listed_symbols
 from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Statement, Step
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -75,7 +75,7 @@ def _side(each: Constant) -> Name:
 def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
     many = len(coordinates) > 1
     verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
-    return Prose((f"The coordinate{verb[0]}", *listed(coordinates), f"{verb[1]} constant:"))
+    return Prose((f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:"))
 
 
 def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statement]:

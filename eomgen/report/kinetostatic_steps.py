@@ -27,7 +27,7 @@ def kinetostatic_steps(
     system: System, reader: Reader, assembly: Assembly, letters: Lettered
 ) -> tuple[tuple[Step, ...], EquationSteps]:
     """The free bodies and their balance, and the equations of motion that come out of it."""
-    own = projection.assemble(system)
+    own = projection.assembled_by_wrenches(system)
     steps = (
         motion_steps.positions_step(system, reader),
         *motion_steps.speeds_step(system, reader),

@@ -9,7 +9,7 @@ from dataclasses import replace
 from eomgen.report.document import Document
 from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
-from eomgen.report.latex_names import escaped, notation, upright
+from eomgen.report.latex_names import latex_escaped, notation, upright
 from eomgen.report.statements import (
     Cell,
     Code,
@@ -119,18 +119,18 @@ def render(document: Document) -> str:
     proof = () if document.certificate is None else str(document.certificate).splitlines()
     lines = [*(f"% {line}" for line in proof), PREAMBLE + r"\begin{document}"]
     lines += [rf"\textbf{{{document.distrust}}}"] if document.distrust else []
-    lines.append(rf"\section*{{{escaped(document.title)}}}")
+    lines.append(rf"\section*{{{latex_escaped(document.title)}}}")
     if document.about:
-        lines.append(escaped(document.about) + "\n")
+        lines.append(latex_escaped(document.about) + "\n")
     if document.source:
-        lines.append(f"Source: {escaped(document.source)}.\n")
+        lines.append(f"Source: {latex_escaped(document.source)}.\n")
     for step in document.steps:
-        lines += [rf"\subsection*{{{escaped(step.title)}}}"] if step.title else []
-        lines += statement_blocks(setter, step.statements)
+        lines += [rf"\subsection*{{{latex_escaped(step.title)}}}"] if step.title else []
+        lines += latex_blocks(setter, step.statements)
     return "\n".join([*lines, r"\end{document}"]) + "\n"
 
 
-def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
+def latex_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
     """Paragraphs, displays and tables; formulas that follow one another are aligned together."""
     blocks: list[str] = []
     groups = grouped(statements)
@@ -139,7 +139,7 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
             blocks += [rf"\[{block}\]" for block in display_blocks(setter, group)]
         elif isinstance(group, Prose):  # a display belongs to the paragraph before it
             end = "" if isinstance(after, list) else "\n"
-            blocks.append("".join(piece_latex(setter, piece, escaped) for piece in group.pieces) + end)
+            blocks.append("".join(piece_latex(setter, piece, latex_escaped) for piece in group.pieces) + end)
         elif isinstance(group, Lines):
             blocks.append("\n".join([r"\begin{verbatim}", *group.lines, r"\end{verbatim}"]))
         else:
@@ -278,14 +278,16 @@ def _symbol(setter: Setter, symbol: Node) -> str:
 def unit_latex(unit: str) -> str:
     """kg*m^2 with its exponents raised."""
     pieces = re.split(r"\^\(?(-?\d+)\)?", unit)
-    return "".join(f"$^{{{piece}}}$" if k % 2 else escaped(piece).replace("*", r"\,") for k, piece in enumerate(pieces))
+    return "".join(
+        f"$^{{{piece}}}$" if k % 2 else latex_escaped(piece).replace("*", r"\,") for k, piece in enumerate(pieces)
+    )
 
 
 def value_latex(value: str) -> str:
     """A value: -0.5 and 2.2e-06 as numbers, what else it may be as it is."""
     number = re.fullmatch(r"(-?\d+(?:\.\d+)?)(?:e([-+]\d+))?", value)
     if number is None:
-        return escaped(value)
+        return latex_escaped(value)
     return f"${number[1]}" + (rf" \cdot 10^{{{int(number[2])}}}$" if number[2] else "$")
 
 
@@ -293,11 +295,11 @@ def _table(setter: Setter, table: Table) -> str:
     """A table without its empty columns."""
     kept = table.columns
     alignment = "".join(r"p{85mm}" if k == 1 else "l" for k in kept)
-    head = " & ".join(escaped(table.head[k]) for k in kept)
+    head = " & ".join(latex_escaped(table.head[k]) for k in kept)
     lines = []
     for row in table.rows:
         symbol = f"${side_latex(setter, row.symbol)}$"
-        cells = (symbol, escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
+        cells = (symbol, latex_escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
         lines.append(" & ".join(cells[k] for k in kept))
     return _ruled(alignment, head, lines)
 

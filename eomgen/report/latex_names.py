@@ -57,7 +57,7 @@ def symbol_latex(name: str, base: str = "") -> str:
     )
 
 
-def lettered(text: str) -> Law:
+def letter_law(text: str) -> Law:
     """A letter, with an index or without: v_x, J_xy, omega."""
     letter, _, index = text.partition("_")
     return Law(text, _letters(letter) + (f"_{{{index}}}" if index else ""))
@@ -85,7 +85,7 @@ def upright(text: str) -> str:
     return rf"\mathrm{{{_greek_out(text)}}}"
 
 
-def escaped(text: str) -> str:
+def latex_escaped(text: str) -> str:
     """Plain text for LaTeX outside formulas."""
     return "".join(rf"${LETTERS[c]}$" if c in LETTERS else SPECIAL.get(c, c) for c in text)
 

@@ -20,17 +20,17 @@ def render(document: Document) -> str:
     document = with_listings_typeset(document)
     setter = setter_of(document)
     blocks = [f"**{document.distrust}**"] if document.distrust else []
-    blocks.append(f"# {escaped(document.title)}")
-    blocks += [escaped(text) for text in (document.about,) if text]
-    blocks += [f"Source: {escaped(document.source)}."] if document.source else []
+    blocks.append(f"# {markdown_escaped(document.title)}")
+    blocks += [markdown_escaped(text) for text in (document.about,) if text]
+    blocks += [f"Source: {markdown_escaped(document.source)}."] if document.source else []
     for step in document.steps:
-        blocks += [f"## {escaped(step.title)}"] if step.title else []
-        blocks += statement_blocks(setter, step.statements)
+        blocks += [f"## {markdown_escaped(step.title)}"] if step.title else []
+        blocks += markdown_blocks(setter, step.statements)
     blocks += [f"```\n{document.certificate}\n```"] if document.certificate is not None else []
     return "\n\n".join(blocks) + "\n"
 
 
-def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
+def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
     """Paragraphs, displays and tables."""
     blocks: list[str] = []
     for group in grouped(statements):
@@ -45,7 +45,7 @@ def statement_blocks(setter: Setter, statements: Sequence[Statement]) -> list[st
     return blocks
 
 
-def escaped(text: str) -> str:
+def markdown_escaped(text: str) -> str:
     """Plain text for Markdown: nothing in it is markup, and it stays on its line."""
     return " ".join(_SPECIAL.sub(r"\\\1", text).split())
 
@@ -55,7 +55,7 @@ def _piece(setter: Setter, piece: Piece) -> str:
         return f"`{piece.text}`"
     if isinstance(piece, str):  # blanks at the ends join the pieces
         return _SPECIAL.sub(r"\\\1", piece)
-    return piece_latex(setter, piece, escaped)
+    return piece_latex(setter, piece, markdown_escaped)
 
 
 def _table(setter: Setter, table: Table) -> str:
@@ -63,7 +63,7 @@ def _table(setter: Setter, table: Table) -> str:
     kept = table.columns
     lines = ["| " + " | ".join(table.head[k] for k in kept) + " |", "|" + "---|" * len(kept)]
     for row in table.rows:
-        cells = (f"${side_latex(setter, row.symbol)}$", *map(escaped, (row.meaning, row.unit, row.value)))
+        cells = (f"${side_latex(setter, row.symbol)}$", *map(markdown_escaped, (row.meaning, row.unit, row.value)))
         lines.append("| " + " | ".join(cells[k] for k in kept) + " |")
     return "\n".join(lines)
 
@@ -76,7 +76,7 @@ def _grid(setter: Setter, grid: Grid) -> str:
 
 def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
     cells = (
-        escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
+        markdown_escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
         for cell in row
     )
     return "| " + " | ".join(cells) + " |"

@@ -37,11 +37,11 @@ def positions_step(system: System, reader: Reader) -> Step:
         body = mass_properties(system.scope, link.name)
         if not is_zero(body.m):
             at = motion.position((link.name, body.com))
-            formulas += components(system, "", f"{link.name}.center", at)
+            formulas += component_pairs(system, "", f"{link.name}.center", at)
         if _turns(link):
             formulas.append((Name("angle", link.name), link.angle))  # type: ignore[arg-type]
     for name, point in points_of_forces(system):
-        formulas += components(system, "", name, point)
+        formulas += component_pairs(system, "", name, point)
     angles = ", and the angles of the bodies against the x axis" if any(_turns(link) for link in motion.links) else ""
     return Step("positions", "Positions", (Prose((f"The mass centres{angles}:",)), *page(reader, formulas)))
 
@@ -50,7 +50,7 @@ def _turns(link: BodyLink) -> bool:
     return isinstance(link.angle, Node)
 
 
-def components(system: System, prefix: str, of: str, vector: Vector) -> list[Pair]:
+def component_pairs(system: System, prefix: str, of: str, vector: Vector) -> list[Pair]:
     """One formula for each component; `prefix` is "v" for velocities."""
     return [(Name(prefix + axis, of), x) for axis, x in zip(axes(system), vector, strict=False)]
 
@@ -69,9 +69,9 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
     """Velocities of the mass centres and angular velocities, by differentiation."""
     formulas: list[Pair] = []
     for energy in energies:
-        if not is_zero(mass_properties(system.scope, energy.body).m) and not at_rest(energy.velocity):
+        if not is_zero(mass_properties(system.scope, energy.body).m) and not is_still(energy.velocity):
             of = f"{energy.body}.center"
-            formulas += components(system, "v", of, energy.velocity)
+            formulas += component_pairs(system, "v", of, energy.velocity)
             formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))
         formulas += spins(system, energy.body, energy.spin)
     words = "The derivatives of the positions, and the angular velocities"
@@ -105,7 +105,7 @@ def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
     return (Step("speeds", "Speeds", (*statements, Prose(("Solved for the rates:",)), *page(reader, rates))),)
 
 
-def at_rest(velocity: Vector) -> bool:
+def is_still(velocity: Vector) -> bool:
     """True where every component is zero."""
     return all(is_zero(x) for x in velocity)
 
@@ -114,7 +114,7 @@ def spins(system: System, body: str, spin: Vector) -> list[Pair]:
     """The angular velocity of a body: one number in the plane, its components in body axes in space."""
     if len(axes(system)) == 2:
         return [] if is_zero(spin[2]) else [(Name("omega", body), spin[2])]
-    if at_rest(spin):
+    if is_still(spin):
         return []
     return [(Name(f"omega_{axis}", body), x) for axis, x in zip(AXES, spin, strict=True)]
 

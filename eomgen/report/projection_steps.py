@@ -7,7 +7,7 @@ from eomgen.mechanics.bodies.kinematics import velocity_of
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.report.bounded import page
-from eomgen.report.motion_steps import Pair, at_rest, components, spins
+from eomgen.report.motion_steps import Pair, component_pairs, is_still, spins
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Entry, Formula, Law, Name, Prose, Step
@@ -31,8 +31,8 @@ def twists_step(system: System, reader: Reader) -> Step:
         body = mass_properties(system.scope, link.name)
         if not is_zero(body.m):
             velocity = velocity_of(system.motion, (link.name, body.com))
-            if not at_rest(velocity):
-                formulas += components(system, "v", f"{link.name}.center", velocity)
+            if not is_still(velocity):
+                formulas += component_pairs(system, "v", f"{link.name}.center", velocity)
         formulas += spins(system, link.name, link.twist.w)
     words = "Each body moves with the one it hangs on and by its joint:"
     return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))

@@ -13,7 +13,7 @@ from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of, shown_system
 from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print
-from eomgen.report.setting_steps import count, listed
+from eomgen.report.setting_steps import count, listed_symbols
 from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -160,7 +160,7 @@ def _open(reader: Reader, letters: Lettered) -> list[Statement]:
     if not reactions.indeterminate:
         return []
     symbol = dict(zip((c.name for c in reactions.components), letters.symbols, strict=True))
-    names = listed(tuple(symbol[c.name] for c in reactions.indeterminate))
+    names = listed_symbols(tuple(symbol[c.name] for c in reactions.indeterminate))
     one = len(reactions.indeterminate) == 1
     words = (
         *names,

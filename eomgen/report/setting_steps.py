@@ -23,7 +23,7 @@ def setting_steps(system: System) -> tuple[Step, ...]:
     return (data_step(system), _freedom(system), _coordinates(system))
 
 
-def listed(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:
+def listed_symbols(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:
     """The symbols, with commas between."""
     pieces: list[Piece] = []
     for symbol in symbols:

@@ -27,7 +27,7 @@ from eomgen.symbolic.numeric.tolerances import (
     SUMMED,
 )
 
-Function = Callable[[float, np.ndarray], Any]
+FunctionOnPath = Callable[[float, np.ndarray], Any]
 
 SAMPLES = 16  # of g in one step
 MOST_STEPS = 4000
@@ -47,13 +47,13 @@ class NeverReached(RunFailed):
 
 
 def first_arrival(
-    f: Function,
-    g: Function,
+    f: FunctionOnPath,
+    g: FunctionOnPath,
     s: float,
     x: Any,
     *,
     sense: int = 1,
-    valid: Function | None = None,
+    valid: FunctionOnPath | None = None,
     within: float = np.inf,
 ) -> Arrival:
     """The first zero of g after the start; a zero at the start is none.
@@ -88,7 +88,7 @@ def first_arrival(
     raise NeverReached(f"the condition is not met as far as the motion was followed, up to {solver.t:.6g}")
 
 
-def _holds(valid: Function, solver: Any, found: Arrival | None) -> bool:
+def _holds(valid: FunctionOnPath, solver: Any, found: Arrival | None) -> bool:
     """Whether the path may be followed up to the zero, or to the end of the step."""
     if found is not None:
         return float(valid(found.s, found.x)) > -COMPUTED
@@ -99,8 +99,8 @@ def _holds(valid: Function, solver: Any, found: Arrival | None) -> bool:
 class _Path:
     """What is known of g along the path."""
 
-    f: Function
-    g: Function
+    f: FunctionOnPath
+    g: FunctionOnPath
     steps: int = 0
     largest: float = 0.0
     last: float = 0.0  # the last value of g that is no rounding; 0 before there is one

@@ -8,24 +8,24 @@ from collections.abc import Callable
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.model.fields import Equation
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import parse, parse_equation
 from eomgen.symbolic.expression.graph import Scalar
 
-Condition = Callable[[System], Scalar]
+SystemCondition = Callable[[System], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a system."""
 
 
-def condition_of(model: Model, text: str) -> Condition:
+def condition_of(model: Model, text: str) -> SystemCondition:
     """Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0".
 
     Raises:
         UsageError: it is no equation, or names what the model does not have.
     """
     try:
-        equation = Equation(*parse_equation(text), text=text)
+        equation = WrittenEquation(*parse_equation(text), text=text)
         dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", mend=error.mend or 'write "theta = pi/2"') from error

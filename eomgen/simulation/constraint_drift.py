@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eomgen.codegen.spheres import Places, on_spheres
+from eomgen.codegen.spheres import SpherePlaces, on_spheres
 from eomgen.simulation.projection import Projection
 
 LOST = 100.0  # absolute tolerances of a step by which a tie that cannot be closed may be open without a word
@@ -26,7 +26,7 @@ class DriftCorrection:
         lost: the first instant at which a tie stayed open by more than LOST tolerances, and by how much.
     """
 
-    spheres: Sequence[Places]
+    spheres: Sequence[SpherePlaces]
     projection: Projection | None
     atol: float
     every: int | None = None

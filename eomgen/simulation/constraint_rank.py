@@ -70,7 +70,7 @@ class Nearness:
         return float(self(np.array([t]), x[None, :])[0])
 
 
-class Lookout:
+class RankLookout:
     """Follows the nearness of a run from step to step, closely only where it may come near zero within a step.
 
     Args:

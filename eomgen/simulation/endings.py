@@ -16,18 +16,18 @@ from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
-Condition = Callable[[PhaseModel], Scalar]
+PhaseCondition = Callable[[PhaseModel], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a phase."""
 
 
-def met(stretch: PhaseRun, until: Condition) -> bool:
+def met(stretch: PhaseRun, until: PhaseCondition) -> bool:
     """Whether the condition holds where a phase ends, and did not hold all along."""
     sizes = _sizes(stretch, until)
     largest = float(np.max(sizes))
     return bool(sizes[-1] <= COMPUTED * max(1.0, largest) < largest)
 
 
-def ended(runs: Iterable[PhaseRun], until: Condition) -> Iterator[PhaseRun]:
+def ended(runs: Iterable[PhaseRun], until: PhaseCondition) -> Iterator[PhaseRun]:
     """The phases, the last of them cut off where the condition first holds."""
     before: PhaseRun | None = None
     for stretch in runs:
@@ -41,14 +41,14 @@ def ended(runs: Iterable[PhaseRun], until: Condition) -> Iterator[PhaseRun]:
         before = stretch
 
 
-def _begins(before: PhaseRun, stretch: PhaseRun, until: Condition) -> bool:
+def _begins(before: PhaseRun, stretch: PhaseRun, until: PhaseCondition) -> bool:
     """Whether the condition holds where a phase begins, and did not at the end of the one before."""
     last, largest = (float(find(_sizes(before, until))) for find in (lambda sizes: sizes[-1], np.max))
     enough = COMPUTED * max(1.0, largest)
     return last > enough and bool(_sizes(stretch, until)[0] <= enough)
 
 
-def _sizes(stretch: PhaseRun, until: Condition) -> np.ndarray:
+def _sizes(stretch: PhaseRun, until: PhaseCondition) -> np.ndarray:
     """The absolute values of what ought to be 0, at the instants of a phase and at its end."""
     run, phase = stretch.run, stretch.phase
     stops, after = stretch.bound is not None and stretch.bound.kind == "stops", stretch.after

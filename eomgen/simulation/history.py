@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.model.parts import Model
-from eomgen.simulation.endings import Condition, met
+from eomgen.simulation.endings import PhaseCondition, met
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.joined import told
+from eomgen.simulation.joined import phase_text
 from eomgen.simulation.motion import Plan, passed
 from eomgen.simulation.phase_change import Course, at_start, course_of
 from eomgen.simulation.phase_model import PhaseModel, Values
@@ -22,7 +22,7 @@ FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN)
 
 
 @dataclass(frozen=True)
-class Passage:
+class PassedPhase:
     """One phase of a motion.
 
     Args:
@@ -54,11 +54,11 @@ def history(
     p: np.ndarray,
     start: Mapping[str, float] | None = None,
     *,
-    until: Condition | None,
+    until: PhaseCondition | None,
     time: float,
     parameters: Mapping[str, float] | None = None,
     how: Stepping = FINE,
-) -> tuple[Passage, ...]:
+) -> tuple[PassedPhase, ...]:
     """The phases from the start to the first time after it at which the condition is 0, or to the end of the time.
 
     Args:
@@ -79,7 +79,7 @@ def history(
     return tuple(found)
 
 
-def _passage(course: Course, stretch: PhaseRun, until: Condition | None, holds: bool) -> Passage:
+def _passage(course: Course, stretch: PhaseRun, until: PhaseCondition | None, holds: bool) -> PassedPhase:
     here, phase, run, bound = stretch.here, stretch.phase, stretch.run, stretch.bound
     after, follows = stretch.after, None
     value: Scalar | None
@@ -92,4 +92,6 @@ def _passage(course: Course, stretch: PhaseRun, until: Condition | None, holds: 
     else:
         kind, owner, value = "time" if run.status == "finished" else "failure", "", None
     values = phase.values(run.end, run.last)
-    return Passage(phase, here.values, values, here.t, run.end, kind, owner, value, told(course, stretch), follows)
+    return PassedPhase(
+        phase, here.values, values, here.t, run.end, kind, owner, value, phase_text(course, stretch), follows
+    )

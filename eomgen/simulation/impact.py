@@ -90,7 +90,7 @@ class Loose:
     @cached_property
     def _matrices(self) -> RightHandSide:
         """M, the rows (J, sigma) of the ties that stay, and those of the contacts."""
-        M = tuple(x for row in recursive.assemble(self.system).M for x in row)
+        M = tuple(x for row in recursive.assembled_by_recursion(self.system).M for x in row)
         rows = (*self.system.ties.closing, *(row for own in self._rows.values() for row in own))
         return self._compiled((*M, *self._with_bias([row.velocity for row in rows])))
 

@@ -21,7 +21,7 @@ from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001
 
-Function = Callable[[np.ndarray, np.ndarray], Any]
+FunctionOfStates = Callable[[np.ndarray, np.ndarray], Any]
 
 
 def integrate(
@@ -35,9 +35,9 @@ def integrate(
     atol: float = RUN,
     method: str = "DOP853",
     samples: int | Sequence[float] | None = SAMPLES,
-    energy: Function | None = None,
+    energy: FunctionOfStates | None = None,
     conservative: bool = True,
-    gaps: Function | None = None,
+    gaps: FunctionOfStates | None = None,
     events: Events | None = None,
     most_steps: int = MOST_STEPS,
     projection: Projection | None = None,
@@ -72,7 +72,7 @@ def integrate(
     start, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
     x0, p = _vector("x0", rhs.x0 if x0 is None else x0), _vector("p", rhs.p0 if p is None else p)
     how = Stepping(method, rtol, atol, most_steps, stabilization, every, knots=knots)
-    check(start, end, how)
+    refuse_bad_run(start, end, how)
     instants = instants_of(samples, start, end)
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
@@ -101,7 +101,7 @@ def integrate(
 
 
 def _open(
-    t: np.ndarray, x: np.ndarray, projection: Projection | None, gaps: Function | None
+    t: np.ndarray, x: np.ndarray, projection: Projection | None, gaps: FunctionOfStates | None
 ) -> tuple[float | None, float | None]:
     """The largest |phi| and |J u + sigma|; None where nothing closes or nobody measures it."""
     if projection is not None:
@@ -119,7 +119,7 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
     return float(np.max(np.abs(E - E[:1]), initial=0.0) / (scale if scale > 0 else 1.0))
 
 
-def _energy(run: Run, energy: Function, conservative: bool) -> tuple[np.ndarray, float | None]:
+def _energy(run: Run, energy: FunctionOfStates, conservative: bool) -> tuple[np.ndarray, float | None]:
     """(T + V at the instants asked for, its drift, at the integrator's steps too)."""
     T, V = _rows(energy(run.t, run.x), run.t)
     if not conservative:
@@ -160,7 +160,7 @@ def _vector(what: str, values: Any) -> np.ndarray:
     return vector
 
 
-def check(start: float, end: float, how: Stepping) -> None:
+def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     """Refuses what makes no sense.
 
     Raises:

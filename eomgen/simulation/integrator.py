@@ -9,13 +9,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.spheres import Places
+from eomgen.codegen.spheres import SpherePlaces
 from eomgen.simulation.breakpoints import step
 from eomgen.simulation.constraint_drift import DriftCorrection
 from eomgen.simulation.event_location import Crossing, Events, EventSearch
 from eomgen.simulation.projection import Projection
-from eomgen.simulation.result import Status
-from eomgen.simulation.solvers import NotFinite, Rate, Slope, put, solver_of
+from eomgen.simulation.result import RunStatus
+from eomgen.simulation.solvers import NotFinite, Slope, StateRate, put, solver_of
 from eomgen.simulation.step_states import StepStates
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_RTOL, RUN
 
@@ -56,7 +56,7 @@ class Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         return replace(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
 
-    def hold(self, spheres: Sequence[Places], projection: Projection | None) -> DriftCorrection:
+    def hold(self, spheres: Sequence[SpherePlaces], projection: Projection | None) -> DriftCorrection:
         """What keeps the states of one run where they belong; the norms of quaternions always."""
         kept = projection if self.stabilization == "projection" else None
         return DriftCorrection(spheres, kept, self.atol, self.every)
@@ -78,7 +78,7 @@ class Run:
     x: np.ndarray
     end: float
     last: np.ndarray
-    status: Status
+    status: RunStatus
     message: str
     steps: int
     evaluations: int
@@ -141,14 +141,14 @@ class _Rows:
 
 
 def march(
-    f: Rate,
+    f: StateRate,
     span: tuple[float, float],
     x0: np.ndarray,
     *,
     how: Stepping,
     instants: np.ndarray | None = None,
     events: Events | None = None,
-    spheres: Sequence[Places] = (),
+    spheres: Sequence[SpherePlaces] = (),
     projection: Projection | None = None,
     slope: Slope | None = None,
     lookout: Lookout | None = None,
@@ -183,8 +183,8 @@ def march(
 
 
 def _stepped(
-    f: Rate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping
-) -> tuple[Status, str, int, Crossing | None]:
+    f: StateRate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping
+) -> tuple[RunStatus, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
     steps, hold, end = 0, rows.hold, solver.t_bound
     while solver.status == "running":
@@ -211,7 +211,7 @@ def _stepped(
     return "finished", "", steps, None
 
 
-def _failed(f: Rate, solver: Any) -> tuple[Status, str]:
+def _failed(f: StateRate, solver: Any) -> tuple[RunStatus, str]:
     """Why the step size went to nothing."""
     ahead = solver.t + COMPUTED * max(1.0, abs(solver.t))
     if not np.all(np.isfinite(f(ahead, solver.y + (ahead - solver.t) * f(solver.t, solver.y)))):
@@ -219,7 +219,7 @@ def _failed(f: Rate, solver: Any) -> tuple[Status, str]:
     return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero."
 
 
-def _stopped(stop: BaseException, t: float) -> tuple[Status, str]:
+def _stopped(stop: BaseException, t: float) -> tuple[RunStatus, str]:
     if isinstance(stop, KeyboardInterrupt):
         return "interrupted", f"Interrupted at t = {t:.6g} s."
     return "not finite", _no_value(t)

@@ -39,7 +39,7 @@ def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(
-            Phase(s.here.t, s.run.end, told(course, s), (int(first), int(last)), s.phase, _measured(s))
+            Phase(s.here.t, s.run.end, phase_text(course, s), (int(first), int(last)), s.phase, _measured(s))
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,
@@ -121,7 +121,7 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
     )
 
 
-def told(course: Course, stretch: PhaseRun) -> str:
+def phase_text(course: Course, stretch: PhaseRun) -> str:
     """What ended a phase, and when."""
     after = stretch.after
     if after is None:

@@ -10,7 +10,7 @@ import numpy as np
 from eomgen.errors import UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
 from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.endings import Condition, ended
+from eomgen.simulation.endings import PhaseCondition, ended
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import Run, Stepping
 from eomgen.simulation.phase_change import Course, PhaseStart
@@ -41,7 +41,7 @@ class Plan:
     end: float
     how: Stepping
     instants: np.ndarray | None = None
-    until: Condition | None = None
+    until: PhaseCondition | None = None
 
 
 def through(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:

@@ -110,7 +110,7 @@ class PhaseModel:
         """The equations of motion over the speeds that the model declares."""
         if self.declared is self.system:
             return self.assembly
-        return with_friction(self.declared, recursive.assemble(self.declared))
+        return with_friction(self.declared, recursive.assembled_by_recursion(self.declared))
 
     @property
     def shown(self) -> tuple[str, ...]:

@@ -135,7 +135,7 @@ class PhaseModels:
         """The equations of motion, friction and Baumgarte's rows included."""
         if self._derived is not None and self._derived[0] is system and self.rates is None:
             return self._derived[1]
-        assembly = recursive.assemble(system)
+        assembly = recursive.assembled_by_recursion(system)
         return with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
 
     def _system(self, model: Model, configuration: Configuration) -> System:

@@ -21,7 +21,7 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.codegen.spheres import Places, on_spheres, spheres_of
+from eomgen.codegen.spheres import SpherePlaces, on_spheres, spheres_of
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.closure import gaps_of
 from eomgen.mechanics.equations.system import System
@@ -76,7 +76,7 @@ class Projection:
     coordinates: int
     size: int
     placed: int
-    spheres: tuple[Places, ...]
+    spheres: tuple[SpherePlaces, ...]
     gaps: RightHandSide
     positions: Rows | None
     speeds: Rows | None

@@ -16,7 +16,7 @@ import numpy as np
 
 from eomgen.errors import RunFailed, UsageError
 
-Status = Literal[
+RunStatus = Literal[
     "finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact", "singular"
 ]
 
@@ -77,7 +77,7 @@ class Trajectory:
     drift: float | None
     gap: float | None
     phases: tuple[Phase, ...]
-    status: Status
+    status: RunStatus
     message: str
     steps: int
     evaluations: int

@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.spheres import Places
-from eomgen.simulation.constraint_rank import PLACE, Lookout, Nearness
+from eomgen.codegen.spheres import SpherePlaces
+from eomgen.simulation.constraint_rank import PLACE, Nearness, RankLookout
 from eomgen.simulation.event_location import Crossing, Events, EventSearch
 from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping, march
 from eomgen.simulation.projection import Projection
-from eomgen.simulation.solvers import Rate, Slope
+from eomgen.simulation.solvers import Slope, StateRate
 from eomgen.symbolic.numeric.tolerances import FAIR_RUN, FINEST_RUN, WIDE_STEP
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
@@ -58,9 +58,9 @@ class Flow:
         projection: onto the ties.
     """
 
-    f: Rate
+    f: StateRate
     how: Stepping
-    spheres: Sequence[Places] = ()
+    spheres: Sequence[SpherePlaces] = ()
     projection: Projection | None = None
     slope: Slope | None = None
 
@@ -70,7 +70,7 @@ class Flow:
         x0: np.ndarray,
         instants: np.ndarray | None,
         events: Events | None,
-        lookout: Lookout | None = None,
+        lookout: RankLookout | None = None,
     ) -> Run:
         """A run that ends where the lookout says so."""
         return march(
@@ -110,7 +110,7 @@ def march_across(
     passages: list[Passage] = []
     (t, end), x, since, level = span, x0, span[0], 0
     while True:
-        lookout = Lookout(nearness, NEARNESS[level], t, x)
+        lookout = RankLookout(nearness, NEARNESS[level], t, x)
         run = flow.march((t, end), x, _from(instants, t), events, lookout)
         runs.append(run)
         if run.crossing is None or run.crossing.index != LOOKED_OUT:

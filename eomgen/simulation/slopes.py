@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eomgen.codegen.program import bordered, kinematics, program_of
+from eomgen.codegen.program import bordered, kinematic_rates, program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
@@ -32,7 +32,7 @@ def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | No
     """
     states = assembly.symbols.q + assembly.symbols.u
     n, k, m = len(assembly.M), len(assembly.J), len(states)
-    parts = (jacobian(kinematics(assembly), states), jacobian(_residual(assembly), states), assembly.M, assembly.J)
+    parts = (jacobian(kinematic_rates(assembly), states), jacobian(_residual(assembly), states), assembly.M, assembly.J)
     entries = tuple(x for rows in parts for row in rows for x in row)
     program = program_of(entries, system.symbols, inputs=system.inputs, solve=bordered(assembly) if n else None)
     if program.count.total > LONG:

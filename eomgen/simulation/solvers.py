@@ -13,7 +13,7 @@ EXPLICIT = ("DOP853", "RK45", "RK23")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 METHODS = EXPLICIT + IMPLICIT
 
-Rate = Callable[[float, np.ndarray], np.ndarray]
+StateRate = Callable[[float, np.ndarray], np.ndarray]
 Slope = Callable[[float, np.ndarray], np.ndarray]
 
 
@@ -23,7 +23,7 @@ class NotFinite(ArithmeticError):
 
 def solver_of(
     method: str,
-    f: Rate,
+    f: StateRate,
     span: tuple[float, float],
     x0: np.ndarray,
     *,

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eomgen.codegen.spheres import Places
+from eomgen.codegen.spheres import SpherePlaces
 from eomgen.simulation.arrival import Arrival, NeverReached
 from eomgen.simulation.constraint_rank import Nearness
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.singular_crossing import Flow, march_across
-from eomgen.simulation.solvers import Rate
+from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FAIR_RUN, FINE_RUN
 
 TOLERANCES = (FINE_RUN, FAIR_RUN)  # of one step; the coarser where the finer does not come across
@@ -34,10 +34,10 @@ class Way:
         projection: onto the ties.
     """
 
-    f: Rate
+    f: StateRate
     t0: float
     x0: np.ndarray
-    spheres: Sequence[Places]
+    spheres: Sequence[SpherePlaces]
     nearness: Callable[[], Nearness | None]
     projection: Callable[[], Projection | None]
 

@@ -11,14 +11,14 @@ from eomgen.report.document import plain_document
 from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.branch_lines import branch_lines
-from eomgen.verbs.checked import Checked, LoopStart, checked
+from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import freedom_lines
 from eomgen.verbs.outcome import Outcome, listed
 
 
-def check(model: Model) -> Outcome:
+def check_outcome(model: Model) -> Outcome:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
-    found = checked(model)
+    found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
     return Outcome(plain_document(model, lambda: _entries(found), Lines(tuple(lines))))
 

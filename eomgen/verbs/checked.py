@@ -77,7 +77,7 @@ class Checked:
         return self.freedom.by_rank if integrability is None else integrability.positions
 
 
-def checked(model: Model) -> Checked:
+def checked_model(model: Model) -> Checked:
     """What a model is found to be.
 
     Raises:

@@ -10,7 +10,7 @@ from eomgen.report.statements import Lines
 from eomgen.verbs.outcome import Outcome, proven
 
 
-def codegen(
+def codegen_outcome(
     model: Model,
     *,
     stem: str,

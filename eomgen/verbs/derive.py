@@ -7,7 +7,7 @@ from eomgen.model.parts import Model
 from eomgen.verbs.outcome import Outcome, proven
 
 
-def derive(model: Model, *, method: str, certify: bool, full: bool = False) -> Outcome:
+def derive_outcome(model: Model, *, method: str, certify: bool, full: bool = False) -> Outcome:
     """The derivation, and its certificate.
 
     Args:

@@ -16,7 +16,7 @@ from eomgen.verbs.outcome import Outcome
 from eomgen.version import __version__
 
 
-def doctor() -> Outcome:
+def doctor_outcome() -> Outcome:
     """What this machine can do."""
     rows: list[tuple[str, str | None]] = [("eomgen", __version__), ("python", platform.python_version())]
     for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs"):

@@ -14,7 +14,7 @@ from eomgen.model.parts import Coordinate, Input, Model
 from eomgen.model.samples import samples
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.verbs.given import assignments, nearest
+from eomgen.verbs.given import assignments, nearest_name
 
 EXAMPLE = "--follow theta=run.csv"
 LAWS = ("motion", "rate", "acceleration")
@@ -36,7 +36,7 @@ def following(model: Model, given: Sequence[str]) -> Model:
         elif name in coordinates:
             coordinates[name] = _driven(coordinates[name], name, _read(path, name))
         else:
-            mend = nearest(name, [*coordinates, *inputs])
+            mend = nearest_name(name, [*coordinates, *inputs])
             raise UsageError(f"--follow: there is no coordinate or input '{name}'", mend=mend)
     changes: dict[str, Any] = {"coordinates": Table[Coordinate](coordinates), "inputs": Table[Input](inputs)}
     try:
@@ -67,7 +67,7 @@ def _read(path: str, name: str) -> Expression:
         raise UsageError(f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}", path) from error
     heads = [word.strip() for word in rows.pop(0)] if rows and not _is_number(rows[0][0]) else []
     if name not in heads and len(heads) > 2:
-        raise UsageError(f"--follow: there is no column '{name}'", path, nearest(name, heads[1:]))
+        raise UsageError(f"--follow: there is no column '{name}'", path, nearest_name(name, heads[1:]))
     column = heads.index(name) if name in heads else 1
     if any(len(row) <= column for row in rows):
         raise UsageError(f"--follow: a row has no column {column + 1}", path, mend="write a time and a value a row")

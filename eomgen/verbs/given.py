@@ -24,7 +24,7 @@ def assignments(given: Iterable[str], example: str) -> list[tuple[str, str]]:
     return pairs
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
+def nearest_name(name: str, names: Iterable[str]) -> str:
     """The name that was probably meant, or all that there are."""
     names = list(names)
     near = difflib.get_close_matches(name, names, n=1)

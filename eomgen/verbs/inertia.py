@@ -7,7 +7,7 @@ from eomgen.report.inertia.result import inertia as found_in
 from eomgen.verbs.outcome import Outcome, proven, told
 
 
-def inertia(
+def inertia_outcome(
     model: Model,
     *,
     plot: str | None = None,

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
-from eomgen.verbs.given import nearest
+from eomgen.verbs.given import nearest_name
 from eomgen.verbs.outcome import Outcome, proven, told
 
 
-def kinematics(
+def kinematics_outcome(
     model: Model,
     *,
     plot: str | None = None,
@@ -57,7 +57,7 @@ def _pair(model: Model, text: str) -> tuple[str, str]:
     if not word:
         raise UsageError(f'--relative "{text}" is no point in a body', mend='write --relative "bead.center in hoop"')
     if body not in model.bodies:
-        raise UsageError(f"--relative: there is no body '{body}'", mend=nearest(body, model.bodies))
+        raise UsageError(f"--relative: there is no body '{body}'", mend=nearest_name(body, model.bodies))
     if point not in model.named_points:
-        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest(point, model.named_points))
+        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest_name(point, model.named_points))
     return point, body

@@ -7,7 +7,7 @@ from eomgen.report.linearize.result import linearize as found_in
 from eomgen.verbs.outcome import Outcome, proven, told
 
 
-def linearize(
+def linearize_outcome(
     model: Model,
     *,
     plot: str | None = None,

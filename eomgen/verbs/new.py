@@ -13,7 +13,7 @@ from eomgen.verbs.outcome import Outcome
 TEMPLATES = Path(__file__).parent.parent / "templates"
 
 
-def new(name: str) -> Outcome:
+def new_outcome(name: str) -> Outcome:
     """A commented starter model NAME.toml; never over a file that is there.
 
     Raises:

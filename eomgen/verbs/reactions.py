@@ -18,7 +18,7 @@ from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.model.checks.outputs import FUNCTIONS
-from eomgen.model.fields import AtRest, Equation
+from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
@@ -34,14 +34,14 @@ from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
 from eomgen.symbolic.numeric.tolerances import ROUNDING
-from eomgen.verbs.given import assignments, nearest
+from eomgen.verbs.given import assignments, nearest_name
 from eomgen.verbs.outcome import Outcome, listed
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
 
 
-def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Outcome:
+def reactions_outcome(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Outcome:
     """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
 
     Args:
@@ -116,7 +116,7 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
 def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Quantity]:
     """The answers to outputs that ask for the reactions, with their units."""
     instant = None if at is None else _instant(at)
-    from_ = "rest" if from_rest else "start" if isinstance(instant, Equation) else None
+    from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
     values = [parse(named.name, references=True) for named in asked]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {at}", outputs=Table(outputs))
@@ -124,11 +124,11 @@ def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest
     return {named.name: dataclasses.replace(found[f"o{k}"], unit=named.unit) for k, named in enumerate(asked)}
 
 
-def _instant(text: str) -> Equation | AtRest:
+def _instant(text: str) -> WrittenEquation | AtRest:
     if text.strip() == AtRest.text:
         return AtRest()
     try:
-        return Equation(*parse_equation(text), text=text)
+        return WrittenEquation(*parse_equation(text), text=text)
     except ExpressionError as error:
         raise UsageError(f"--at {text}: {error.what}", mend=error.mend or 'write --at "theta = pi/2"') from error
 
@@ -143,7 +143,7 @@ def _at_rest(model: Model, given: tuple[str, ...]) -> Model:
     words = [word for text in given for word in re.split(r",(?=[^()]*=)", text)]
     for name, text in assignments(words, '--from-rest "theta=0"'):
         if name not in coordinates:
-            raise UsageError(f"--from-rest: there is no coordinate '{name}'", mend=nearest(name, coordinates))
+            raise UsageError(f"--from-rest: there is no coordinate '{name}'", mend=nearest_name(name, coordinates))
         if coordinates[name].driven:
             raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", mend=_free(model))
         coordinates[name] = altered(coordinates[name], start=_expression(name, text))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen import pipeline
-from eomgen.codegen.accelerations import accelerations_at
+from eomgen.codegen.accelerations import closing_accelerations
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
@@ -21,13 +21,13 @@ from eomgen.report.statements import Grid, Prose, Statement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
-from eomgen.verbs.given import assignments, nearest
+from eomgen.verbs.given import assignments, nearest_name
 from eomgen.verbs.outcome import Outcome, prepared, proven
 
 MOST_TOLD = 20  # phases in the text
 
 
-def simulate(
+def simulate_outcome(
     model: Model,
     *,
     time: float,
@@ -83,7 +83,7 @@ def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: M
     system, assembly = phase.declared, phase.declared_assembly
     state = np.array([x[node.name] for node in (*system.symbols.q, *system.symbols.u)])
     p = parameter_vector(equations.model, parameters)
-    found = accelerations_at(system, assembly, float(run.t[0]), state, p)
+    found = closing_accelerations(system, assembly, float(run.t[0]), state, p)
     return {"start_accelerations": found.a, "start_multipliers": found.lam}
 
 
@@ -158,7 +158,7 @@ def _parameters(model: Model, given: tuple[str, ...]) -> dict[str, float]:
     values = {}
     for name, text in assignments(given, "--set m=2"):
         if name not in model.parameters:
-            raise UsageError(f"--set: there is no parameter '{name}'", mend=nearest(name, model.parameters))
+            raise UsageError(f"--set: there is no parameter '{name}'", mend=nearest_name(name, model.parameters))
         values[name] = _value(text, {}, f"--set {name}={text}")
     return values
 
@@ -174,7 +174,7 @@ def _start(equations: pipeline.Equations, parameters: Mapping[str, float], given
     values = {}
     for name, text in assignments(given, "--start theta=1"):
         if name not in names:
-            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=nearest(name, names))
+            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=nearest_name(name, names))
         values[name] = _value(text, known, f"--start {name}={text}")
     return values
 

@@ -9,7 +9,7 @@ from eomgen.report.statements import Found, Listing
 from eomgen.verbs.outcome import Outcome, listed
 
 
-def solve(model: Model) -> Outcome:
+def solve_outcome(model: Model) -> Outcome:
     """Every entry of [outputs]."""
     found = answers.solve(model)
     unanswered = [name for name, answer in found.items() if not answer.answered]

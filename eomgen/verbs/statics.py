@@ -7,7 +7,7 @@ from eomgen.report.statics.result import statics as found_in
 from eomgen.verbs.outcome import Outcome, told
 
 
-def statics(
+def statics_outcome(
     model: Model,
     *,
     plot: str | None = None,

@@ -36,7 +36,7 @@ def at(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 
 def solved(system: System, values: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
     """(a, lam) of M a = forcing + J^T lam, J a + gamma = 0 at a state; what is not named is 0."""
-    assembly = recursive.assemble(system)
+    assembly = recursive.assembled_by_recursion(system)
     symbols = system.symbols
     state = {s: fifty_digits().number(0) for s in (*symbols.q, *symbols.u, symbols.t)}
     by_name = symbols.parameters | {s.name: s for s in (*symbols.q, *symbols.u)}

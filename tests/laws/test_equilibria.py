@@ -15,8 +15,8 @@ from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equi
 from eomgen.model.parts import Model
 from eomgen.report import rendered
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.reactions import reactions
-from eomgen.verbs.statics import statics
+from eomgen.verbs.reactions import reactions_outcome
+from eomgen.verbs.statics import statics_outcome
 
 pytestmark = pytest.mark.slow
 
@@ -431,21 +431,21 @@ def test_outputs_and_reactions_at_rest():
     )
     answers = eomgen.solve(model)
     assert answers["a"].exact == "0" and answers["X"].exact == "-m*g"
-    found = reactions(model, at="equilibrium")
+    found = reactions_outcome(model, at="equilibrium")
     assert not found.failed and found.payload["reactions"]["reaction_x(bar)"]["exact"] == "-m*g"
 
 
 def test_the_verb_of_statics_gives_the_places_of_rest():
     model = eomgen.load("models/simple_pendulum.toml")
-    payload = statics(model).payload
+    payload = statics_outcome(model).payload
     assert [e["coordinates"]["theta"]["exact"] for e in payload["equilibria"]] == ["0", "pi"]
     assert payload["complete"] and payload["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
-    document = statics(model).document
+    document = statics_outcome(model).document
     text = rendered(document)
     assert "There are 2 places of rest" in text and "stable" in text
     assert r"\frac{\partial^{2} V}{\partial q^{2}}" in rendered(document, "latex")
     with pytest.raises(UsageError, match="structures that stand"):
-        statics(model, reaction="reaction_x(rod)")
+        statics_outcome(model, reaction="reaction_x(rod)")
 
 
 # -- what has no places ------------------------------------------------------------------------------

@@ -529,15 +529,15 @@ def test_what_is_not_known_of_a_body_of_the_plane_is_not_answered():
 
 def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     """--plot makes a picture of the plane; JSON has every result by name; in space nothing is drawn."""
-    from eomgen.verbs.inertia import inertia
+    from eomgen.verbs.inertia import inertia_outcome
 
     picture = tmp_path / "plate.png"
-    outcome = inertia(eomgen.Model(**CH13), plot=str(picture), about="O")
+    outcome = inertia_outcome(eomgen.Model(**CH13), plot=str(picture), about="O")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert outcome.payload["results"]["m(plate)"] == {"exact": "87", "value": 87.0, "unit": "kg"}
     assert outcome.payload["principal_axes"].keys() == {"plate", "O"}
     with pytest.raises(eomgen.RunFailed):
-        inertia(eomgen.Model(**CUBE), plot=str(picture))
+        inertia_outcome(eomgen.Model(**CUBE), plot=str(picture))
 
 
 # -- the report of what moves, and of what says nothing of its inertia ------------------------------

@@ -90,7 +90,7 @@ def agrees_with_projection(model: eomgen.Model) -> None:
     """tau = M a + c - Q, the latter from the twists of the bodies."""
     equations = eomgen.derive(model)
     inverse = equations.inverse_dynamics()
-    system, assembly = equations.system, projection.assemble(equations.system)
+    system, assembly = equations.system, projection.assembled_by_wrenches(equations.system)
     needed = (
         sum((m * a for m, a in zip(row, system.symbols.a, strict=True)), start=-Q)
         for row, Q in zip(assembly.M, assembly.forcing, strict=True)

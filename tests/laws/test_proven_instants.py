@@ -13,7 +13,7 @@ from eomgen.mechanics.fields import relative_motion
 from eomgen.mechanics.instant import body_motion, kinematic_state, mechanism
 from eomgen.questions import velocities
 from eomgen.symbolic.expression.spatial import times
-from eomgen.verbs.kinematics import kinematics as verb
+from eomgen.verbs.kinematics import kinematics_outcome as verb
 
 CRANK = MODELS / "slider_crank.toml"
 HOOP = MODELS / "bead_on_turning_hoop.toml"

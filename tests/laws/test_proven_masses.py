@@ -13,7 +13,7 @@ import eomgen
 from eomgen.mechanics.bodies import composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.report.inertia import result, rows, steps
-from eomgen.verbs.inertia import inertia as verb
+from eomgen.verbs.inertia import inertia_outcome as verb
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"
 FRAME = MODELS / "seeds" / "ch18_p2.toml"

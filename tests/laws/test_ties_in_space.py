@@ -619,9 +619,9 @@ def test_frobenius_and_chow_tell_what_a_row_of_velocities_is(name):
 
 def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
     """x' = R theta': x - R theta - (0.1 - 0.4 R) = 0, from `check` in both forms."""
-    from eomgen.verbs.check import check
+    from eomgen.verbs.check import check_outcome
 
-    found = check(model_of(rates("x' - R*theta'"), "plane"))
+    found = check_outcome(model_of(rates("x' - R*theta'"), "plane"))
     (row,) = found.payload["velocity_rows"]
     expression = eomgen.symbolic.expression.expressions.parse(row["integral"])
     for x, theta, R in ((0.1, 0.4, 0.3), (1.7, 0.4 + 1.6 / 0.5, 0.5)):

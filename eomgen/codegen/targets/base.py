@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.codegen.expressions import Call, used_once
+from eomgen.codegen.expressions import CallText, used_once
 from eomgen.codegen.names import identifiers
 from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -146,7 +146,7 @@ class Layout:
     sampled: dict[int, str]
     ops: frozenset[str]
 
-    def calls(self, call: Call) -> Call:
+    def calls(self, call: CallText) -> CallText:
         """How functions are called, those through samples by their names here."""
         return lambda op, arguments: call(*self._called(op, arguments))
 

@@ -10,7 +10,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 
 from eomgen.codegen.build import library
-from eomgen.codegen.expressions import Writer
+from eomgen.codegen.expressions import ExpressionWriter
 from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.targets.base import (
     RHS,
@@ -27,7 +27,7 @@ from eomgen.codegen.targets.base import (
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 from eomgen.codegen.targets.c_solving import solving_text
-from eomgen.codegen.targets.parts import Parts, parts_of
+from eomgen.codegen.targets.parts import Parts, program_parts
 from eomgen.codegen.targets.samples import c_samples
 from eomgen.symbolic.expression.graph import Node, Scalar
 
@@ -95,7 +95,7 @@ def prototypes(program: Program, stem: str, role: Role = RHS) -> str:
 def _constants(bodies: Layout, stem: str, remarks: Mapping[str, str]) -> str:
     """What the parameters alone determine."""
     nodes = [s.node for s in bodies.program.hoisted]
-    writer = Writer(bodies.calls(_call), bodies.names)
+    writer = ExpressionWriter(bodies.calls(_call), bodies.names)
     used = used_symbols(bodies.kept, ())
     lines = _loads(bodies, "p", list(bodies.program.symbols.parameters.values()), used, remarks)
     lines += _assignments(writer, nodes, bodies.once)
@@ -111,11 +111,11 @@ def _evaluate(bodies: Layout, stem: str, result: str, remarks: Mapping[str, str]
     symbols = program.symbols
     written = (*(solve.entries if solve else ()), *program.outputs)
     inputs = [x for x in symbols.inputs.values() if x in used_symbols(written, bodies.kept)]
-    parts = parts_of(bodies)
+    parts = program_parts(bodies)
     elsewhere = parts.names("between")
     loaded = used_symbols([*written, *(program.defaults if inputs else ()), *inputs], [*bodies.kept, *elsewhere])
     loaded |= frozenset(inputs)
-    writer = Writer(bodies.calls(_call), _names(bodies) | elsewhere)
+    writer = ExpressionWriter(bodies.calls(_call), _names(bodies) | elsewhere)
     lines = _loads(bodies, "x", program.states, loaded, remarks)
     lines += _loads(bodies, "a", program.accelerations, loaded, remarks)
     lines += _loads(bodies, "p", list(symbols.parameters.values()), loaded, remarks)
@@ -155,7 +155,7 @@ def _part(bodies: Layout, parts: Parts, nodes: Sequence[Node]) -> list[str]:
     """What one part computes; what is read elsewhere goes into the array."""
     program, others = bodies.program, parts.names("between", without=nodes)
     stored = {x: text for x, text in parts.names("between").items() if x not in others}
-    writer = Writer(bodies.calls(_call), _names(bodies) | others)
+    writer = ExpressionWriter(bodies.calls(_call), _names(bodies) | others)
     used = used_symbols([a for x in nodes for a in x.args], [*nodes, *bodies.kept, *others])
     arrays = {"x": program.states, "a": program.accelerations, "p": tuple(program.symbols.parameters.values())}
     lines = [f"(void)t; (void)x; {'(void)a; ' if program.accelerations else ''}(void)p; (void)c; (void)between;"]
@@ -214,7 +214,7 @@ def _inputs(bodies: Layout, inputs: Sequence[Node], remarks: Mapping[str, str]) 
     if not inputs:
         return []
     program, places = bodies.program, {x: i for i, x in enumerate(bodies.program.symbols.inputs.values())}
-    writer = Writer(bodies.calls(_call), _names(bodies), prefix="i")
+    writer = ExpressionWriter(bodies.calls(_call), _names(bodies), prefix="i")
     own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
     lines = [f"double {bodies.names[x]};{_remark(x.name, bodies.names[x], remarks)}" for x in inputs]
     lines += ["if (inputs != NULL) {"]
@@ -224,11 +224,11 @@ def _inputs(bodies: Layout, inputs: Sequence[Node], remarks: Mapping[str, str]) 
     return [*lines, "}"]
 
 
-def _assignments(writer: Writer, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
+def _assignments(writer: ExpressionWriter, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
     return [f"const double {variable} = {text};" for variable, text in writer.assignments(nodes, once)]
 
 
-def _solve(solve: Solve, writer: Writer, elsewhere: Mapping[Node, str]) -> list[str]:
+def _solve(solve: Solve, writer: ExpressionWriter, elsewhere: Mapping[Node, str]) -> list[str]:
     """Fill the arrays, solve, name the unknowns, and leave them where other functions read them."""
     n, k = len(solve.matrix), len(solve.border)
     lines = [f"double solve_M[{n * n}] = {{0}}, solve_f[{n}];"]
@@ -245,7 +245,7 @@ def _solve(solve: Solve, writer: Writer, elsewhere: Mapping[Node, str]) -> list[
     return lines
 
 
-def _filled(array: str, entries: Sequence[tuple[int, Scalar]], writer: Writer) -> list[str]:
+def _filled(array: str, entries: Sequence[tuple[int, Scalar]], writer: ExpressionWriter) -> list[str]:
     filled = [(place, x) for place, x in entries if type(x) is Node or x != 0]
     return [f"{array}[{place}] = {writer.value(x)};" for place, x in filled]
 
@@ -285,12 +285,12 @@ def _call(op: str, arguments: list[str]) -> str:
     return f"{'fabs' if op == 'abs' else op}({', '.join(arguments)})"
 
 
-def load(program: Program) -> Functions:
+def c_functions(program: Program) -> Functions:
     """The program compiled (or found in the cache) and callable."""
     return functions_of(library(c_text(program, "eomgen")), program, "eomgen", len(layout(program).kept))
 
 
-def files(program: Program, stem: str, description: Description) -> dict[str, str]:
+def c_files(program: Program, stem: str, description: Description) -> dict[str, str]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
     role = description.role
     name = role.main(stem)
@@ -327,4 +327,4 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
     return called
 
 
-TARGET = Target("c", "C99, no dependencies", c_text, files, load, run)
+TARGET = Target("c", "C99, no dependencies", c_text, c_files, c_functions, run)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import accumulate, chain
 
 from eomgen.codegen import solving
-from eomgen.codegen.sparsity import Places, Zeros
+from eomgen.codegen.sparsity import PlaceLists, Zeros
 from eomgen.symbolic.numeric import tolerances
 
 HEAD_TEXT = """\
@@ -271,7 +271,7 @@ def _lists(way: Zeros) -> list[str]:
     return [_numbers(part) for places in (way.partners, way.reach, way.rows) for part in _joined(places)]
 
 
-def _joined(places: Places) -> tuple[Sequence[int], Sequence[int]]:
+def _joined(places: PlaceLists) -> tuple[Sequence[int], Sequence[int]]:
     return list(chain.from_iterable(places)), list(accumulate(map(len, places), initial=0))
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from eomgen.codegen import solving
-from eomgen.codegen.expressions import Writer
+from eomgen.codegen.expressions import ExpressionWriter
 from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.targets.base import (
     RHS,
@@ -149,7 +149,7 @@ def python_text(program: Program, stem: str, role: Role = RHS) -> str:
     )
 
 
-def load(program: Program) -> Functions:
+def numpy_functions(program: Program) -> Functions:
     """The program's text, made functions."""
     space: dict[str, Any] = {}
     exec(compile(python_text(program, "eomgen"), "<eomgen program>", "exec"), space)  # our own text, from the graph
@@ -168,7 +168,7 @@ def load(program: Program) -> Functions:
     return Functions(constants_of, one, many)
 
 
-def files(program: Program, stem: str, description: Description) -> dict[str, str]:
+def numpy_files(program: Program, stem: str, description: Description) -> dict[str, str]:
     """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours."""
     head = "\n".join(header(program, description)).replace("\\", "/").replace('"""', "'''")
     text = python_text(program, stem, description.role)
@@ -191,7 +191,7 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
 
 
 def _constants(bodies: Layout) -> list[str]:
-    writer = Writer(bodies.calls(_call), bodies.names)
+    writer = ExpressionWriter(bodies.calls(_call), bodies.names)
     parameters = list(bodies.program.symbols.parameters.values())
     lines = _unpacked(bodies, "p", parameters, used_symbols(bodies.kept, ())) if bodies.kept else []
     lines += _assignments(writer, [s.node for s in bodies.program.hoisted], bodies.once)
@@ -207,7 +207,7 @@ def _evaluate(bodies: Layout) -> list[str]:
     used = used_symbols(written, bodies.kept)
     given = [x for x in inputs if x in used]
     loaded = used | (used_symbols(program.defaults, bodies.kept) if given else frozenset())
-    writer = Writer(bodies.calls(_call), _names(bodies))
+    writer = ExpressionWriter(bodies.calls(_call), _names(bodies))
     lines = _unpacked(bodies, "x", program.moving, loaded)
     lines += _unpacked(bodies, "p", list(symbols.parameters.values()), loaded)
     if bodies.kept:
@@ -224,14 +224,14 @@ def _evaluate(bodies: Layout) -> list[str]:
 def _inputs(bodies: Layout, inputs: Sequence[Node]) -> list[str]:
     """All inputs from the caller, or all by the model's own expressions."""
     program = bodies.program
-    writer = Writer(bodies.calls(_call), _names(bodies), prefix="i")
+    writer = ExpressionWriter(bodies.calls(_call), _names(bodies), prefix="i")
     own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
     own += [f"{bodies.names[x]} = {writer.value(d)}" for x, d in zip(inputs, program.defaults, strict=True)]
     given = f"{_targets([bodies.names[x] for x in inputs])} = inputs"
     return ["if inputs is not None:", f"    {given}", "else:", *(f"    {line}" for line in own)]
 
 
-def _solve(solve: Solve, writer: Writer, bodies: Layout) -> list[str]:
+def _solve(solve: Solve, writer: ExpressionWriter, bodies: Layout) -> list[str]:
     values = ", ".join(writer.value(x) for x in solve.entries)
     for x in solve.unknowns:
         writer.define(x, bodies.names[x])
@@ -257,7 +257,7 @@ def _names(bodies: Layout) -> dict[Node, str]:
     return bodies.names | dict(zip(bodies.kept, _constant_names(bodies), strict=True))
 
 
-def _assignments(writer: Writer, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
+def _assignments(writer: ExpressionWriter, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
     return [f"{variable} = {text}" for variable, text in writer.assignments(nodes, once)]
 
 
@@ -277,4 +277,4 @@ def _solving_text(solve: Solve) -> str:
     return "\n".join([*limits, "", text[text.index("\ndef ") :], "", sizes, zeros, _SOLVED])
 
 
-TARGET = Target("numpy", "Python with numpy", python_text, files, load, run)
+TARGET = Target("numpy", "Python with numpy", python_text, numpy_files, numpy_functions, run)

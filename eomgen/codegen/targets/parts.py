@@ -39,7 +39,7 @@ class Parts:
         return {x: f"{array}[{place}]" for x, place in (self.places or {}).items() if x not in own}
 
 
-def parts_of(bodies: Layout) -> Parts:
+def program_parts(bodies: Layout) -> Parts:
     """The pieces of a layout."""
     if len(bodies.before) + len(bodies.after) <= LONG:
         return Parts()

@@ -87,7 +87,7 @@ def push_sizes(system: System) -> dict[str, Scalar]:
     """
     if not round_symbols(system):
         return {}
-    rubbing = _Rubbing(system, recursive.assemble(system))
+    rubbing = _Rubbing(system, recursive.assembled_by_recursion(system))
     pairs = zip(rubbing.found, rubbing.normals, strict=True)
     return {rub.name: N for rub, N in pairs if rub.normals}
 

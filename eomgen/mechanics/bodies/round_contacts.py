@@ -10,7 +10,7 @@ reach has no value.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -20,13 +20,13 @@ from eomgen.symbolic.expression.functions import function, inner, over, selected
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.solve.cramer import components
+from eomgen.symbolic.solve.linear import ValuesAt
 
 STEPS = 6  # of Newton's method; each doubles the number of right digits
 REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding
 LEAST = Fraction(1, 10**30)  # an N below it is none [N]
 
 EqualPushes = tuple[Scalar, ...]
-ValuesAt = Callable[[Sequence[Scalar]], Sequence[Any]]
 
 
 @dataclass(frozen=True)

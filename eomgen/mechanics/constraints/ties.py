@@ -21,7 +21,7 @@ from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, slide_o
 from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes
 from eomgen.mechanics.bodies.simplify import shorter_row
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
@@ -30,8 +30,6 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
 from eomgen.symbolic.numeric.tolerances import SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
-
-Push = PointForce | Couple
 
 LONG = 60  # characters of a gap that is not printed
 STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]

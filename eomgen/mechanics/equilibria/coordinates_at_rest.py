@@ -16,10 +16,11 @@ import numpy as np
 
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equilibria.rest_places import place_near
-from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
 from eomgen.symbolic.solve.solving import vanishes
 

@@ -13,7 +13,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
-from eomgen.mechanics.initial_state.values_at_rest import at_rest, values_of_parameters
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters, values_where_at_rest
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -53,7 +53,7 @@ def holding_of(system: System) -> Holding:
             "no unknown load does work when the system moves: none can hold it",
             mend="write one of [unknowns] into a force on what moves",
         )
-    state = at_rest(statics.system)
+    state = values_where_at_rest(statics.system)
     place = {q: state[q] for q in statics.system.symbols.q}
     solution = _solved(statics, place)
     _refuse_undetermined(statics, solution)

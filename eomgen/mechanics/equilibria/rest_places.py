@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.batch_evaluation import Layers
+from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
 from eomgen.symbolic.numeric.newton import Descent
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED

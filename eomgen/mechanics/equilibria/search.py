@@ -29,12 +29,13 @@ from eomgen.mechanics.equilibria.locked import is_balanced_in_locked
 from eomgen.mechanics.equilibria.one_sided import pulling_contacts
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
-from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank, static_equations
+from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 

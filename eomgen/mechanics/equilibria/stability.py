@@ -22,13 +22,13 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
-from eomgen.mechanics.equilibria.static_equations import StaticEquations, rank
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.dense import balanced, without_noise
+from eomgen.symbolic.numeric.dense import balanced, rank, without_noise
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE, RANK_NEARBY, ROUNDING, TINIEST
 from eomgen.symbolic.numeric.work import Work

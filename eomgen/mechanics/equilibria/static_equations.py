@@ -30,9 +30,7 @@ from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
@@ -144,11 +142,6 @@ class StaticEquations:
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
         flat = [x for row in rows for x in row]
         return np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), -1 if rows else len(self.q))
-
-
-def rank(rows: np.ndarray) -> int:
-    """How many of the rows are independent."""
-    return dense.rank(rows, smallest=RANK)
 
 
 def static_equations(system: System) -> StaticEquations:

@@ -19,27 +19,19 @@ from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 
-name = "lagrange"
-title = "Lagrange's equations"
 
-
-def applies(system: System) -> bool:
-    """Every speed is the rate of a coordinate."""
-    return True
-
-
-def assemble(system: System) -> Assembly:
+def assembled_by_energies(system: System) -> Assembly:
     """The equations of motion from the energies; closing rows by multipliers."""
     if system.free is not None:
         return _reduced(system, system.free)
     T = kinetic_energy(system.motion)
-    M, c = inertia_side(system.motion, T)
+    M, c = inertia_by_energies(system.motion, T)
     return assembled(system, M=M, c=c, Q=generalized_forces(system.loads), T=T)
 
 
 def _reduced(system: System, free: System) -> Assembly:
     """The free system's M, c and Q along the motions that are left, its speeds in terms of the independent ones."""
-    whole = assemble(free)
+    whole = assembled_by_energies(free)
     rates = free_rates(system, free)
     known = dict(zip(free.scope.symbols.u, rates, strict=True))
     N = jacobian(rates, system.scope.symbols.u)
@@ -59,7 +51,7 @@ def _reduced(system: System, free: System) -> Assembly:
     )
 
 
-def along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+def energies_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """(M a, c, Q) by derivatives of the energies along one motion: O(n), no entry of M is formed."""
     if system.free is None:
         return _along(system, system.symbols.a)
@@ -90,7 +82,7 @@ def free_rates(system: System, free: System) -> ScalarRow:
     return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
 
 
-def inertia_side(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     """(M, c) by derivatives of the kinetic energy."""
     scope = motion.scope
     momenta = gradient(T, scope.symbols.u)

@@ -19,22 +19,14 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus
 
-name = "projection"
-title = "projection of Newton-Euler"
 
-
-def applies(system: System) -> bool:
-    """Always."""
-    return True
-
-
-def assemble(system: System) -> Assembly:
+def assembled_by_wrenches(system: System) -> Assembly:
     """The equations of motion from wrenches and twists; closing rows by multipliers."""
-    M, c = inertia_side(system.motion)
+    M, c = inertia_by_twists(system.motion)
     return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
 
 
-def along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """(M a, c, Q) by the wrenches of one motion, B^T applied in one sweep: O(n), no entry of M is formed."""
     motion, a = system.motion, system.symbols.a
     u = motion.scope.symbols.u
@@ -62,7 +54,7 @@ def _projected(twists: ScalarRow, wrenches: Iterable[Wrench], u: Sequence[Node])
     return pullback(twists, [x for wrench in wrenches for x in (*wrench.tau, *wrench.f)], u)
 
 
-def inertia_side(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+def inertia_by_twists(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     """(M, c) from the twists of the bodies."""
     size = len(motion.scope.symbols.u)
     M: list[list[Scalar]] = [[0] * size for _ in range(size)]

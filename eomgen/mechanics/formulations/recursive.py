@@ -14,16 +14,8 @@ from eomgen.mechanics.equations.work import generalized_forces, joint_forces, pl
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, times
 
-name = "recursive"
-title = "recursion over the tree"
 
-
-def applies(system: System) -> bool:
-    """Every speed is the rate of a coordinate."""
-    return True
-
-
-def assemble(system: System) -> Assembly:
+def assembled_by_recursion(system: System) -> Assembly:
     """The equations of motion by recursion over the tree; closing rows by multipliers."""
     motion = system.motion
     branches = branches_of(motion)

@@ -25,7 +25,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 TRIES = 20
 
 
-def at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
+def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
     """Every symbol that moves, at rest at the start: exact scalars of the parameters.
 
     Args:

@@ -46,7 +46,7 @@ class LineOf:
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundPoint:
     """A centre that two lines give, or two others that are at one place.
 
     Args:
@@ -71,7 +71,7 @@ class Found:
         return owners.pop() if len(owners) == 1 and plain and self.lines[0].owner else ""
 
 
-def constructed(mechanism: Mechanism) -> tuple[Found, ...]:
+def constructed(mechanism: Mechanism) -> tuple[FoundPoint, ...]:
     """The centres that lines give, each from those before it; those that need the velocities are left out."""
     return tuple(_Search(mechanism).run())
 
@@ -82,7 +82,7 @@ class _Search:
 
     mechanism: Mechanism
 
-    def run(self) -> Iterator[Found]:
+    def run(self) -> Iterator[FoundPoint]:
         known: dict[PointPair, Vector] = {}
         fresh = True
         while fresh:
@@ -96,19 +96,21 @@ class _Search:
                     fresh = True
                     yield found
 
-    def _meeting(self, pair: PointPair, known: dict[PointPair, Vector]) -> Found | None:
+    def _meeting(self, pair: PointPair, known: dict[PointPair, Vector]) -> FoundPoint | None:
         """The first two different lines on which the centre of a pair is, or two centres that coincide."""
         field = self.mechanism.centers[pair].point
         for first_pair, second_pair in self._with_a_third(pair, known):
             if self.mechanism.is_zero(cross(known[first_pair], known[second_pair])):
                 point = known[first_pair]
-                return Found(pair, point, (), self.mechanism.is_zero(cross(point, field)), (first_pair, second_pair))
+                return FoundPoint(
+                    pair, point, (), self.mechanism.is_zero(cross(point, field)), (first_pair, second_pair)
+                )
         lines = [*self.own_lines.get(pair, ()), *self._in_line(pair, known)]
         for first, second in combinations(lines, 2):
             point = cross(first.line, second.line)
             if not self.mechanism.is_zero(point):
                 point = self.mechanism.normal(point)
-                return Found(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
+                return FoundPoint(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
         return None
 
     def _in_line(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[LineOf]:

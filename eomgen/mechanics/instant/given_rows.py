@@ -14,7 +14,7 @@ from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_for, values_of_parameters
 from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.model.fields import Equation
+from eomgen.model.fields import WrittenEquation
 from eomgen.symbolic.exact.normal_form import collected_in, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression
@@ -79,7 +79,11 @@ def speed_lines(system: System, speeds: Mapping[str, Expression], state: Mapping
 
 
 def given_lines(
-    system: System, state: Mapping[Node, Scalar], equations: Sequence[Equation], rates: Sequence[Node], order: str
+    system: System,
+    state: Mapping[Node, Scalar],
+    equations: Sequence[WrittenEquation],
+    rates: Sequence[Node],
+    order: str,
 ) -> list[GivenRow]:
     """Given equations at a state, linear in the rates and the unknowns.
 
@@ -102,7 +106,7 @@ def given_lines(
     return lines
 
 
-def _refuse_other_order(system: System, equation: Equation, gap: Scalar, order: str, where: str) -> None:
+def _refuse_other_order(system: System, equation: WrittenEquation, gap: Scalar, order: str, where: str) -> None:
     """Refuse an equation that says nothing of its order: of places, or of velocities under `acceleration`.
 
     Raises:

@@ -13,7 +13,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
-from eomgen.mechanics.instant.construction import Found, PointPair, constructed
+from eomgen.mechanics.instant.construction import FoundPoint, PointPair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import simplest
@@ -166,7 +166,7 @@ class KinematicState:
         return Mechanism(self.system, self.moving, self.worth) if self.plane else None
 
     @cached_property
-    def found(self) -> dict[PointPair, Found]:
+    def found(self) -> dict[PointPair, FoundPoint]:
         """The centres that a drawing finds, in its order."""
         return {} if self.mechanism is None else {each.pair: each for each in constructed(self.mechanism)}
 

@@ -8,11 +8,11 @@ plane; x, y, z and three turns about its own successive axes in space. Then the 
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
 from eomgen.model.joints.orientation import rotation_by, turning_columns
 from eomgen.model.joints.placed import Placed
-from eomgen.model.kinds import Coordinates
-from eomgen.model.part import PartRule, altered, made
+from eomgen.model.kinds import Coordinates, ValueOf
+from eomgen.model.part import PartRule, altered, part_of_values
 from eomgen.model.parts import Body, Coordinate, Model
 from eomgen.model.table import Table
 from eomgen.model.trusses import in_parts
@@ -45,29 +45,29 @@ class DisplacedJoint(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return tuple(Expression(name, (("name", name),), (-1,)) for name in (*self.along, *self.about))
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return self._standing(value)[2] + (s[2] if self.about else 0)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         places = len(self.along)
         still = self.placed.pose(self._standing(value), value)
         R = product(still.R, self._rotation(s[places:])) if self.about else still.R
         return Pose(R, plus(still.p, vector_of((*s[:places], *[0] * (3 - places)))))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         R_CP = transposed(self.pose(s, value).R)
         along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[: len(self.along)])
         if len(self.about) == 1:
             return (*along, angular(Z))
         return (*along, *turning_columns(SMALL, s[3:])) if self.about else along
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return ()
 
-    def _standing(self, value: Value) -> Scalars:
+    def _standing(self, value: ValueOf) -> Scalars:
         """The variables of the place where it stands."""
         return tuple(value(e) for e in self.placed.variables("plane" if len(self.along) == 2 else "space"))
 
@@ -87,7 +87,7 @@ def freed(model: Model) -> Model:
     for name in loose_bodies(model):
         along, about = _displacements(model, name)
         bodies[name] = altered(model.bodies[name], joint=_displaced(model.bodies[name].joint, along, about))
-        coordinates |= {each: made(Coordinate, {"start": Expression.number(0)}) for each in (*along, *about)}
+        coordinates |= {each: part_of_values(Coordinate, {"start": Expression.number(0)}) for each in (*along, *about)}
     return altered(model, bodies=Table(bodies), coordinates=Table(coordinates))
 
 
@@ -115,6 +115,6 @@ def _stands(model: Model, joint: Any) -> bool:
 
 
 def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> DisplacedJoint:
-    placed: Joint = made(Placed, {}) if joint is None else joint
+    placed: Joint = part_of_values(Placed, {}) if joint is None else joint
     kept = {"on": placed.on, "point": placed.point, "turned": placed.turned}
-    return made(DisplacedJoint, {**kept, "placed": placed, "along": along, "about": about})
+    return part_of_values(DisplacedJoint, {**kept, "placed": placed, "along": along, "about": about})

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System, free_system_of, reduced_system
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
-from eomgen.mechanics.initial_state.values_at_rest import at_rest
+from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
 from eomgen.mechanics.instant.given_rows import (
     GivenRow,
     given_lines,
@@ -30,7 +30,7 @@ from eomgen.mechanics.instant.given_rows import (
 )
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.instant.unassembled import freed
-from eomgen.model.fields import Equation
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.trusses import is_node
@@ -91,8 +91,8 @@ class Snapshot:
 
     system: System
     places: State
-    velocity: tuple[Equation, ...] = ()
-    acceleration: tuple[Equation, ...] = ()
+    velocity: tuple[WrittenEquation, ...] = ()
+    acceleration: tuple[WrittenEquation, ...] = ()
     speeds: Mapping[str, Expression] = field(default_factory=dict)
     assumed: Mapping[str, Node] = field(default_factory=dict)
     exact: bool = True
@@ -282,7 +282,11 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     places, numbers = _places(free)
     located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
     exact = by_coordinates or not located
-    still = _still(free, at_rest(free, {**{q: q for q in located}, **places})) if exact else _in_numbers(free, numbers)
+    still = (
+        _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
+        if exact
+        else _in_numbers(free, numbers)
+    )
     if not located:
         open_gaps(free, still)
     given = model.given
@@ -301,7 +305,7 @@ def _places(free: System) -> tuple[State, Mapping[str, float]]:
     if not sought:
         return {}, {}
     try:
-        found = at_rest(system)
+        found = values_where_at_rest(system)
     except DerivationError:
         start_state(system)
     short = {q: found[q] for q in sought if q in found and text_size(found[q]) <= SHORT}
@@ -316,7 +320,7 @@ def _in_numbers(free: System, start: Mapping[str, float]) -> State:
     symbols, values = free.symbols, exact_parameters(free.scope.model)
     parameters = {symbols.parameters[name]: Fraction(x) for name, x in values.items()}
     places = {q: Fraction(start[q.name]) for q in symbols.q}
-    still = _still(free, at_rest(free, places))
+    still = _still(free, values_where_at_rest(free, places))
     return {node: substituted((x,), parameters)[0] for node, x in still.items()} | parameters
 
 

@@ -47,7 +47,7 @@ def drive(system: System, coordinate: str) -> Scalar:
         )
     freed = altered(part, motion=None, rate=None, acceleration=None)
     free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
-    assembly = recursive.assemble(free)
+    assembly = recursive.assembled_by_recursion(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
     return _carried(drive_residual(free, assembly, k), system) - _friction(system, free, k)
 
@@ -116,7 +116,7 @@ def _eliminated(system: System, own: Row) -> Scalar:
     assert free is not None, "a row is eliminated from the free system"
     gone = [row for row in system.ties.rows if row.status == "eliminated"]
     names = {(row.tie, row.number) for row in gone}
-    speeds, assembly = [u.name for u in free.symbols.u], recursive.assemble(free)
+    speeds, assembly = [u.name for u in free.symbols.u], recursive.assembled_by_recursion(free)
     d = [speeds.index(f"{row.eliminates}'") for row in gone]
     J = {(row.tie, row.number): line for row, line in zip(free.ties.closing, assembly.J, strict=True)}
     right = [(drive_residual(free, assembly, k, names) - _friction(system, free, k),) for k in d]

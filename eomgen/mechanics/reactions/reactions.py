@@ -20,7 +20,7 @@ from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
 from eomgen.mechanics.balance.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.values_at_rest import at_rest
+from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
 from eomgen.mechanics.reactions.unheld import refuse_unheld
 from eomgen.model.driven import driving_ties
 from eomgen.symbolic.expression.derivative import substituted
@@ -309,7 +309,7 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reaction
     state = {**at, **still(balance.system)}
     solution = solution_of_balance(balance, state, work=work)
     if not is_balanced(balance, solution):
-        state = {**at_rest(balance.system), **at}
+        state = {**values_where_at_rest(balance.system), **at}
         solution = solution_of_balance(balance, state, work=work)
         if not is_balanced(balance, solution):
             raise unbalanced(balance, solution)

@@ -61,7 +61,7 @@ class FirstOrder:
 
     @cached_property
     def assembly(self) -> Assembly:
-        assembly = with_friction(self.system, recursive.assemble(self.system))
+        assembly = with_friction(self.system, recursive.assembled_by_recursion(self.system))
         refuse_massless(self.system, assembly)
         return assembly
 

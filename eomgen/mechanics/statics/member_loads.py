@@ -35,7 +35,7 @@ def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vec
 
 At = tuple[Vector, Vector, Scalar]
 """(place, force, couple), body axes."""
-LineLoad = tuple[Vector, Vector, Vector, Vector]
+MemberLoad = tuple[Vector, Vector, Vector, Vector]
 """(start, end, load per length at the start, at the end), body axes."""
 
 
@@ -61,7 +61,7 @@ class MemberLoads:
         return [(place, self._simple(f), self.sizes.simple(c)) for place, f, c in found]
 
     @cached_property
-    def spreads(self) -> list[LineLoad]:
+    def spreads(self) -> list[MemberLoad]:
         """Distributed loads, and the weight and inertia of a rod."""
         found = []
         for applied in self._system.loads.applied:
@@ -108,7 +108,7 @@ class MemberLoads:
 
     # -- mass --------------------------------------------------------------------------------------
 
-    def _of_mass(self) -> list[LineLoad]:
+    def _of_mass(self) -> list[MemberLoad]:
         """m/L (g - a) along a rod; a linear function of the place."""
         system = self._system
         mass = mass_properties(system.scope, self.body)

@@ -20,7 +20,7 @@ from itertools import pairwise
 from eomgen.errors import DerivationError
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
-from eomgen.mechanics.statics.member_loads import LineLoad, MemberLoads
+from eomgen.mechanics.statics.member_loads import MemberLoad, MemberLoads
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, minus, plus, times, vector_of
@@ -181,7 +181,7 @@ def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
     return x
 
 
-def _spread(axis: MemberAxis, line: LineLoad) -> Iterable[Spread]:
+def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
     """A line load as a function of x, from its first place to its last along the axis."""
     a, b = _on_axis(axis, line[0]), _on_axis(axis, line[1])
     length = axis.sizes.simple(b - a)

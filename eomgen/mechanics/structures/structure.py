@@ -25,7 +25,7 @@ from eomgen.mechanics.balance.unknown_loads import slope
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.values_at_rest import at_rest, values_for
+from eomgen.mechanics.initial_state.values_at_rest import values_for, values_where_at_rest
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
@@ -249,7 +249,7 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
     if not system.motion.links:
         raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
     balance = balance_of(system)
-    state = at_rest(system, at)
+    state = values_where_at_rest(system, at)
     unknowns = balance.unknowns
     table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
     columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))

@@ -5,7 +5,8 @@ from typing import Any
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.composite import sources
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
+from eomgen.model.positions import DocumentPath
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 

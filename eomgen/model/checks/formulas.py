@@ -6,7 +6,8 @@ from functools import cache
 from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
-from eomgen.model.findings import DocumentPath, Finding, article, nearest, whereabouts
+from eomgen.model.findings import Finding, article, nearest, whereabouts
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit, parse_unit
 

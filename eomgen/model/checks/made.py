@@ -8,8 +8,9 @@ from eomgen.model.arithmetic import AnyNumber, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.triangle import possible
 from eomgen.model.composite import Composite, about, composite_of
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import SOLVED
 

@@ -10,7 +10,8 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.checks.made import made
 from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import DocumentPath, Finding, shown, whereabouts
+from eomgen.model.findings import Finding, shown, whereabouts
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import cross, vector_of
 

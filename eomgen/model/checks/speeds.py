@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
+from eomgen.model.positions import DocumentPath
 
 
 def speeds(catalog: Catalog) -> Iterator[Finding]:

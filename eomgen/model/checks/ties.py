@@ -6,7 +6,8 @@ from typing import Any
 
 from eomgen.model.catalog import Catalog, findings_of_one, owner_of
 from eomgen.model.fields import NameRule
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
+from eomgen.model.positions import DocumentPath
 
 _WORD = re.compile(r"[^\W\d]\w*")
 

@@ -8,9 +8,10 @@ from typing import ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.graph import Scalar
 
 

@@ -5,9 +5,8 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.measured import Measured
-from eomgen.model.constraints.plane import Push
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import Push, Scene
 from eomgen.model.kinds import Gap, VelocityLaw
 from eomgen.symbolic.expression.spatial import AnyScalar
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.plane import Push, same_turn
+from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Couple, Scene
+from eomgen.model.forces.load import Couple, Push, Scene
 from eomgen.model.kinds import Pure, TwoBodies
 from eomgen.symbolic.expression.spatial import AnyScalar, times
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.errors import ModelError
-from eomgen.model.constraints.plane import Push, Touch, angle_of, opposite
-from eomgen.model.forces.load import BodyPoint, Couple, Scene
+from eomgen.model.constraints.plane import Touch, angle_of, opposite
+from eomgen.model.forces.load import BodyPoint, Couple, Push, Scene
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 

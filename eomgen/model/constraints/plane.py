@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Push, Scene
 from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
-
-Push = PointForce | Couple
 
 
 def left(d: Vector) -> Vector:

@@ -8,7 +8,7 @@ from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, not_in_the_plane
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
-from eomgen.model.constraints.round_bodies import Ball, Egg, Round, Wheel
+from eomgen.model.constraints.round_bodies import Egg, RollingBall, Round, Wheel
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.tracks import (
     Circle,
@@ -21,11 +21,12 @@ from eomgen.model.constraints.tracks import (
     on_level,
     wheel_on_ball,
 )
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.spatial import AnyScalar, minus
 
 TrackField = Annotated[Track, PartRule(Track)]
@@ -163,7 +164,7 @@ class Rolling(Constraint):
         found = self._curved(scene)
         if isinstance(body, Wheel) and found.axis is None:
             return wheel_on_ball(scene, found, center, body)
-        if isinstance(body, Ball):
+        if isinstance(body, RollingBall):
             return on_curved(scene, found, center, body)
         raise ModelError(
             f"'{self.body}' is no ball: where it touches something curved is not derived",
@@ -185,7 +186,7 @@ class Rolling(Constraint):
             return Egg(self.body, scene.vector(semiaxes))
         torus = not scene.plane and shape is not None and shape.is_tyre
         if self.axis is None and not (torus and self.radius is None):
-            return Ball(self._radius(scene))
+            return RollingBall(self._radius(scene))
         R = scene.value(shape.major) if torus and self.radius is None else self._radius(scene)
         tube = shape.minor if torus and self.tube is None else self.tube
         return Wheel(self.body, (0, 0, 1) if self.axis is None else scene.vector(self.axis), R, scene.value(tube))

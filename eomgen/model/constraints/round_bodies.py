@@ -43,7 +43,7 @@ class Nearest:
 
 
 @dataclass(frozen=True)
-class Ball:
+class RollingBall:
     """A ball of radius R."""
 
     R: AnyScalar
@@ -131,7 +131,7 @@ class Egg:
         return Nearest(apply(R, times(over(-1, h), (x, y, z))), h)
 
 
-Round = Ball | Wheel | Egg
+Round = RollingBall | Wheel | Egg
 
 
 def laid_in(scene: Scene, n: Vector) -> tuple[Vector, Vector]:

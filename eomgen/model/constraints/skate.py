@@ -9,9 +9,10 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import left
 from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.spatial import apply, cross, dot, times
 

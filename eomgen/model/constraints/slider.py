@@ -9,10 +9,11 @@ from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.spatial import apply, dot, minus
 
 

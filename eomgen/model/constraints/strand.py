@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import ModelError
-from eomgen.model.constraints.plane import Push, angle_of, left
+from eomgen.model.constraints.plane import angle_of, left
 from eomgen.model.constraints.row import TieRow, normals_of
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Push, Scene
 from eomgen.model.joints.base import Z
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times

@@ -11,11 +11,12 @@ from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector, apply
 

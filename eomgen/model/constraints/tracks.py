@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import right
-from eomgen.model.constraints.round_bodies import Ball, Round, Wheel, laid_in, turned_over
+from eomgen.model.constraints.round_bodies import RollingBall, Round, Wheel, laid_in, turned_over
 from eomgen.model.constraints.row import direction_of
 from eomgen.model.forces.load import BodyPoint, Scene
 from eomgen.model.joints.base import unit
@@ -92,7 +92,7 @@ def _carried(scene: Scene, on: str | None, e: Vector) -> Vector:
     return e if on is None else apply(scene.orientation(on), e)
 
 
-def on_curved(scene: Scene, track: Curved, center: Vector, ball: Ball) -> TrackContact:
+def on_curved(scene: Scene, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
     """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre (the pipe's axis) to the ball's.
 
     d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Load, Scene, SpreadLoad
 from eomgen.model.part import Part
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 

@@ -59,6 +59,7 @@ class SpreadLoad:
     at_end: Vector
 
 
+Push = PointForce | Couple
 Load = PointForce | Couple | GeneralizedForce | UniformField
 
 

@@ -4,7 +4,8 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, across, angular, linear
+from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, across, angular, linear
+from eomgen.model.kinds import ValueOf
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
@@ -28,31 +29,31 @@ class AxisJoint(Joint):
     """
 
     @abstractmethod
-    def normal(self, value: Value) -> Vector:
+    def normal(self, value: ValueOf) -> Vector:
         """The unit axis n, parent's (turned) axes."""
 
     @abstractmethod
-    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         """(a, b) of each variable: the turn [1 or rad] and the advance [1 or m] by a unit of it."""
 
-    def mounting(self, value: Value) -> Matrix:
+    def mounting(self, value: ValueOf) -> Matrix:
         """R_0, the child's axes at s = 0."""
         return IDENTITY
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return sum((a * x for (a, _), x in zip(self.steps(value), s, strict=True)), start=0)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         n, steps = self.normal(value), self.steps(value)
         R, angle = self.mounting(value), sum((a * x for (a, _), x in zip(steps, s, strict=True)), start=0)
         advance = sum((b * x for (_, b), x in zip(steps, s, strict=True)), start=0)
         return Pose(product(rotation(n, cos(angle), sin(angle)), R), times(advance, n))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         n = self._seen_from_child(value)
         return tuple((*times(a, n), *times(b, n)) for a, b in self.steps(value))
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         n, steps = self._seen_from_child(value), self.steps(value)
         turns, slides = any(a != 0 for a, _ in steps), any(b != 0 for _, b in steps)
         sideways = self._across(value)
@@ -61,11 +62,11 @@ class AxisJoint(Joint):
         thread = [(*times(-b, n), *times(a, n)) for a, b in steps] if len(steps) == 1 and turns and slides else []
         return (*torques, *forces, *thread)
 
-    def _across(self, value: Value) -> tuple[Vector, ...]:
+    def _across(self, value: ValueOf) -> tuple[Vector, ...]:
         """Two directions across the axis, child's axes."""
         R_CP = transposed(self.mounting(value))
         return tuple(apply(R_CP, e) for e in across(self.normal(value)))
 
-    def _seen_from_child(self, value: Value) -> Vector:
+    def _seen_from_child(self, value: ValueOf) -> Vector:
         """n in the child's axes; turning about it does not change it."""
         return apply(transposed(self.mounting(value)), self.normal(value))

@@ -5,21 +5,21 @@ a point of the child (`point`). Everything here is from the (turned) parent's jo
 A column of S or W has six entries, angular part (torque) first, at the joint point, in the child's axes.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import NotYet
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
-from eomgen.model.findings import DocumentPath, Finding
-from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection
+from eomgen.model.findings import Finding
+from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation
 
-Value = Callable[[Expression], Any]
 Scalars = tuple[Any, ...]
 Column = tuple[Any, Any, Any, Any, Any, Any]
 
@@ -101,19 +101,19 @@ class Joint(Part):
         """The joint's variables s, f of them."""
         raise self._not_yet()
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         """Pose of the child's joint frame in the parent's."""
         raise self._not_yet()
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         """In the plane: the angle of the child against the parent [rad]."""
         return 0
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         """S, f columns: the twist of the child against the parent is S s'."""
         raise self._not_yet()
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         """W, 6 - f columns with S^T W = 0: the wrenches that the joint can carry."""
         raise self._not_yet()
 
@@ -126,7 +126,7 @@ class Joint(Part):
         return NotYet(f"the joint '{self.kind}' is not derived yet")
 
 
-def vector(components: tuple[Expression, ...] | None, value: Value, default: Vector = (0, 0, 0)) -> Vector:
+def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: Vector = (0, 0, 0)) -> Vector:
     """A vector of the model, 3, with z = 0 in the plane."""
     if components is None:
         return default
@@ -143,7 +143,7 @@ def unit(axis: Vector) -> Vector:
     return tuple(over(a, length) for a in axis)
 
 
-def oriented(turns: tuple[Turned, ...] | None, value: Value) -> Matrix:
+def oriented(turns: tuple[Turned, ...] | None, value: ValueOf) -> Matrix:
     """The rotation that turns one after the other make, each about the axes that the one before left."""
     R = IDENTITY
     for turn in turns or ():

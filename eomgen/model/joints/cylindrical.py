@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
-from eomgen.model.joints.base import Effort, Value, Z, unit, vector
-from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque
+from eomgen.model.joints.base import Effort, Z, unit, vector
+from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -34,10 +34,10 @@ class Cylindrical(AxisJoint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement, self.angle)
 
-    def normal(self, value: Value) -> Vector:
+    def normal(self, value: ValueOf) -> Vector:
         return unit(vector(self.axis, value, Z))
 
-    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((0, 1), (1, 0))
 
     def efforts(self) -> tuple[Effort | None, ...]:

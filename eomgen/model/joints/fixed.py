@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
-from eomgen.model.kinds import ConstantAngle, SpaceDirection
+from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.kinds import ConstantAngle, SpaceDirection, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Pose, rotation
@@ -24,15 +24,15 @@ class Fixed(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return ()
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return 0 if self.angle is None else value(self.angle)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         angle = self.turn(s, value)
         return Pose(rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return (*map(angular, (X, Y, Z)), *map(linear, (X, Y, Z)))

@@ -6,8 +6,8 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
-from eomgen.model.findings import DocumentPath, Finding
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, linear
+from eomgen.model.findings import Finding
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, linear
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -19,7 +19,8 @@ from eomgen.model.joints.orientation import (
     turning_findings,
 )
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
-from eomgen.model.kinds import Angle, Displacement
+from eomgen.model.kinds import Angle, Displacement, ValueOf
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose, apply, transposed, vector_of
 
@@ -76,22 +77,22 @@ class Free(Joint):
             return (*(self.position or ()), *self.turns())
         return tuple(e or Expression.number(0) for e in (self.x, self.y, self.angle))
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return s[2]
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         if self.orientation is None:
             return in_plane(s)
         return Pose(rotation_of(self.orientation, s[3:]), vector_of(s[:3]))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         if self.orientation is None:
             return plane_subspace(s)
         R_CP = transposed(rotation_of(self.orientation, s[3:]))
         along = (linear(apply(R_CP, e)) for e in (X, Y, Z))
         return (*along, *columns_of(self.orientation, s[3:]))
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return PLANE_COMPLEMENT if self.orientation is None else ()
 
     def efforts(self) -> tuple[Effort | None, ...]:

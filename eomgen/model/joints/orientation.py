@@ -14,8 +14,9 @@ from typing import Annotated, Any
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
-from eomgen.model.findings import DocumentPath, Finding
+from eomgen.model.findings import Finding
 from eomgen.model.joints.base import Column, X, Y, Z, angular
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, apply, product, rotation, transposed

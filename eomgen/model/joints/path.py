@@ -6,12 +6,12 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
-from eomgen.model.findings import DocumentPath as FilePath
 from eomgen.model.findings import Finding
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
-from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn
-from eomgen.model.part import Part, PartRule, made, slots_of
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
+from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn, ValueOf
+from eomgen.model.part import Part, PartRule, part_of_values, slots_of
+from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, selected, sin
 from eomgen.symbolic.expression.spatial import Pose, Vector, plus
@@ -122,20 +122,20 @@ class Path(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.along,)
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         return Pose(p=self._along(s[0], value, Stretch.place))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return (linear(self._along(s[0], value, Stretch.direction)),)
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         x, y, _ = self._along(s[0], value, Stretch.direction)
         return (linear((-y, x, 0)), angular(Z), angular(X), angular(Y), linear(Z))
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (None,)
 
-    def stretches(self, value: Value) -> tuple[Stretch, ...]:
+    def stretches(self, value: ValueOf) -> tuple[Stretch, ...]:
         """The pieces, each from where the one before ends."""
         found: list[Stretch] = []
         heading = 0 if self.heading is None else value(self.heading)
@@ -156,7 +156,7 @@ class Path(Joint):
         """The same path with one of its pieces alone (from 0), which goes on before its beginning and after its end."""
         stretch = self.stretches(_itself)[number]
         kept = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
-        return made(
+        return part_of_values(
             OnePiece,
             kept
             | {
@@ -167,16 +167,16 @@ class Path(Joint):
             },
         )
 
-    def _begin(self, value: Value) -> Vector:
+    def _begin(self, value: ValueOf) -> Vector:
         return (0, 0, 0)
 
-    def _along(self, s: Any, value: Value, what: Callable[[Stretch, Any], Vector]) -> Vector:
+    def _along(self, s: Any, value: ValueOf, what: Callable[[Stretch, Any], Vector]) -> Vector:
         """Place or direction at s, of the piece on which s is."""
         there = [what(stretch, s) for stretch in self.stretches(value)]
         x, y, z = (self.of_its_piece(s, value, entries) for entries in zip(*there, strict=True))
         return x, y, z
 
-    def of_its_piece(self, s: Any, value: Value, values: Sequence[Any]) -> Any:
+    def of_its_piece(self, s: Any, value: ValueOf, values: Sequence[Any]) -> Any:
         """Of the values that the pieces have, that of the piece on which s is."""
         *before, here = values
         for stretch, there in zip(reversed(self.stretches(value)[:-1]), reversed(before), strict=True):
@@ -194,11 +194,11 @@ class OnePiece(Path):
 
     begin: MovingPlace
 
-    def _begin(self, value: Value) -> Vector:
+    def _begin(self, value: ValueOf) -> Vector:
         return (value(self.begin[0]), value(self.begin[1]), 0)
 
 
-def _bend(piece: PathPiece, value: Value) -> tuple[Any, Any, Any]:
+def _bend(piece: PathPiece, value: ValueOf) -> tuple[Any, Any, Any]:
     """(signed radius or None, angle turned, length) of a piece."""
     if piece.line is not None:
         return None, 0, value(piece.line)

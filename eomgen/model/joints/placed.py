@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import DocumentPath, Finding
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.findings import Finding
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -16,7 +16,8 @@ from eomgen.model.joints.orientation import (
     rotation_of,
     turning_findings,
 )
-from eomgen.model.kinds import Angle, SpaceDirection
+from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed
@@ -61,15 +62,15 @@ class Placed(Joint):
         assert not isinstance(at, str), "a ground point's name stands for its coordinates before this is asked"
         return (*at, *(self.turns() or (zero,)))
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return s[2]
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         places = self._places(s)
         position = (*s[:places], *([0] * (3 - places)))
         return Pose(self._rotation(s[places:], value), position)
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         places = self._places(s)
         R_CP = transposed(self._rotation(s[places:], value))
         along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[:places])
@@ -77,7 +78,7 @@ class Placed(Joint):
             return (*along, *columns_of(self.orientation, s[places:]))
         return (*along, angular(unit(vector(self.axis, value, Z))))
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()
 
     def efforts(self) -> tuple[Effort | None, ...]:
@@ -86,7 +87,7 @@ class Placed(Joint):
     def _places(self, s: Scalars) -> int:
         return len(s) - (4 if self.quaternion is not None else 3 if self.angles is not None else 1)
 
-    def _rotation(self, angles: Scalars, value: Value) -> Matrix:
+    def _rotation(self, angles: Scalars, value: ValueOf) -> Matrix:
         if self.orientation is not None:
             return rotation_of(self.orientation, angles)
         return rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))

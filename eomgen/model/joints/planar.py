@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, Value, X, Y, Z, angular, linear
-from eomgen.model.kinds import Angle, Displacement
+from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
+from eomgen.model.kinds import Angle, Displacement, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Pose, apply, rotation, transposed
@@ -28,16 +28,16 @@ class Planar(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.x, self.y, self.angle)
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return s[2]
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         return in_plane(s)
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return plane_subspace(s)
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return PLANE_COMPLEMENT
 
     def efforts(self) -> tuple[Effort | None, ...]:

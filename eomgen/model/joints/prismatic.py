@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
-from eomgen.model.joints.base import Effort, Scalars, Value, Z, unit, vector
+from eomgen.model.joints.base import Effort, Scalars, Z, unit, vector
 from eomgen.model.kinds import (
     ConstantAngle,
     Direction,
@@ -14,6 +14,7 @@ from eomgen.model.kinds import (
     LinearStiffness,
     RestLength,
     RotorInertia,
+    ValueOf,
 )
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -48,17 +49,17 @@ class Prismatic(AxisJoint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement,)
 
-    def normal(self, value: Value) -> Vector:
+    def normal(self, value: ValueOf) -> Vector:
         return unit(vector(self.axis, value))
 
-    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((0, 1),)
 
-    def mounting(self, value: Value) -> Matrix:
+    def mounting(self, value: ValueOf) -> Matrix:
         angle = self.turn((), value)
         return rotation(Z if len(self.axis) == 2 else self.normal(value), cos(angle), sin(angle))
 
-    def turn(self, s: Scalars, value: Value) -> Any:
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
         return 0 if self.angle is None else value(self.angle)
 
     def efforts(self) -> tuple[Effort | None, ...]:

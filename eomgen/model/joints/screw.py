@@ -5,8 +5,8 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.axis import AxisJoint
-from eomgen.model.joints.base import Effort, Value, Z, unit, vector
-from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque
+from eomgen.model.joints.base import Effort, Z, unit, vector
+from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -44,10 +44,10 @@ class Screw(AxisJoint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)
 
-    def normal(self, value: Value) -> Vector:
+    def normal(self, value: ValueOf) -> Vector:
         return unit(vector(self.axis, value, Z))
 
-    def steps(self, value: Value) -> tuple[tuple[Any, Any], ...]:
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
         return ((1, value(self.pitch)),)
 
     def efforts(self) -> tuple[Effort | None, ...]:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import DocumentPath, Finding
-from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, linear
+from eomgen.model.findings import Finding
+from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, linear
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -16,6 +16,8 @@ from eomgen.model.joints.orientation import (
     rotation_of,
     turning_findings,
 )
+from eomgen.model.kinds import ValueOf
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose
 
@@ -53,11 +55,11 @@ class Spherical(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return self.turns()
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         return Pose(rotation_of(self.orientation, s))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return columns_of(self.orientation, s)
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return tuple(map(linear, (X, Y, Z)))

@@ -5,7 +5,8 @@ from typing import Annotated, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
-from eomgen.model.joints.base import Column, Joint, Scalars, Value, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.kinds import ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply, cross, product, rotation, transposed
@@ -36,23 +37,23 @@ class Universal(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         return self.angles
 
-    def pose(self, s: Scalars, value: Value) -> Pose:
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
         first, _ = self._normals(value)
         return Pose(product(rotation(first, cos(s[0]), sin(s[0])), self._second(s, value)))
 
-    def subspace(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         first, second = self._normals(value)
         return (angular(apply(transposed(self._second(s, value)), first)), angular(second))
 
-    def complement(self, s: Scalars, value: Value) -> tuple[Column, ...]:
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         (*first, _, _, _), (*second, _, _, _) = self.subspace(s, value)
         return (angular(cross(tuple(first), tuple(second))), *map(linear, (X, Y, Z)))
 
-    def _normals(self, value: Value) -> tuple[Vector, Vector]:
+    def _normals(self, value: ValueOf) -> tuple[Vector, Vector]:
         first, second = (unit(vector(axis, value)) for axis in self.axes)
         return first, second
 
-    def _second(self, s: Scalars, value: Value) -> Matrix:
+    def _second(self, s: Scalars, value: ValueOf) -> Matrix:
         """The turn about the axis of the child."""
         _, second = self._normals(value)
         return rotation(second, cos(s[1]), sin(s[1]))

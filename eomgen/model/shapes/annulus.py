@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.shapes.base import PI, MassProperties, Value, around, between, diagonal
+from eomgen.model.kinds import ValueOf
+from eomgen.model.shapes.base import PI, MassProperties, around, between, diagonal
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -20,14 +21,14 @@ class Annulus(Hollow):
     kind: ClassVar[str] = "annulus"
     dimension: ClassVar[int] = 2
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(between(value(self.inner), value(self.radius), s[0]), s[1]), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.inner)
         return value(PI) * (R * R - r * r)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r = value(self.radius), value(self.inner)
         quarter = Fraction(1, 4) * m * (R * R + r * r)
         return MassProperties(m, ZERO, diagonal(quarter, quarter, 2 * quarter))

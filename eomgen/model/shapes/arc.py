@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length, Opening
+from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import (
     HALF,
     Line,
     MassProperties,
     Shape,
-    Value,
     around,
     circle,
     diagonal,
@@ -34,20 +33,20 @@ class Arc(Shape):
     radius: Length
     opening: Opening
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         half = value(self.opening) / 2
         return (circle(value(self.radius), -half, half),)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         return more_than_a_turn(value(self.opening))
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius), (s[0] - HALF) * part_of_turn(value(self.opening))), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return value(self.radius) * value(self.opening)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, A = value(self.radius), value(self.opening)
         x = over(2 * r * sin(Fraction(1, 2) * A), A)
         half, lean = Fraction(1, 2) * m * r * r, over(sin(A), A)

@@ -6,15 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Mass
+from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
-from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 Line = tuple[tuple[float, float], ...]
-Value = Callable[[Expression], Any]
-"""What an expression is worth: the arithmetic in which a law runs."""
 Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")
 HALF, THIRD = 0.5, 1 / 3  # of a length in numbers
@@ -43,42 +41,42 @@ class Shape(Part, ABC):
         """Whether its mass has no extent."""
         return self.dimension == 0
 
-    def points(self, value: Value) -> dict[str, Vector]:
+    def points(self, value: ValueOf) -> dict[str, Vector]:
         """The named points of the shape, body axes [m]: `origin`, `center`, the mass centre, and its own."""
         return {"origin": ZERO, "center": self.of_mass(1, value).com}
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         """The point at s, as many parts from 0 to 1 as it has dimensions, which run through all of it once.
 
         Lengths are numbers; the parts may be arrays of complex numbers: what follows is smooth in them.
         """
         raise NotImplementedError
 
-    def cells(self, value: Value) -> tuple[Cell, ...]:
+    def cells(self, value: ValueOf) -> tuple[Cell, ...]:
         """The maps from [0, 1]^dimension that fill it: `filled`, or several whose measures count with their sign."""
         return (lambda s: self.filled(value, s),)
 
     @abstractmethod
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         """Its length [m], area [m^2] or volume [m^3], as its dimension says."""
 
     @abstractmethod
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         """Mass centre and inertia of the shape if its mass is m."""
 
-    def mass_properties(self, value: Value) -> MassProperties:
+    def mass_properties(self, value: ValueOf) -> MassProperties:
         """Mass, mass centre and inertia of the shape."""
         return self.of_mass(self.mass_of(value), value)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         """Why no such body exists, "" where one does; the values are numbers."""
         return ""
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         """What a picture in the plane shows of it: lines from point to point, body axes; the values are numbers."""
         return ()
 
-    def mass_of(self, value: Value) -> Any:
+    def mass_of(self, value: ValueOf) -> Any:
         return 0 if self.mass is None else value(self.mass)
 
     @property

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Size
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.model.kinds import Size, ValueOf
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,18 +18,18 @@ class Box(Shape):
     dimension: ClassVar[int] = 3
     size: Size
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         width, height, _ = self.size
         return (box_around(value(width), value(height)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y, z = map(value, self.size)
         return (x * (s[0] - HALF), y * (s[1] - HALF), z * (s[2] - HALF))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         x, y, z = map(value, self.size)
         return x * y * z
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y, z = (Fraction(1, 12) * m * value(edge) * value(edge) for edge in self.size)
         return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))

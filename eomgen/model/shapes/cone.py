@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, Value, around, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -22,13 +22,13 @@ class Cone(Shape):
     radius: Length
     height: Length
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * (1 - s[2]) * s[0], s[1]), value(self.height) * (s[2] - HALF * HALF))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.height)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, h = value(self.radius), value(self.height)
         across = Fraction(3, 20) * m * r * r + Fraction(3, 80) * m * h * h
         return MassProperties(m, ZERO, diagonal(across, across, Fraction(3, 10) * m * r * r))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, THIRD, MassProperties, Shape, Value, around, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, THIRD, MassProperties, Shape, around, diagonal
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -23,14 +23,14 @@ class ConicalShell(Shape):
     radius: Length
     height: Length
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * (1 - s[1]), s[0]), value(self.height) * (s[1] - THIRD))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         r, h = value(self.radius), value(self.height)
         return value(PI) * r * sqrt(r * r + h * h)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, h = value(self.radius), value(self.height)
         across = Fraction(1, 4) * m * r * r + Fraction(1, 18) * m * h * h
         return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,17 +18,17 @@ class Disc(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         r = value(self.radius)
         return circle(r), ((0.0, 0.0), (r, 0.0))
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * s[0], s[1]), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return value(PI) * value(self.radius) * value(self.radius)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = m * r * r
         quarter = Fraction(1, 4) * square

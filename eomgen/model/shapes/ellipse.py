@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import PlaneSize
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.model.kinds import PlaneSize, ValueOf
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,20 +18,20 @@ class Ellipse(Shape):
     dimension: ClassVar[int] = 2
     semiaxes: PlaneSize
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         a, b = map(value, self.semiaxes)
         return (tuple((a * x, b * y) for x, y in circle(1.0)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = around(s[0], s[1])
         a, b = map(value, self.semiaxes)
         return (a * x, b * y, 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         a, b = map(value, self.semiaxes)
         return value(PI) * a * b
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         a, b = map(value, self.semiaxes)
         xx, yy = Fraction(1, 4) * m * b * b, Fraction(1, 4) * m * a * a
         return MassProperties(m, ZERO, diagonal(xx, yy, xx + yy))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Size
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, diagonal, on_ball
+from eomgen.model.kinds import Size, ValueOf
+from eomgen.model.shapes.base import PI, MassProperties, Shape, diagonal, on_ball
 from eomgen.symbolic.expression.spatial import ZERO, Vector, vector_of
 
 
@@ -18,13 +18,13 @@ class Ellipsoid(Shape):
     dimension: ClassVar[int] = 3
     semiaxes: Size
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return vector_of(value(a) * x for a, x in zip(self.semiaxes, on_ball(s[0], s[1], s[2]), strict=True))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         a, b, c = map(value, self.semiaxes)
         return Fraction(4, 3) * value(PI) * a * b * c
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y, z = (Fraction(1, 5) * m * value(axis) * value(axis) for axis in self.semiaxes)
         return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, MassProperties, Shape, Value, around, between, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, MassProperties, Shape, around, between, diagonal
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -25,15 +25,15 @@ class Frustum(Shape):
     top: Length
     height: Length
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.radius), value(self.top), s[2])
         return (*around(radius * s[0], s[1]), value(self.height) * s[2])
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.top)
         return Fraction(1, 3) * value(PI) * value(self.height) * (R * R + R * r + r * r)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r, h = value(self.radius), value(self.top), value(self.height)
         s = R * R + R * r + r * r
         z = over(Fraction(1, 4) * h * (R * R + 2 * R * r + 3 * r * r), s)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, Value, circle, diagonal, on_ball
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, circle, diagonal, on_ball
 from eomgen.symbolic.expression.spatial import Vector
 
 
@@ -21,17 +21,17 @@ class HemisphericalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius), HALF * s[0], s[1])
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         r = value(self.radius)
         return 2 * value(PI) * r * r
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         z, square = Fraction(1, 2) * r, Fraction(2, 3) * m * r * r
         across = square - m * z * z

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.shapes.base import PI, MassProperties, Value, between, diagonal, on_ball
+from eomgen.model.kinds import ValueOf
+from eomgen.model.shapes.base import PI, MassProperties, between, diagonal, on_ball
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -21,14 +22,14 @@ class HollowSphere(Hollow):
     kind: ClassVar[str] = "hollow_sphere"
     dimension: ClassVar[int] = 3
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(between(value(self.inner), value(self.radius), s[0]), s[1], s[2])
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.inner)
         return Fraction(4, 3) * value(PI) * (R * R * R - r * r * r)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r = value(self.radius), value(self.inner)
         above = R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r  # both over R - r
         square = over(Fraction(2, 5) * m * above, R * R + R * r + r * r)

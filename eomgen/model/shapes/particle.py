@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from eomgen.model.shapes.base import MassProperties, Shape, Value, diagonal
+from eomgen.model.kinds import ValueOf
+from eomgen.model.shapes.base import MassProperties, Shape, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -15,11 +16,11 @@ class Particle(Shape):
     kind: ClassVar[str] = "particle"
     dimension: ClassVar[int] = 0
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return ZERO
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return 0
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         return MassProperties(m, ZERO, diagonal(0, 0, 0))

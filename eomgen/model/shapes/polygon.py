@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
-from eomgen.model.shapes.base import Cell, Line, MassProperties, Shape, Value, between
+from eomgen.model.kinds import ValueOf
+from eomgen.model.shapes.base import Cell, Line, MassProperties, Shape, between
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.spatial import Vector
@@ -27,26 +28,26 @@ class Polygon(Shape):
     dimension: ClassVar[int] = 2
     vertices: Vertices
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         corners = tuple((value(x), value(y)) for x, y in self.vertices)
         return ((*corners, corners[0]),)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         corners = [(value(x), value(y)) for x, y in self.vertices]
         if crossing(corners):
             return "its edges cross one another"
         return "" if self.measure(value) else "it has no area"
 
-    def cells(self, value: Value) -> tuple[Cell, ...]:
+    def cells(self, value: ValueOf) -> tuple[Cell, ...]:
         """The triangles from the origin to each edge; those on whose right it is take away."""
         corners = [(value(x), value(y)) for x, y in self.vertices]
         return tuple(_fan(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         corners = [(value(x), value(y)) for x, y in self.vertices]
         return Fraction(1, 2) * function("abs", _edge_sums(corners)[0])
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         corners = [(value(x), value(y)) for x, y in self.vertices]
         double_area, cx, cy, xx, yy, xy = _edge_sums(corners)
         x, y = over(cx, 3 * double_area), over(cy, 3 * double_area)

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, Cell, Line, MassProperties, Shape, Value, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, Cell, Line, MassProperties, Shape, diagonal
 from eomgen.model.shapes.polygon import Polygon, Vertices
 from eomgen.symbolic.expression.spatial import added
 
@@ -26,19 +26,19 @@ class Prism(Shape):
     def section(self) -> Polygon:
         return Polygon(vertices=self.vertices)
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return self.section.outline(value)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         return self.section.impossible(value)
 
-    def cells(self, value: Value) -> tuple[Cell, ...]:
+    def cells(self, value: ValueOf) -> tuple[Cell, ...]:
         return tuple(_raised(cell, value(self.length)) for cell in self.section.cells(value))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return self.section.measure(value) * value(self.length)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         plate = self.section.of_mass(m, value)
         across = Fraction(1, 12) * m * value(self.length) * value(self.length)
         return MassProperties(m, plate.com, added(plate.I, diagonal(across, across, 0)))

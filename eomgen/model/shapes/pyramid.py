@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -23,19 +23,19 @@ class Pyramid(Shape):
     depth: Length
     height: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return (box_around(value(self.width), value(self.depth)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = (
             value(edge) * (part - HALF) * (1 - s[2]) for edge, part in zip((self.width, self.depth), s, strict=False)
         )
         return (x, y, value(self.height) * (s[2] - HALF * HALF))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 3) * value(self.width) * value(self.depth) * value(self.height)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y = (Fraction(1, 20) * m * value(edge) * value(edge) for edge in (self.width, self.depth))
         z = Fraction(3, 80) * m * value(self.height) * value(self.height)
         return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, Value, box_around, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -19,16 +19,16 @@ class Rectangle(Shape):
     width: Length
     height: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return (box_around(value(self.width), value(self.height)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (value(self.width) * (s[0] - HALF), value(self.height) * (s[1] - HALF), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return value(self.width) * value(self.height)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         w, h = value(self.width), value(self.height)
         xx, yy = Fraction(1, 12) * m * h * h, Fraction(1, 12) * m * w * w
         return MassProperties(m, ZERO, diagonal(xx, yy, xx + yy))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,16 +18,16 @@ class Ring(Shape):
     dimension: ClassVar[int] = 1
     radius: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return (circle(value(self.radius)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius), s[0]), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return 2 * value(PI) * value(self.radius)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = m * r * r
         return MassProperties(m, ZERO, diagonal(Fraction(1, 2) * square, Fraction(1, 2) * square, square))

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import Line, MassProperties, Shape, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,20 +18,20 @@ class Rod(Shape):
     dimension: ClassVar[int] = 1
     length: Length
 
-    def points(self, value: Value) -> dict[str, Vector]:
+    def points(self, value: ValueOf) -> dict[str, Vector]:
         length = value(self.length)
         return {"origin": ZERO, "start": ZERO, "end": (length, 0, 0), "center": (Fraction(1, 2) * length, 0, 0)}
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         return (((0.0, 0.0), (value(self.length), 0.0)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (value(self.length) * s[0], 0, 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return value(self.length)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         length = value(self.length)
         across = Fraction(1, 12) * m * length * length
         return MassProperties(m, (Fraction(1, 2) * length, 0, 0), diagonal(0, across, across))

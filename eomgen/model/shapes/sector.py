@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length, Opening
+from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import (
     HALF,
     Line,
     MassProperties,
     Shape,
-    Value,
     around,
     circle,
     diagonal,
@@ -34,21 +33,21 @@ class Sector(Shape):
     radius: Length
     opening: Opening
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         half = value(self.opening) / 2
         return (((0.0, 0.0), *circle(value(self.radius), -half, half), (0.0, 0.0)),)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         return more_than_a_turn(value(self.opening))
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * s[0], (s[1] - HALF) * part_of_turn(value(self.opening))), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         r = value(self.radius)
         return Fraction(1, 2) * value(self.opening) * r * r
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, A = value(self.radius), value(self.opening)
         x = over(4 * r * sin(Fraction(1, 2) * A), 3 * A)
         quarter, lean = Fraction(1, 4) * m * r * r, over(sin(A), A)

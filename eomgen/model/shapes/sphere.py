@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, circle, diagonal, on_ball
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, circle, diagonal, on_ball
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -18,17 +18,17 @@ class Sphere(Shape):
     dimension: ClassVar[int] = 3
     radius: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         r = value(self.radius)
         return circle(r), ((0.0, 0.0), (r, 0.0))
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius) * s[0], s[1], s[2])
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return Fraction(4, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.radius)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = Fraction(2, 5) * m * r * r
         return MassProperties(m, ZERO, diagonal(square, square, square))

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
-from eomgen.model.shapes.base import MassProperties, Shape, Value, tensor
+from eomgen.model.kinds import ValueOf
+from eomgen.model.shapes.base import MassProperties, Shape, tensor
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
@@ -29,26 +30,26 @@ class Tetrahedron(Shape):
     dimension: ClassVar[int] = 3
     vertices: Corners
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         return "" if self.measure(value) else "its four vertices lie in one plane"
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         """a + s_1 (b - a) + s_1 s_2 (c - b) + s_1 s_2 s_3 (d - c)"""
         a, b, c, d = self._corners(value)
         steps = ((s[0], minus(b, a)), (s[0] * s[1], minus(c, b)), (s[0] * s[1] * s[2], minus(d, c)))
         return vector_of(a[i] + sum(part * step[i] for part, step in steps) for i in range(3))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         first, *others = self._corners(value)
         a, b, c = (minus(p, first) for p in others)
         return Fraction(1, 6) * function("abs", dot(a, cross(b, c)))
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         corners = self._corners(value)
         com = vector_of(Fraction(1, 4) * sum(p[i] for p in corners) for i in range(3))
         arms = [minus(p, com) for p in corners]
         second = [[Fraction(1, 20) * m * sum(r[i] * r[j] for r in arms) for j in range(3)] for i in range(3)]
         return MassProperties(m, com, tensor(second))
 
-    def _corners(self, value: Value) -> list[Vector]:
+    def _corners(self, value: ValueOf) -> list[Vector]:
         return [vector_of(map(value, vertex)) for vertex in self.vertices]

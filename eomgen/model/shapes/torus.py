@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, Value, around, circle, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
@@ -23,21 +23,21 @@ class Torus(Shape):
     major: Length
     minor: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         R, r = value(self.major), value(self.minor)
         return circle(R + r), circle(R - r)
 
-    def impossible(self, value: Value) -> str:
+    def impossible(self, value: ValueOf) -> str:
         return "" if value(self.minor) <= value(self.major) else "'minor' is larger than 'major'"
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         out, z = around(value(self.minor) * s[0], s[1])
         return (*around(value(self.major) + out, s[2]), z)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return 2 * value(PI) * value(PI) * value(self.major) * value(self.minor) * value(self.minor)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r = value(self.major), value(self.minor)
         across = Fraction(1, 2) * m * R * R + Fraction(5, 8) * m * r * r
         return MassProperties(m, ZERO, diagonal(across, across, m * R * R + Fraction(3, 4) * m * r * r))

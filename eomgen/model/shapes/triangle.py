@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import Line, MassProperties, Shape, Value
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import Line, MassProperties, Shape
 from eomgen.symbolic.expression.spatial import Vector
 
 
@@ -22,17 +22,17 @@ class Triangle(Shape):
     width: Length
     height: Length
 
-    def outline(self, value: Value) -> tuple[Line, ...]:
+    def outline(self, value: ValueOf) -> tuple[Line, ...]:
         w, h = value(self.width), value(self.height)
         return (((0.0, 0.0), (w, 0.0), (0.0, h), (0.0, 0.0)),)
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (value(self.width) * s[0], value(self.height) * s[1] * (1 - s[0]), 0)
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 2) * value(self.width) * value(self.height)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         w, h = value(self.width), value(self.height)
         xx, yy, xy = Fraction(1, 18) * m * h * h, Fraction(1, 18) * m * w * w, Fraction(1, 36) * m * w * h
         center = (Fraction(1, 3) * w, Fraction(1, 3) * h, 0)

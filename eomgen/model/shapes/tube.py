@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from eomgen.model.kinds import Length
-from eomgen.model.shapes.base import HALF, PI, MassProperties, Value, around, between, diagonal
+from eomgen.model.kinds import Length, ValueOf
+from eomgen.model.shapes.base import HALF, PI, MassProperties, around, between, diagonal
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -22,15 +22,15 @@ class Tube(Hollow):
     dimension: ClassVar[int] = 3
     length: Length
 
-    def filled(self, value: Value, s: Sequence[Any]) -> Vector:
+    def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.inner), value(self.radius), s[0])
         return (*around(radius, s[1]), value(self.length) * (s[2] - HALF))
 
-    def measure(self, value: Value) -> Any:
+    def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.inner)
         return value(PI) * (R * R - r * r) * value(self.length)
 
-    def of_mass(self, m: Any, value: Value) -> MassProperties:
+    def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r, length = value(self.radius), value(self.inner), value(self.length)
         quarter = Fraction(1, 4) * m * (R * R + r * r)
         across = quarter + Fraction(1, 12) * m * length * length

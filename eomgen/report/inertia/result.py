@@ -19,7 +19,7 @@ from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.inertia.picture import inertia_picture, values_at_start
-from eomgen.report.inertia.rows import Sum, own_sum, together
+from eomgen.report.inertia.rows import InertiaSum, own_sum, together
 from eomgen.report.inertia.steps import (
     LONGEST,
     InertiaEntry,
@@ -186,7 +186,7 @@ class _Report:
     def _own(self, body: str) -> Section:
         return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))
 
-    def _centroidal(self, sum: Sum, of: str, bodies: tuple[str, ...]) -> Section:
+    def _centroidal(self, sum: InertiaSum, of: str, bodies: tuple[str, ...]) -> Section:
         motion = self.system.motion
         return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies), bodies)
 

@@ -56,7 +56,7 @@ class InertiaRow:
 
 
 @dataclass(frozen=True)
-class Sum:
+class InertiaSum:
     """Rows taken as one body: mass, mass centre, inertia about a point.
 
     Args:
@@ -109,15 +109,15 @@ class Sum:
         return matrix_of((self.short(x) for x in line) for line in total)
 
 
-def own_sum(motion: Motion, body: str, start: State) -> Sum:
+def own_sum(motion: Motion, body: str, start: State) -> InertiaSum:
     """One body in its own axes: its pieces, or itself."""
-    return Sum(motion, _rows(motion, body, Pose()), start)
+    return InertiaSum(motion, _rows(motion, body, Pose()), start)
 
 
-def together(motion: Motion, bodies: Sequence[str], start: State) -> Sum:
+def together(motion: Motion, bodies: Sequence[str], start: State) -> InertiaSum:
     """Several bodies where they are, ground axes."""
     rows = [row for body in bodies for row in _rows(motion, body, motion.link(body).pose, body)]
-    return Sum(motion, tuple(rows), start)
+    return InertiaSum(motion, tuple(rows), start)
 
 
 def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:

@@ -10,8 +10,8 @@ import numpy as np
 
 from eomgen.mechanics.masses.inertia_about import about_axis, polar, second_moments
 from eomgen.mechanics.masses.principal import Principal, principal_of
-from eomgen.report.inertia.rows import Sum
-from eomgen.report.latex_names import lettered
+from eomgen.report.inertia.rows import InertiaSum
+from eomgen.report.latex_names import letter_law
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -49,7 +49,7 @@ class Section:
         bodies: whose rows they are.
     """
 
-    sum: Sum
+    sum: InertiaSum
     point: Vector
     of: str
     flat: bool
@@ -116,7 +116,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
     if len(section.sum.rows) == 1:
         return
     count = 2 if section.plane else 3
-    head: tuple[Cell, ...] = ("", lettered("m"), *(lettered(f"{axis}_C") for axis in AXES[:count]))
+    head: tuple[Cell, ...] = ("", letter_law("m"), *(letter_law(f"{axis}_C") for axis in AXES[:count]))
     rows = [(row.label, row.sign * row.mass.m, *row.mass.com[:count]) for row in section.sum.rows]
     yield grid(section, head, rows)
 
@@ -135,7 +135,7 @@ def moments_grid(section: Section) -> Iterator[Statement]:
             rows.append((f"{row.label}, {what}", *(_plus(part, i, j) for i, j in columns)))
     rows.append(("sum", *(_plus(section.tensor, i, j) for i, j in columns)))
     yield Prose(("Own moments, and with d from the point to the mass centre, ", STEINER, ":"))
-    yield grid(section, ("", *(lettered(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
+    yield grid(section, ("", *(letter_law(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
 
 
 def _plus(I: Matrix, i: int, j: int) -> Scalar:
@@ -210,7 +210,7 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Inerti
     return [*statements, *_axes_grid(section, found, rows)], results, rows
 
 
-def _radius(sum: Sum, moment: Scalar) -> Scalar:
+def _radius(sum: InertiaSum, moment: Scalar) -> Scalar:
     """k = sqrt(I/m), short where the moment is."""
     if text_size(moment) > LONGEST_LINE:
         return sqrt(over(moment, sum.m))
@@ -230,7 +230,7 @@ def _words(found: Principal) -> str:
 
 
 def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | None) -> Iterator[Statement]:
-    head: tuple[Cell, ...] = ("axis", *map(lettered, AXES))
+    head: tuple[Cell, ...] = ("axis", *map(letter_law, AXES))
     words = "The rows of R are the principal axes, right-handed: R I R^T is diagonal."
     longest = LONGEST if rows is not None else LONGEST_LINE
     if found.axes is not None and all(text_size(x) <= longest for row in found.axes for x in row):

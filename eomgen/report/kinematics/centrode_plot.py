@@ -95,10 +95,10 @@ def _reach(system: System, values: State) -> float:
     return math.pi if turns else 2 * _size(system, values)
 
 
-Slope = Callable[[np.ndarray], np.ndarray]
+PlaneSlope = Callable[[np.ndarray], np.ndarray]
 
 
-def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> Slope:
+def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> PlaneSlope:
     """The rates as functions of t and the coordinates."""
     symbols = system.symbols
     function = compiled(program_of(rates, symbols), "numpy")
@@ -107,7 +107,7 @@ def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> Slope:
     return lambda x: np.asarray(function(float(x[0]), np.append(x[1:], speeds), p), dtype=float)
 
 
-def _followed(system: System, slope: Slope, values: State, step: float) -> list[State]:
+def _followed(system: System, slope: PlaneSlope, values: State, step: float) -> list[State]:
     """Configurations one after the other, by Runge and Kutta's method, as far as there are any."""
     moving = (system.symbols.t, *system.symbols.q)
     x = np.array([values[node] for node in moving], dtype=float)

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from eomgen.mechanics.instant.construction import POINT, Found, LineOf, PointPair
+from eomgen.mechanics.instant.construction import POINT, FoundPoint, LineOf, PointPair
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism, RotationCenter
-from eomgen.report.latex_names import lettered
+from eomgen.report.latex_names import letter_law
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -102,7 +102,7 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
         if state.found
         else ""
     )
-    words = (Prose((theory,)), Grid(("centre", lettered("x"), lettered("y"), "where"), rows))
+    words = (Prose((theory,)), Grid(("centre", letter_law("x"), letter_law("y"), "where"), rows))
     return Step("centers", "Centres of rotation", (*words, *((Prose((agree,)),) if agree else ())))
 
 
@@ -153,7 +153,7 @@ def _short_text(state: KinematicState, x: Scalar) -> str:
     return shown if isinstance(shown, str) else "..." if isinstance(shown, Omitted) else to_text(x)
 
 
-def how_found(state: KinematicState, found: Found) -> str:
+def how_found(state: KinematicState, found: FoundPoint) -> str:
     """Why the centre is there."""
     if found.same:
         return " and ".join(map(_pair, found.same)) + " are at one point"
@@ -213,7 +213,9 @@ def _spins(state: KinematicState, words: str, letter: str, spins: Mapping[str, V
         return ()
     turns = [(name, state.put(w)) for name, w in spins.items()]
     if state.plane:
-        return Prose((words,)), Grid(("body", lettered(letter)), tuple((name, cell(state, w[2])) for name, w in turns))
+        return Prose((words,)), Grid(
+            ("body", letter_law(letter)), tuple((name, cell(state, w[2])) for name, w in turns)
+        )
     head: tuple[Cell, ...] = ("body", *_components(letter, "xyz"))
     return Prose((words,)), Grid(head, tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
 
@@ -225,8 +227,8 @@ def _vectors(state: KinematicState, letter: str, rows: Sequence[tuple[str, Vecto
 
 def _components(letter: str, axes: str) -> tuple[Law, ...]:
     """v_x, v_y, |v|: the columns of a vector."""
-    size = lettered(letter)
-    return (*(lettered(f"{letter}_{axis}") for axis in axes), Law(f"|{size.text}|", f"|{size.latex}|"))
+    size = letter_law(letter)
+    return (*(letter_law(f"{letter}_{axis}") for axis in axes), Law(f"|{size.text}|", f"|{size.latex}|"))
 
 
 def _cells(state: KinematicState, v: Vector, axes: str) -> tuple[Cell, ...]:

@@ -62,7 +62,7 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
         state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
     """
     readable, letters = readable_at(system, state), axes(system)
-    parts = parts_of(system, point, body, readable)
+    parts = velocity_parts(system, point, body, readable)
     title = f"{point}, seen from {body}"
     steps = (
         Step(
@@ -88,11 +88,11 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
 
 def relative_payload(system: System, point: str, body: str, state: Mapping[Node, Scalar]) -> dict[str, Any]:
     """The parts as texts, axes of the body."""
-    parts = parts_of(system, point, body, readable_at(system, state))
+    parts = velocity_parts(system, point, body, readable_at(system, state))
     return {"point": point, "body": body, **{name: [to_text(x) for x in vector] for name, vector in parts.items()}}
 
 
-def parts_of(system: System, point: str, body: str, readable: Readable) -> dict[str, Vector]:
+def velocity_parts(system: System, point: str, body: str, readable: Readable) -> dict[str, Vector]:
     """The parts of velocity and acceleration by name, axes of the body, readable."""
     parts = composition_of(system.motion, point, body)
     own = {"relative_velocity": parts.relative[1], "relative_acceleration": parts.relative[2]}

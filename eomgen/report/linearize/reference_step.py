@@ -5,7 +5,7 @@ from __future__ import annotations
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY, ReferenceMotion
-from eomgen.report.setting_steps import listed
+from eomgen.report.setting_steps import listed_symbols
 from eomgen.report.statements import Cell, Formula, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.print.text import text_size
@@ -32,7 +32,7 @@ def reference_step(modes: Modes) -> Step:
     if small.left_out:
         one = len(small.left_out) == 1
         why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS
-        statements.append(Prose(("Left out: ", *listed(small.left_out), f"; {why}.")))
+        statements.append(Prose(("Left out: ", *listed_symbols(small.left_out), f"; {why}.")))
     return Step("reference", "Reference", tuple(statements))
 
 
@@ -57,7 +57,7 @@ def _family(modes: Modes, family: Family) -> list[Statement]:
     formulas = {x: value for x, value in family.formulas.items() if text_size(value) <= LONG}
     formulas = {x: value for x, value in formulas.items() if depends_on(value, family.held)}
     if formulas:
-        found.append(Prose(("As a function of ", *listed(family.held), ":")))
+        found.append(Prose(("As a function of ", *listed_symbols(family.held), ":")))
         found += [Formula((x, value)) for x, value in formulas.items()]
     if len(family.others) > 1 and modes.small.reference.valued:
         found += _others(modes, family)
@@ -69,7 +69,7 @@ def _others(modes: Modes, family: Family) -> list[Statement]:
     kind = "places of rest" if _at_rest(modes) else "steady motions"
     words = f"All {kind}" if family.complete else f"{kind.capitalize()} that were found"
     where = f" ({family.where})" if family.where else ""
-    held = (" with the same ", *listed((*family.zeros, *family.held))) if family.zeros or family.held else ()
+    held = (" with the same ", *listed_symbols((*family.zeros, *family.held))) if family.zeros or family.held else ()
     head: list[Cell] = []
     rows: list[list[Cell]] = [[] for _ in family.others]
     for x in family.following:

@@ -15,7 +15,7 @@ from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variab
 from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.mechanics.small_motions.transfer import TransferFunction
 from eomgen.report.linearize.reference_step import reference_step
-from eomgen.report.setting_steps import listed
+from eomgen.report.setting_steps import listed_symbols
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
 from eomgen.report.statements import Entry as Place
 from eomgen.symbolic.expression.functions import over
@@ -71,7 +71,7 @@ def _equations(modes: Modes) -> Step:
                 ", ",
                 WHERE,
                 ", to first order in the displacements ",
-                *listed(e.coordinates),
+                *listed_symbols(e.coordinates),
                 " from it",
                 ", along the ties" if tied else "",
                 ": ",
@@ -84,7 +84,7 @@ def _equations(modes: Modes) -> Step:
     turns = tuple(q for q in e.coordinates if q not in e.all)
     if turns:
         words = " are small turns about the axes of the body that spins, of which its speeds are the rates."
-        statements.append(Prose((*listed(turns), words)))
+        statements.append(Prose((*listed_symbols(turns), words)))
     if tied:
         statements.append(Prose(("The ties, differentiated, say what follows: ", FOLLOW, ".")))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER

@@ -12,7 +12,7 @@ from eomgen.report.bounded import page
 from eomgen.report.naming import Written, with_roots_named
 from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
-from eomgen.report.setting_steps import count, listed
+from eomgen.report.setting_steps import count, listed_symbols
 from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Prose, Statement, Step, narrow_grid
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -30,14 +30,14 @@ MOST_SHOWN = 4  # coordinates of a K that is printed
 def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
     reader = Reader()
-    steps: tuple[Step, ...] = (balance_step(found.statics, reader), _places(found))
+    steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
     if reactions:
         steps = (*steps, _stability(found), *_reactions(found.found[0], reactions))
     scope = found.statics.system.scope
     return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
 
 
-def balance_step(statics: StaticEquations, reader: Reader) -> Step:
+def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     """That the virtual work vanishes for every displacement: the equations."""
     if not statics.q:
         return Step("balance", "Balance at rest", (Prose(("No force changes with the place.",)),))
@@ -72,11 +72,11 @@ def _places(found: Equilibria) -> Step:
     if found.indifferent:
         symbols = found.indifferent
         stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
-        statements.append(Prose(("No force holds ", *listed(symbols), f": {stay}.")))
+        statements.append(Prose(("No force holds ", *listed_symbols(symbols), f": {stay}.")))
     if found.chosen:
         stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
         any_ = "The velocity ties let it rest at any "
-        statements.append(Prose((any_, *listed(found.chosen), f" near {stay} there.")))
+        statements.append(Prose((any_, *listed_symbols(found.chosen), f" near {stay} there.")))
     if not found.found:
         statements.append(Prose((_how_many(found),)))
         return Step("places", "Places of rest", tuple(statements))

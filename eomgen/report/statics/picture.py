@@ -41,7 +41,7 @@ LONGEST_LABEL = 24  # characters of a formula beside an arrow
 
 
 @dataclass(frozen=True)
-class Scene:
+class StaticScene:
     """What is drawn.
 
     Args:
@@ -206,7 +206,7 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     if model.space != "plane":
         raise RunFailed("structures in space are not drawn", mend="leave out --plot")
     missing = missing_values(model)
-    scene = Scene(found, not missing)
+    scene = StaticScene(found, not missing)
     bodies = list(sections.found.values())[:MOST_COLUMNS] if not missing else []
     line = influence if not missing else None
     heights = [height_of(scene), *([DIAGRAM] * (3 if bodies else 0)), *([1.5 * DIAGRAM] if line else [])]
@@ -226,7 +226,7 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     return Picture((max(WIDTH, COLUMN * len(bodies)), sum(heights)), fill, model.name)
 
 
-def height_of(scene: Scene) -> float:
+def height_of(scene: StaticScene) -> float:
     """Of the picture, as the structure is wide or tall [inches]."""
     places = np.array([*scene.sketch.points.values(), *(tip for tip, _, _, _ in scene.forces)])
     wide, tall = np.ptp(places, axis=0) + 0.35 * scene.sketch.extent if len(places) else (1.0, 1.0)
@@ -239,7 +239,7 @@ def missing_values(model: Model) -> list[str]:
     return [name for name in model.parameters if name not in values]
 
 
-def draw_structure(panel: Any, scene: Scene) -> None:
+def draw_structure(panel: Any, scene: StaticScene) -> None:
     """Bodies, supports, loads in red, reactions in green, member forces in blue (tension) and red (compression)."""
     sketch = scene.sketch
     draw_model(panel, sketch)
@@ -255,7 +255,7 @@ def draw_structure(panel: Any, scene: Scene) -> None:
     _members(panel, scene)
 
 
-def _spread(panel: Any, scene: Scene, load: SpreadLoad, name: str) -> None:
+def _spread(panel: Any, scene: StaticScene, load: SpreadLoad, name: str) -> None:
     """A line load, its largest arrow half as long as the longest of a force."""
     ends = np.array([scene.sketch.numbers(q[:2]) for q in (load.at_start, load.at_end)])
     highest = float(np.max(np.linalg.norm(ends, axis=1)))
@@ -266,7 +266,7 @@ def _spread(panel: Any, scene: Scene, load: SpreadLoad, name: str) -> None:
     distributed(panel, places, ((float(a), float(b)), (float(c), float(d))), label=name)
 
 
-def _members(panel: Any, scene: Scene) -> None:
+def _members(panel: Any, scene: StaticScene) -> None:
     """The force of every member of a truss, along it, and what the colours say."""
     drawn = False
     for truss, member, (first, second) in members_of(scene.statics.system):

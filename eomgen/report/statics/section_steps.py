@@ -11,7 +11,7 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
-from eomgen.report.latex_names import lettered
+from eomgen.report.latex_names import letter_law
 from eomgen.report.statements import Formula, Grid, Law, Name, Prose, Side, Statement, Step
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
@@ -97,7 +97,7 @@ def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
     )
     rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in KINDS)) for piece in forces.pieces]
     written = tuple(tuple(forces.sizes.shortest(cell) for cell in row) for row in rows)
-    yield Grid(("from x", "to x", *map(lettered, "NVM")), written)
+    yield Grid(("from x", "to x", *map(letter_law, "NVM")), written)
     if forces.extremes:
         yield Prose(("Where V = 0 within a part, M has an extreme:",))
         for extreme in forces.extremes:

@@ -14,11 +14,11 @@ from eomgen.report.document import Document, document_of
 from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step
 from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
-from eomgen.report.statics.work_steps import work_step
+from eomgen.report.statics.work_steps import virtual_work_step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
 METHOD = "statics"
-Symbols = Mapping[str, Node]
+SymbolsByName = Mapping[str, Node]
 
 
 def statics_derivation(statics: StaticReactions, values: Mapping[str, float], more: Sequence[Step] = ()) -> Document:
@@ -34,7 +34,7 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
         data_step(statics.system),
         structure_step(statics),
         *_open(statics, symbols),
-        reactions_step(statics, symbols, values),
+        static_reactions_step(statics, symbols, values),
         *_works(statics, symbols),
         *agreement_step(statics),
         *more,
@@ -132,7 +132,7 @@ def _law(formula: str) -> Law:
     return Law(formula, latex)
 
 
-def _open(statics: StaticReactions, symbols: Symbols) -> tuple[Step, ...]:
+def _open(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
     """Self-stresses of an indeterminate structure, by the names of its reactions."""
     if not statics.structure.indeterminacy:
         return ()
@@ -161,7 +161,7 @@ def _open(statics: StaticReactions, symbols: Symbols) -> tuple[Step, ...]:
 # -- the reactions -------------------------------------------------------------------------------------
 
 
-def reactions_step(statics: StaticReactions, symbols: Symbols, values: Mapping[str, float]) -> Step:
+def static_reactions_step(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str, float]) -> Step:
     """All reactions: what each is, exact and in numbers."""
     rows: list[tuple[Cell, ...]] = []
     for reaction in statics.reactions:
@@ -203,9 +203,11 @@ def meaning_of(balance: Reactions, reaction: StaticReaction) -> str:
     return said(balance.balance, reaction.named)
 
 
-def _works(statics: StaticReactions, symbols: Symbols) -> tuple[Step, ...]:
+def _works(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
     return tuple(
-        work_step(reaction, symbols[reaction.name]) for reaction in statics.reactions if reaction.work is not None
+        virtual_work_step(reaction, symbols[reaction.name])
+        for reaction in statics.reactions
+        if reaction.work is not None
     )
 
 

@@ -23,7 +23,7 @@ TURN, SHIFT = "δθ", "δs"
 LISTED = 8  # parts of a block by name
 
 
-def work_step(reaction: StaticReaction, symbol: Node) -> Step:
+def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
     """How one reaction follows from the virtual work of the mechanism that its release leaves."""
     equation = reaction.work
     assert equation is not None, "an indeterminate reaction has no equation of work"

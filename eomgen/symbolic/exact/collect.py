@@ -21,9 +21,9 @@ from eomgen.symbolic.exact.terms import (
     inverse,
     terms_scaled,
     terms_times,
-    tidy,
 )
 from eomgen.symbolic.exact.writing import Writer
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.work import Work
 

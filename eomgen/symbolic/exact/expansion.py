@@ -29,9 +29,9 @@ from eomgen.symbolic.exact.terms import (
     terms_plus,
     terms_scaled,
     terms_times,
-    tidy,
     wave,
 )
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

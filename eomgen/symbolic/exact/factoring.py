@@ -12,7 +12,8 @@ from functools import lru_cache
 from typing import Any
 
 from eomgen.symbolic.exact.squares import holds_no_square
-from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, inverse, terms_scaled, terms_times, tidy
+from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, inverse, terms_scaled, terms_times
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 LARGEST_DEGREE = 24

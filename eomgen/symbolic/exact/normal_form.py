@@ -15,9 +15,10 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.radicals import one_root
-from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, terms_scaled, tidy
+from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, terms_scaled
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.work import Work

@@ -14,7 +14,8 @@ from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, terms_plus, tidy
+from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, terms_plus
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 MOST_AXES = 4  # angles, for other forms than that in cosines

@@ -7,7 +7,8 @@ from fractions import Fraction
 from functools import lru_cache
 from math import comb
 
-from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy
+from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 CirclePowers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine

@@ -16,7 +16,8 @@ from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import irreducible
 from eomgen.symbolic.exact.polynomials import Element, Polynomials
 from eomgen.symbolic.exact.quotient import fraction_of
-from eomgen.symbolic.exact.terms import Terms, TooLarge, tidy
+from eomgen.symbolic.exact.terms import Terms, TooLarge
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 LARGEST_DEGREE = 24

@@ -23,10 +23,10 @@ from eomgen.symbolic.exact.terms import (
     terms_plus,
     terms_scaled,
     terms_times,
-    tidy,
 )
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.layout import SUMS, factors, terms

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from itertools import product
 from math import factorial
 
-from eomgen.symbolic.exact.terms import Key, Terms, tidy
+from eomgen.symbolic.exact.terms import Key, Terms
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 SphereSymbols = tuple[int, ...]  # the symbols, by index

@@ -17,6 +17,7 @@ from functools import lru_cache
 from math import gcd, lcm
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
@@ -31,11 +32,6 @@ HALF = Fraction(1, 2)
 
 class TooLarge(DerivationError):
     """The work or the size asked for is beyond its limit."""
-
-
-def tidy(c: Number) -> Number:
-    """A whole number as int."""
-    return c.numerator if type(c) is Fraction and c.denominator == 1 else c
 
 
 def constant(c: Number) -> Terms:

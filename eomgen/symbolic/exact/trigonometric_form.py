@@ -15,7 +15,8 @@ from itertools import product
 from math import gcd
 
 from eomgen.symbolic.exact.powers import CirclePolynomial, axes_of, eliminated, power_form
-from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, tidy, vector_sum, wave
+from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, vector_sum, wave
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 
 Waves = dict[Wave, Number]

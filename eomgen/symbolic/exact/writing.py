@@ -23,9 +23,9 @@ from eomgen.symbolic.exact.terms import (
     constant,
     inverse,
     terms_times,
-    tidy,
 )
 from eomgen.symbolic.exact.trigonometric_form import Factors, shortest
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.print.text import text_size
 

@@ -23,7 +23,7 @@ from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression import scalar_operations
 from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference, apply_operation, unknown
 from eomgen.symbolic.expression.functions import NAMES
-from eomgen.symbolic.expression.tokens import Token, is_name, number_of, reference_at, skip_space, token_at
+from eomgen.symbolic.expression.tokens import Token, is_name, number_in, reference_at, skip_space, token_at
 
 __all__ = ["Call", "Expression", "Reference", "as_expression", "is_name", "parse", "parse_equation", "unknown"]
 
@@ -164,7 +164,7 @@ class _Parser:
     def value(self) -> None:
         token = self.token
         if token.kind == "number":
-            self.emit("number", number_of(self.advance()), token.start)
+            self.emit("number", number_in(self.advance()), token.start)
         elif token.kind == "name":
             self.name_or_function()
         elif token.text == "(":

@@ -93,7 +93,7 @@ def reference_at(text: str, position: int) -> str | None:
     return found.group("reference") if found else None
 
 
-def number_of(token: Token) -> int | Fraction:
+def number_in(token: Token) -> int | Fraction:
     """The exact value of a decimal: 0.0825 is 33/400."""
     mantissa, _, exponent = token.text.replace("_", "").lower().partition("e")
     if len(mantissa) > MOST_DIGITS or len(exponent) > 6 or abs(int(exponent or 0)) > LARGEST_EXPONENT:

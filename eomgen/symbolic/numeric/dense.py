@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import ROUNDING, ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING, ZERO_AT_50
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
 
@@ -36,7 +36,7 @@ def independent(J: np.ndarray, *, smallest: float) -> bool:
     return rank(J, smallest=smallest) == len(J)
 
 
-def rank(A: np.ndarray, *, smallest: float) -> int:
+def rank(A: np.ndarray, *, smallest: float = RANK) -> int:
     """How many singular values of the scaled A are more than `smallest`."""
     return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 

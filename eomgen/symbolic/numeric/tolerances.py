@@ -64,6 +64,7 @@ ROUGH_RUN = 1e-5  # of a function along a run, which only has to be seen to chan
 
 # Steps of differences [of the coordinate's size and 1].
 DIFFERENCE_STEP = 1e-5  # of a first derivative in doubles, near the cube root of rounding
+IMAGINARY_STEP = 1e-30  # i h of a derivative Im f(s + i h) / h, which has no difference and so no rounding
 ASIDE_STEP = 1e-6  # [rad] beside a place where a description is locked
 WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of what is drawn
 

@@ -24,7 +24,7 @@ TRUTHS = (Relational, BooleanFunction, BooleanAtom)
 SUMS = frozenset(("add", "sub", "neg"))
 
 
-class Rate(sympy.Symbol):
+class RateSymbol(sympy.Symbol):
     """The symbol of a derivative: theta' is printed with a dot, theta'' with two."""
 
     __slots__ = ()
@@ -39,7 +39,7 @@ class Rate(sympy.Symbol):
 
 def symbol(name: str) -> sympy.Symbol:
     """The real sympy symbol of a name; a Rate where the name has a prime."""
-    return (Rate if name.endswith("'") else sympy.Symbol)(name, real=True)
+    return (RateSymbol if name.endswith("'") else sympy.Symbol)(name, real=True)
 
 
 def to_sympy(outputs: Iterable[Scalar]) -> list[sympy.Expr]:

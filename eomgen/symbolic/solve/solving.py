@@ -20,8 +20,9 @@ from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.exact.terms import Terms, common_monomial, terms_plus, terms_scaled, tidy
+from eomgen.symbolic.exact.terms import Terms, common_monomial, terms_plus, terms_scaled
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
