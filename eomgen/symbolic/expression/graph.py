@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.angles import circular, inverse_circular
@@ -30,6 +31,7 @@ from eomgen.symbolic.expression.exact_numbers import (
 from eomgen.symbolic.expression.exponentials import exponential
 from eomgen.symbolic.expression.factors import coefficient, common_of_squares, same_number
 from eomgen.symbolic.expression.node import Node, Scalar, collected, is_zero, linear_terms
+from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 
 __all__ = [
     "BINARY",
@@ -56,6 +58,7 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple, Node] = {}
+        self._listed: tuple[Node, ...] = ()
         self._adopted: dict[Node, Node] = {}
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
@@ -64,6 +67,37 @@ class Graph:
 
     def __len__(self) -> int:
         return len(self._nodes)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The graph without references from node to node, so that none is too deep, and with the samples in it."""
+        nodes = [(x.op, tuple((True, a.index) if type(a) is Node else (False, a) for a in x.args)) for x in self.nodes]
+        return {
+            "nodes": nodes,
+            "constants": sorted(x.index for x in self._constants),
+            "spheres": [tuple(x.index for x in symbols) for symbols in self.spheres],
+            "samples": [sampled_of(x.args[1]) for x in self.nodes if x.op == "sampled"],
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__()  # type: ignore[misc]
+        for sampled in state["samples"]:
+            number_of_sampled(sampled)
+        nodes = [self.pi]
+        for op, args in state["nodes"][1:]:
+            nodes.append(self.held(op, tuple(nodes[a] if is_node else a for is_node, a in args)))
+        self._constants = {nodes[k] for k in state["constants"]}
+        self.spheres = [tuple(nodes[k] for k in symbols) for symbols in state["spheres"]]
+
+    def reduced(self, x: Node) -> tuple[Any, ...]:
+        """How a node is pickled: by its place in its graph, which goes along; a constant by what it is."""
+        return (constant_again, (x.op, x.args)) if self is CONSTANTS else (_node_at, (self, x.index))
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """Every node, each at its index."""
+        if len(self._listed) != len(self._nodes):
+            self._listed = tuple(self._nodes.values())
+        return self._listed
 
     def held(self, op: str, args: tuple) -> Node:
         """The node of this operation, made where there is none yet; nothing folds."""
@@ -412,6 +446,15 @@ class Graph:
 
 CONSTANTS = Graph()
 """Home of what functions give at exact numbers, sqrt(2) or cos(3/10), until it meets an expression of a graph."""
+
+
+def _node_at(graph: Graph, index: int) -> Node:
+    return graph.nodes[index]
+
+
+def constant_again(op: str, args: tuple) -> Node:
+    """A constant that comes from another process: in the one home of constants here."""
+    return CONSTANTS.pi if op == "pi" else CONSTANTS.held(op, args)
 
 
 def _united(operation: Callable[..., Scalar], *args: Scalar) -> Scalar:

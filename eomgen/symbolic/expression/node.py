@@ -23,6 +23,10 @@ class Node:
     def __init__(self, graph: Any, op: str, args: tuple, index: int) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process."""
+        return self.graph.reduced(self)
+
     @property
     def name(self) -> str:
         """The name of a symbol."""

@@ -14,6 +14,8 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
+from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
 
@@ -144,21 +146,25 @@ class Sampled:
         return value * pi**self.pi_power if self.pi_power else value
 
 
-_ALL: list[Sampled] = []
-_NUMBERS: dict[Sampled, int] = {}
+_BY_NUMBER: dict[int, Sampled] = {}  # a table that is made again wherever a function is named
 
 
+@cache
 def number_of_sampled(sampled: Sampled) -> int:
-    """Its number, by which an operation of the graph names it; equal ones have the same."""
-    if sampled not in _NUMBERS:
-        _NUMBERS[sampled] = len(_ALL)
-        _ALL.append(sampled)
-    return _NUMBERS[sampled]
+    """Its number, by which an operation of the graph names it: made of its samples, the same in every process.
+
+    Raises:
+        RuntimeError: another function has the same number (one of 2^52).
+    """
+    number = int.from_bytes(blake2b(repr(sampled).encode(), digest_size=8).digest()) >> 12  # as a double holds it
+    if _BY_NUMBER.setdefault(number, sampled) != sampled:
+        raise RuntimeError(f"the functions '{sampled.name}' and '{_BY_NUMBER[number].name}' have one number")
+    return number
 
 
 def sampled_of(number: Any) -> Sampled:
     """The function of this number."""
-    return _ALL[int(number)]
+    return _BY_NUMBER[int(number)]
 
 
 def spline_of(times: Sequence[Fraction], values: Sequence[Fraction], way: str = "cubic", ends: str = ENDS[0]) -> Spline:
