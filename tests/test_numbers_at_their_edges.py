@@ -1,0 +1,124 @@
+"""Numbers that are too large, that divide by nothing or that are none are refused where they stand."""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from sympy.polys.domains import QQ
+from sympy.polys.rings import ring
+
+import eomgen
+from eomgen.errors import ExpressionError, ModelError
+from eomgen.symbolic.exact.polynomials import _coprime
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.intervals import INTERVALS
+from eomgen.symbolic.numeric.sure_numbers import number_of
+
+SPRING = """
+eomgen = 1
+space = "plane"
+[coordinates]
+x = 0.3
+[bodies.b]
+shape = {{ kind = "particle", mass = "{mass}" }}
+joint = {{ kind = "prismatic", axis = [1, 0], displacement = "x", {law} }}
+[outputs]
+o = "{output}"
+"""
+
+
+def block(mass="1", law="stiffness = 2", output="x"):
+    return SPRING.format(mass=mass, law=law, output=output)
+
+
+@pytest.mark.parametrize("text", ["1" * 320, "1" * 320 + "^(1/3)", "2*" + "9" * 310])
+def test_a_number_beyond_all_doubles_is_refused_where_it_stands(text):
+    """10^320 is too large for a number: said by line and caret, as the model is read."""
+    with pytest.raises(ModelError, match="too large for a number") as caught:
+        eomgen.loads(block(mass=text))
+    assert "<text>:7:" in str(caught.value) and "^^^" in str(caught.value)
+
+
+def test_the_largest_numbers_that_fit_are_taken():
+    """1e300 is a number."""
+    assert parse("1e300").evaluate({}) == 10**300
+
+
+@pytest.mark.parametrize("power", ["0^(-1/3)", "0^(-1/2)", "0^(-2)"])
+def test_a_negative_power_of_nothing_is_a_division_by_zero(power):
+    with pytest.raises(ExpressionError, match="division by zero"):
+        parse(power)
+    with pytest.raises(ExpressionError, match="division by zero"):
+        parse("x^y").evaluate({"x": 0, "y": Fraction(-1, 3), "pi": Graph().pi})
+
+
+def test_what_is_no_number_is_refused_where_it_stands():
+    """frequency(nan) is a mistake of the model, with its place."""
+    with pytest.raises(ModelError, match="'nan' is not a number") as caught:
+        eomgen.loads(block(output="frequency(nan)"))
+    assert "<text>:10:16" in str(caught.value)
+
+
+def test_a_block_pushed_by_a_power_of_two_oscillates_with_the_root_of_its_logarithm():
+    """x'' = 1 - 2^x rests at x = 0, and there x'' = -ln 2 x."""
+    model = eomgen.loads(block(law='force = "1 - 2^x"', output="frequency(1)"))
+    answer = eomgen.solve(model)["o"]
+    assert answer.value == pytest.approx(math.sqrt(math.log(2)), rel=1e-12)
+
+
+@pytest.mark.parametrize("base", [(0.5, 2.0), (2.0, 2.0), (1.5, 1.5), (0.1, 0.9)])
+@pytest.mark.parametrize("exponent", [(-2.0, 3.0), (0.5, 0.75), (-1.0, -0.5)])
+def test_the_interval_of_a_power_holds_all_its_values(base, exponent):
+    """a^n for a and n each in an interval."""
+    ends = [tuple(np.array([x]) for x in pair) for pair in (base, exponent)]
+    low, high = INTERVALS.functions["pow"](*ends)
+    values = [a**n for a in np.linspace(*base, 9) for n in np.linspace(*exponent, 9)]
+    assert low[0] <= min(values) and max(values) <= high[0]
+    assert max(values) == pytest.approx(high[0]) and min(values) == pytest.approx(low[0])
+
+
+def test_exact_numbers_beyond_all_doubles_are_infinite_in_doubles_and_right_in_their_ratio():
+    """10^400 x / 10^399 is 10 x; in doubles 10^400 is inf, in intervals it is beyond the largest double."""
+    x = Graph().symbol("x")
+    big = (10**400 + x) / (10**399 + x)
+    assert number_of(big, {x: 1}) == pytest.approx(10, rel=1e-14)
+    assert evaluate((x * 10**400,), {x: 1.0}, FLOAT) == [math.inf]
+    assert np.all(np.isinf(evaluate((x * 10**400,), {x: np.ones(2)}, ARRAYS)[0]))
+    low, high = INTERVALS.number(-(10**400))
+    assert low == -math.inf and high < -1e308
+
+
+def test_negative_powers_are_cleared_before_a_common_divisor_is_sought():
+    """above/below stays what it is, and the two are polynomials without a common divisor."""
+    rng = random.Random(0)
+    R, *x = ring([f"x{i}" for i in range(4)], QQ)
+
+    def laurent(terms, low):
+        found = {}
+        for j in range(terms):
+            e = [rng.choice((0, 0, 1, 2)) for _ in x]
+            if low and j % 2:
+                e[rng.choice((1, 2))] = low
+            found[tuple(e)] = QQ(rng.randrange(1, 999))
+        return R.from_dict(found)
+
+    above, below = laurent(5, 0), laurent(6, -2)
+    up, down = _coprime(above, below)
+    assert all(e >= 0 for part in (up, down) for powers in part.monoms() for e in powers)
+    values = [Fraction(rng.randint(1, 9), rng.randint(1, 9)) for _ in x]
+
+    def at(part):
+        return sum(
+            Fraction(int(c.numerator), int(c.denominator))
+            * math.prod(v**e for v, e in zip(values, powers, strict=True))
+            for powers, c in part.terms()
+        )
+
+    assert at(above) * at(down) == at(up) * at(below)
