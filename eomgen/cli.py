@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.shell import Verbs, deliver, reading
+from eomgen.cli_common import Verbs, deliver, reading
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
@@ -39,7 +39,7 @@ NO_CERTIFY = click.option("--no-certify", is_flag=True, help="Make no certificat
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
-    from eomgen.verbs.follow import following
+    from eomgen.verbs.csv_inputs import following
 
     return following(declared, follow) if follow else declared
 

@@ -16,10 +16,10 @@ from click.testing import CliRunner
 import eomgen
 from eomgen import equations, pipeline
 from eomgen.cli import main
+from eomgen.cli_common import LATER
 from eomgen.codegen.build import compiler
 from eomgen.codegen.targets import ALL
 from eomgen.proof.check import Certificate, Check
-from eomgen.shell import LATER
 from eomgen.version import __version__
 
 pytestmark = pytest.mark.slow

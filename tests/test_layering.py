@@ -23,7 +23,7 @@ CHAIN = (
     ("pipeline",),
     ("generated",),
     ("verbs", "notebook"),
-    ("shell",),
+    ("cli_common",),
     ("cli",),
     ("__main__",),
 )

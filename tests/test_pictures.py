@@ -9,8 +9,8 @@ import pytest
 
 import eomgen
 from eomgen.report.arrows import is_freer_outward
-from eomgen.report.coil import coil
-from eomgen.report.quantities import figures, scale_of
+from eomgen.report.figures import figures, scale_of
+from eomgen.report.support_symbols import coil
 
 pytestmark = pytest.mark.slow
 

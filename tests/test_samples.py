@@ -23,7 +23,7 @@ from eomgen.symbolic.expression.splines import Sampled, number_of_sampled, splin
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.sympy_form import to_sympy
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.follow import following
+from eomgen.verbs.csv_inputs import following
 
 pytestmark = pytest.mark.slow
 

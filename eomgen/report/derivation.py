@@ -11,12 +11,11 @@ from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.formulations import lagrange, projection
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
-from eomgen.report.balance_steps import reactions_table_step
+from eomgen.report.balance_steps import kinetostatic_steps, reactions_table_step
 from eomgen.report.document import Document, document_of
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.report.integral_steps import integral_steps
-from eomgen.report.kinetostatic_steps import kinetostatic_steps
 from eomgen.report.maggi_steps import MAGGI, maggi_equations
 from eomgen.report.naming import Written, with_parts_named, with_roots_named
 from eomgen.report.notation import notation_step

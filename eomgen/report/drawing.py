@@ -17,9 +17,8 @@ from eomgen.model.composite import pose_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.trusses import is_node
-from eomgen.report.coil import coil
 from eomgen.report.figures import halo
-from eomgen.report.support_symbols import GROUNDED, PagePoint, clamp, hinge, pin, rail, roller, weld
+from eomgen.report.support_symbols import GROUNDED, PagePoint, clamp, coil, hinge, pin, rail, roller, weld
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply

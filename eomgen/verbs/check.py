@@ -10,9 +10,8 @@ from eomgen.model.parts import Model, Truss
 from eomgen.report.document import plain_document
 from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.branch_lines import branch_lines
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
-from eomgen.verbs.freedom_lines import freedom_lines
+from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
 from eomgen.verbs.outcome import Outcome, listed
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
-from eomgen.verbs.given import nearest_name
+from eomgen.verbs.assignments import nearest_name
 from eomgen.verbs.outcome import Outcome, proven, told
 
 

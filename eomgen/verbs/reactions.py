@@ -26,15 +26,14 @@ from eomgen.model.unknowns import in_loads
 from eomgen.questions import answers
 from eomgen.report.document import plain_document
 from eomgen.report.quantity import Quantity
-from eomgen.report.reaction_formulas import reaction_formulas
 from eomgen.report.reaction_names import said
-from eomgen.report.reaction_payload import null_space
+from eomgen.report.reaction_payload import null_space, reaction_formulas
 from eomgen.report.statements import Found, Lines, Listing, Prose, Statement
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
 from eomgen.symbolic.numeric.tolerances import ROUNDING
-from eomgen.verbs.given import assignments, nearest_name
+from eomgen.verbs.assignments import assignments, nearest_name
 from eomgen.verbs.outcome import Outcome, listed
 
 NO_VALUE = "it has no single value at the start"

@@ -21,7 +21,7 @@ from eomgen.report.statements import Grid, Prose, Statement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
-from eomgen.verbs.given import assignments, nearest_name
+from eomgen.verbs.assignments import assignments, nearest_name
 from eomgen.verbs.outcome import Outcome, prepared, proven
 
 MOST_TOLD = 20  # phases in the text

@@ -9,8 +9,7 @@ import numpy as np
 
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, Extreme, SectionForces, SectionPiece
-from eomgen.report.figures import halo
-from eomgen.report.quantities import Scale, figures
+from eomgen.report.figures import Scale, figures, halo
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from eomgen.errors import RunFailed
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
-from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters, shown_numbers
 from eomgen.model.parts import Model
 from eomgen.report.document import Document, document_of
+from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
 from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.report.statics.equilibrium_picture import resting_picture
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -139,3 +142,41 @@ def _stability(stability: Stability) -> dict[str, Any]:
 
 def _entry(x: Scalar | float) -> str | float:
     return x if isinstance(x, float) else to_text(x)
+
+
+MOST = 6  # places that are drawn
+SIDE = 3.4  # of one panel [inches]
+
+
+def resting_picture(places: Sequence[Equilibrium]) -> Picture:
+    """The first places of rest of a plane system.
+
+    Raises:
+        RunFailed: there is none; the system is not plane; parameters have no values.
+    """
+    places = places[:MOST]
+    if not places:
+        raise RunFailed("there is no place of rest to be drawn")
+    model = places[0].statics.system.scope.model
+    if model.space != "plane":
+        raise RunFailed("pictures of places of rest are drawn of plane systems")
+    if not all(place.numbers for place in places):
+        raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
+    columns = math.ceil(math.sqrt(len(places)))
+    rows = math.ceil(len(places) / columns)
+
+    def fill(figure: Any) -> None:
+        for k, place in enumerate(places, start=1):
+            panel = figure.add_subplot(rows, columns, k)
+            draw_model(panel, _sketch(place), names=k == 1)
+            panel.set_title(f"{k}: {place.stability.kind}", fontsize=10)
+
+    return Picture((SIDE * columns, SIDE * rows), fill, model.name)
+
+
+def _sketch(place: Equilibrium) -> Sketch:
+    symbols = place.statics.system.symbols
+    plain = Sketch(place.statics.system, known_parameters(place.statics.system.scope))
+    inputs = {node: plain.numbers((place.statics.given[node],))[0] for node in symbols.inputs.values()}
+    still = dict.fromkeys((symbols.t, *symbols.u), 0.0)
+    return Sketch(place.statics.system, {**plain.values, **inputs, **still, **place.numbers})

@@ -14,7 +14,7 @@ from eomgen.model.parts import Coordinate, Input, Model
 from eomgen.model.samples import samples
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.verbs.given import assignments, nearest_name
+from eomgen.verbs.assignments import assignments, nearest_name
 
 EXAMPLE = "--follow theta=run.csv"
 LAWS = ("motion", "rate", "acceleration")
