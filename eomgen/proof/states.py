@@ -167,6 +167,8 @@ def _own_state(system: System, rng: Random) -> State | None:
     state |= on_unit_spheres(system.scope.quaternions, state)
     if not all(row.identical for row in system.ties.rows):
         state = closed(system.ties, state, movable(system.ties)) or state
+    elif not system.scope.quaternions:
+        state = in_doubles(state)
     own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
     return state | dict(zip(symbols.inputs.values(), own, strict=True))
 
@@ -202,11 +204,16 @@ def real_state(system: System, rng: Random) -> State:
     return state | on_unit_spheres(system.scope.quaternions, state)
 
 
+def in_doubles(state: State) -> State:
+    """The state rounded to numbers that code can take as they are."""
+    return {node: of_50_digits(float(value)) for node, value in state.items()}
+
+
 def closed_state(system: System, rng: Random) -> tuple[State, str]:
     """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
     state = real_state(system, rng)
     if all(row.identical for row in system.ties.rows):
-        return state, ""
+        return state if system.scope.quaternions else in_doubles(state), ""
     try:
         return state | generic_state(system.ties, rng), ""
     except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant

@@ -121,9 +121,9 @@ def follows_in_digits(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool
 
 
 def scaled_condition(M: np.ndarray) -> float:
-    """Condition number of M_ij / sqrt(M_ii M_jj): that of a mass matrix whatever the units of its coordinates."""
+    """Condition number (1-norm) of M_ij / sqrt(M_ii M_jj): that of a mass matrix whatever its coordinates' units."""
     scale = _roots(abs(np.diagonal(M)))
-    return float(np.linalg.cond(M / np.outer(scale, scale)))
+    return float(np.linalg.cond(M / np.outer(scale, scale), 1))
 
 
 def balanced(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
