@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
+import eomgen
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import METHODS
@@ -100,3 +102,48 @@ def test_samples_go_up_to_the_event():
     )
     assert found.t[:-1] == pytest.approx(np.linspace(0, 0.4, 5)) and found.t[-1] == pytest.approx(math.sqrt(2 / G))
     assert found.x[:, 0] == pytest.approx(1 - G * found.t**2 / 2, abs=1e-12)
+
+
+LEVEL = """
+eomgen = 1
+space = "plane"
+parameters = { L = 0.8, g = 9.81 }
+coordinates = { x = "L", y = 0 }
+points.O = [0, 0]
+bodies.bob = { shape = { kind = "particle", mass = 0.5 }, joint = { kind = "placed", at = ["x", "y"] } }
+constraints.rod = { kind = "link", points = ["O", "bob.center"], length = "L" }
+forces.w = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+@pytest.mark.parametrize("condition", ["x' = 0", "speed(bob.center) = 0", "y = 0"])
+def test_a_root_of_any_order_is_found_to_all_digits(condition):
+    """Let go level, the bob is so again after 2 K(1/sqrt 2) sqrt(L/g): x' has a triple root there, |v| an edge."""
+    half = 2 * ellipk(0.5) * np.sqrt(0.8 / 9.81)
+    found = eomgen.simulate(eomgen.loads(LEVEL), time=2, until=condition, rtol=1e-11, atol=1e-11, target="numpy")
+    assert found.status == "event" and found.phases[-1].end == pytest.approx(half, abs=1e-11)
+
+
+def test_no_step_is_too_long_for_a_condition():
+    """theta' is constant, so steps grow without end; sin(theta) = 1/2 is met at pi/6 all the same."""
+    found = march(
+        lambda t, x: np.ones(1),
+        (0.0, 1e4),
+        np.zeros(1),
+        how=Stepping(),
+        events=Events(lambda t, x: np.sin(x) - 0.5, np.array([1e-9]), (0,)),
+    )
+    assert found.end == pytest.approx(np.pi / 6, abs=1e-14)
+
+
+def test_a_start_that_doubles_cannot_hold_is_refused():
+    """At 1e15 rad neighbouring doubles are 0.125 rad apart; 1e9 m of free flight are fine."""
+    rod = 'constraints.rod = { kind = "link", points = ["O", "bob.center"], length = "L" }'
+    flight = LEVEL.replace(rod, "")
+    turning = flight.replace('x = "L", y = 0', "a = 1e15").replace(
+        '"placed", at = ["x", "y"]', '"revolute", angle = "a"'
+    )
+    turning = turning.replace('"particle"', '"rod", length = 1')
+    with pytest.raises(eomgen.DerivationError, match=r"neighbouring doubles are 0\.125 apart"):
+        eomgen.simulate(eomgen.loads(turning), time=1, target="numpy")
+    assert eomgen.simulate(eomgen.loads(flight.replace('x = "L"', "x = 1e9")), time=1, target="numpy").ok

@@ -8,9 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.numeric.tolerances import CARRIED, ITERATED, SOLVED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, SOLVED
 
 PARTS = 8  # of a step: how often the functions are looked at
+MOST_PARTS = 4096  # of a step in which a function goes up and down many times
+RESOLVED = 0.02  # of a function's largest value in a step: so near a polynomial comes to what lies between looks
+NODES, DEGREE = 40, 16  # of the polynomial around an event
+SMALLER = 8  # times, the second window around an event
+ORDER = 0.05  # of the largest value nearby: a derivative larger than that says of which order a root is
+MOST_ORDER = 5  # of a root
+NEARBY = 0.5  # of the window: how far the root may be from where it was seen
+NEWTON_STEPS = 6
 EDGE = 1e-3  # of a part: so near to the ends of a step they are looked at too, so that no extremum hides there
 TOUCH = 100.0  # relative tolerances of a step; so near to zero, against its largest value, a function touches it
 RELATIVE = 4 * np.finfo(float).eps  # of the instant of an event, and one part in 1e12 of the step
@@ -78,8 +86,7 @@ class EventSearch:
 
     def step(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> Crossing | None:
         """The first crossing in the step from t_old to t_new; `dense` gives the state at instants in it."""
-        times = _looks(t_old, t_new)
-        g = self.events.values(times, dense(times).T)
+        times, g = self._looked(t_old, t_new, dense)
         for row in g:
             self._direct(row)
         self.largest = np.maximum(self.largest, np.nan_to_num(np.abs(g)).max(axis=0))
@@ -92,6 +99,17 @@ class EventSearch:
             return None
         t, index = min(found)
         return Crossing(index, t, dense(t))
+
+    def _looked(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """(instants of a step, the functions there): so many that those of either side are resolved between them."""
+        parts, either = PARTS, list(self.events.either)
+        times = _looks(t_old, t_new, parts)
+        g = self.events.values(times, dense(times).T)
+        while either and parts < MOST_PARTS and not _is_resolved(g[:, either]):
+            parts *= 2
+            times = _looks(t_old, t_new, parts)
+            g = self.events.values(times, dense(times).T)
+        return times, g
 
     def _first(self, k: int, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]) -> tuple[float, int] | None:
         """The first time at which function k crosses, and k."""
@@ -117,11 +135,28 @@ class EventSearch:
         return None
 
 
-def _looks(t_old: float, t_new: float) -> np.ndarray:
+def _looks(t_old: float, t_new: float, parts: int) -> np.ndarray:
     """The instants of a step at which the functions are looked at."""
-    parts = np.linspace(t_old, t_new, PARTS + 1)
-    near = EDGE * (t_new - t_old) / PARTS
-    return np.concatenate([parts[:1], [t_old + near], parts[1:-1], [t_new - near], parts[-1:]])
+    inner = np.linspace(t_old, t_new, parts + 1)
+    near = EDGE * (t_new - t_old) / parts
+    return np.concatenate([inner[:1], [t_old + near], inner[1:-1], [t_new - near], inner[-1:]])
+
+
+def _is_resolved(g: np.ndarray) -> bool:
+    """Whether polynomials through every second of the looks, eight parts each, tell those between."""
+    inner = np.delete(g, [1, len(g) - 2], axis=0)
+    windows = np.stack([inner[i : i + PARTS + 1] for i in range(0, len(inner) - 1, PARTS)])
+    guessed = np.einsum("ij,wjk->wik", _BETWEEN, windows[:, ::2])
+    return bool(np.all(np.abs(guessed - windows[:, 1::2]) <= RESOLVED * np.max(np.abs(g), axis=0)))
+
+
+def _between() -> np.ndarray:
+    """Values of the polynomial through 0, 2, 4, ... PARTS at 1, 3, ..., by its values there."""
+    at, known = np.arange(1, PARTS, 2), np.arange(0, PARTS + 1, 2)
+    return np.linalg.solve(np.vander(known / PARTS).T, np.vander(at / PARTS, len(known)).T).T
+
+
+_BETWEEN = _between()
 
 
 def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, closely: bool) -> tuple[float, float] | None:
@@ -135,8 +170,11 @@ def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, close
         return None
     from scipy.optimize import minimize_scalar
 
-    least = minimize_scalar(value, bounds=(t[0], t[2]), method="bounded", options={"xatol": ITERATED * (t[2] - t[0])})
-    return float(least.x), float(least.fun)
+    options = {"xatol": ITERATED * (t[2] - t[0])}  # from the middle: the search knows its unknown to half of the digits
+    least = minimize_scalar(
+        lambda z: value(t[1] + z), bounds=(t[0] - t[1], t[2] - t[1]), method="bounded", options=options
+    )
+    return float(t[1] + least.x), float(least.fun)
 
 
 def _vertex(t: np.ndarray, g: np.ndarray) -> float:
@@ -161,3 +199,57 @@ def _root(value: Callable[[float], float], before: float, after: float) -> float
     while root < after and value(root) > 0:
         root, step = min(float(after), root + step), 2 * step
     return root
+
+
+# -- as exactly as the motion is known ---------------------------------------------------------------
+
+
+def sharpened(events: Events, found: Crossing, width: float, carry: Callable[[np.ndarray], np.ndarray]) -> Crossing:
+    """A crossing of a function that counts from either side, by states at which steps end.
+
+    Around a root of order m the derivative of order m - 1 goes straight through zero: of a polynomial through g on
+    both sides. What only touches zero in an edge, |v|, is one with its sign turned beyond it.
+
+    Args:
+        width: how far the motion is looked at before and after.
+        carry: instants -> states, one a row.
+    """
+    if found.index not in events.either:
+        return found
+    for w in (width, width / SMALLER):
+        nodes = w * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
+        with np.errstate(all="ignore"):
+            g = events.values(found.t + nodes, carry(found.t + nodes))[:, found.index]
+        root = _root_within(nodes / w, g) if np.all(np.isfinite(g)) else None
+        if root is not None:
+            t = found.t + w * root
+            return Crossing(found.index, t, carry(np.array([t]))[0])
+    return found
+
+
+def _root_within(z: np.ndarray, g: np.ndarray) -> float | None:
+    """The root nearest to 0, of any order, of a function by its values in -1 < z < 1; None where no polynomial fits."""
+    from numpy.polynomial.chebyshev import Chebyshev
+
+    size = float(np.max(np.abs(g)))
+    fits = [Chebyshev.fit(z, values, DEGREE, domain=[-1, 1]) for values in (g, np.sign(z) * g)]
+    apart = [float(np.max(np.abs(np.abs(fit(z)) - np.abs(g)))) for fit in fits]
+    best = fits[int(np.argmin(apart))]
+    if not 0 < size or min(apart) > COMPUTED * size:
+        return None
+    order, fall = 0, best
+    while order < MOST_ORDER:
+        order, last, fall = order + 1, fall, fall.deriv()
+        if abs(fall(0.0)) > ORDER * size:
+            step = _newton(last, fall)
+            return step if abs(step) < NEARBY else None
+    return None
+
+
+def _newton(g: Any, slope: Any) -> float:
+    z = 0.0
+    for _ in range(NEWTON_STEPS):
+        z -= float(g(z) / slope(z))
+        if not abs(z) < 1:
+            break
+    return z

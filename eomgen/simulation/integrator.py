@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -12,14 +13,15 @@ import numpy as np
 from eomgen.codegen.spheres import SpherePlaces
 from eomgen.simulation.breakpoints import step
 from eomgen.simulation.constraint_drift import DriftCorrection
-from eomgen.simulation.event_location import Crossing, Events, EventSearch
+from eomgen.simulation.event_location import Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.projection import Projection
 from eomgen.simulation.result import RunStatus
-from eomgen.simulation.solvers import NotFinite, Slope, StateRate, put, solver_of
+from eomgen.simulation.solvers import EXPLICIT, NotFinite, Slope, StateRate, put, solver_of
 from eomgen.simulation.step_states import StepStates
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_RTOL, RUN
+from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN, LEAST_RTOL, RUN
 
 MOST_STEPS = 10_000_000
+MOST_FINE_STEPS = 200  # from one instant to the next around an event
 LOOKED_OUT = -1  # the index of a crossing that a lookout found
 SHARE = 0.1  # of the tolerances of a run: those of one step
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
@@ -201,6 +203,7 @@ def _stepped(
         dense = cache(solver.dense_output)
         crossing = watches.step(solver.t_old, solver.t, solver.y, dense)
         if crossing is not None:
+            crossing = _exactly(f, watches, crossing, (solver.t_old, solver.t), dense()(solver.t_old), how)
             crossing = replace(crossing, x=hold.at(crossing.t, crossing.x))
             rows.add((solver.t_old, crossing.t), crossing.x, dense)
             return "event", f"Stopped by an event at t = {crossing.t:.6g} s.", steps, crossing
@@ -209,6 +212,44 @@ def _stepped(
         if moved:
             put(solver, x)
     return "finished", "", steps, None
+
+
+def _exactly(
+    f: StateRate, watches: _Watches, crossing: Crossing, span: tuple[float, float], x: np.ndarray, how: Stepping
+) -> Crossing:
+    """A crossing in the step over a span that began in x, by finer steps that end there."""
+    if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in EXPLICIT:
+        return crossing
+    before, after = bisect_right(how.knots, span[0]), bisect_left(how.knots, crossing.t)
+    near = [abs(crossing.t - t) for t in how.knots[max(before - 1, 0) : after + 1]]
+    width = min([span[1] - span[0], *(d for d in near if d > 0)])
+    return sharpened(watches.watch.events, crossing, width, lambda t: _carried(f, span[0], x, t))
+
+
+def _carried(f: StateRate, t_0: float, x_0: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """The states at some instants, each the end of fine steps from the one nearer to t_0; nan where there is none."""
+    found = np.full((len(times), len(x_0)), np.nan)
+    for which in (np.flatnonzero(times >= t_0), np.flatnonzero(times < t_0)[::-1]):
+        t, x = t_0, x_0
+        for i in which[np.argsort(np.abs(times[which] - t_0), kind="stable")]:
+            x = _stepped_to(f, t, x, float(times[i]))
+            found[i], t = x, float(times[i])
+    return found
+
+
+def _stepped_to(f: StateRate, t: float, x: np.ndarray, end: float) -> np.ndarray:
+    """x at the end, by steps of the finest tolerance; nan where they do not get there."""
+    from scipy.integrate import DOP853
+
+    if t == end or not np.all(np.isfinite(x)):
+        return x
+    with np.errstate(all="ignore"):
+        solver = DOP853(f, t, x, end, rtol=FINEST_RUN, atol=FINEST_RUN, first_step=abs(end - t))
+        for _ in range(MOST_FINE_STEPS):
+            if solver.status != "running":
+                break
+            solver.step()
+    return solver.y if solver.status == "finished" else np.full_like(x, np.nan)
 
 
 def _failed(f: StateRate, solver: Any) -> tuple[RunStatus, str]:

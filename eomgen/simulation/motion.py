@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eomgen.errors import UsageError
+from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.endings import PhaseCondition, ended
@@ -60,32 +60,52 @@ def passed(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
         if failure:
             yield _standstill(phase, here, failure)
             return
-        run = _run(phase, here, plan)
+        run = advance(phase, here, plan)
         crossing = run.crossing
         if crossing is None or crossing.index >= len(phase.bounds):
-            yield PhaseRun(here, phase, _determined(phase, _at_edge(phase, run), plan.how), None, None)
+            yield PhaseRun(here, phase, run, None, None)
             return
         soon = run.end - here.t <= COMPUTED
         hasty, count = hasty + 1 if soon else 0, count + 1
         ended = frozenset({*(ended if soon else ()), here.configuration})
-        cut = _determined(phase, run, plan.how)
-        if cut.crossing is None:
-            yield PhaseRun(here, phase, cut, None, None)
-            return
         after = course.after(phase, crossing, ended)
         yield PhaseRun(here, phase, run, phase.bounds[crossing.index], after)
         here = after
 
 
-def _run(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
-    """One phase: to the end, to the condition, or to the first of its bounds; carried across singular positions."""
+def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
+    """One phase: to the end, to the condition, or to the first of its bounds; carried across singular positions.
+
+    Raises:
+        DerivationError: doubles are too coarse for the start.
+    """
     x = phase.state(here.values)
+    _refuse_coarse(phase, here.t, x)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(phase, here.t, x, plan)
     slope = phase.slope if plan.how.method in IMPLICIT else None
     flow = Flow(phase.rate, plan.how, phase.rhs.spheres, phase.projection, slope)
     run, passages = march_across(flow, (here.t, plan.end), x, phase.nearness, instants=wanted, events=events)
-    return replace(run, carried=tuple((passage.start, passage.end) for passage in passages))
+    run = replace(run, carried=tuple((passage.start, passage.end) for passage in passages))
+    return _determined(phase, _at_edge(phase, run), plan.how)
+
+
+def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
+    """Refuses a state so far from 0 that its neighbour among doubles moves otherwise.
+
+    Raises:
+        DerivationError: the coordinate is named.
+    """
+    apart = np.spacing(np.abs(x))
+    for k in np.flatnonzero(apart[: len(phase.coordinates)] > COMPUTED):
+        beside = x.copy()
+        beside[k] += apart[k]
+        rate, other = phase.rate(t, x), phase.rate(t, beside)
+        if np.max(np.abs(other - rate)) > COMPUTED * np.max(np.abs(rate)):
+            name = phase.coordinates[k]
+            where = f"'{name}' starts at {x[k]:.6g}"
+            what = f"{where}, where neighbouring doubles are {apart[k]:.3g} apart and move otherwise"
+            raise DerivationError(what, f"coordinates.{name}", "start nearer to 0, an angle less whole turns")
 
 
 def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | None:
