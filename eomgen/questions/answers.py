@@ -40,11 +40,10 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output
 
-LONGEST = 20_000  # characters of an exact answer
 NO_VALUE = "it has no finite value {}"
 
 
@@ -228,8 +227,8 @@ class _Solver:
 
     def _started(self, scalar: Scalar, method: str) -> Answer:
         """The text, and the value at the start."""
-        exact = to_text(scalar) if text_size(scalar) <= LONGEST else None
-        message = None if exact is not None else f"the exact form is longer than {LONGEST} characters"
+        exact = readable_text(scalar)
+        message = None if exact is not None else f"the exact form is longer than {LONGEST_RESULT} characters"
         try:
             return _valued(Answer(exact, None, "", method, message), self._at_start(scalar), "at the start")
         except MissingValues as error:
@@ -283,7 +282,7 @@ class _Solver:
         if found is None:
             return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
         exact = phase.simple(self._in_unit(found, output))
-        text = to_text(exact) if text_size(exact) <= LONGEST else None
+        text = readable_text(exact)
         try:
             return _valued(Answer(text, None, "", method), self._at_start(exact), "at the instant")
         except MissingValues as error:
@@ -305,7 +304,7 @@ class _Solver:
         if isinstance(output.at, AtRest) or not missing or not moment.numbers:
             return False
         closed = phase.eliminated(phase.raw(output.value))
-        return depends_on(closed, missing) and text_size(closed) > LONGEST
+        return depends_on(closed, missing) and text_size(closed) > LONGEST_RESULT
 
     def _constant(self, moment: StateAtInstant, output: Output) -> Scalar | None:
         """What stays constant along every motion, as it is at the start; None: it changes, or a contact has."""

@@ -18,7 +18,7 @@ from functools import cached_property, cmp_to_key
 
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.initial_state.numeric_value import known_parameters
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.symbolic.exact.normal_form import common_factor, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
@@ -26,7 +26,7 @@ from eomgen.symbolic.expression.functions import cos, function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.solving import roots, vanishes
@@ -186,8 +186,7 @@ class _Tensor:
         rest = self.short(over(x, product))
         if symbols_of((rest,)) or sign_of_terms(product, self.positive) != 1:
             return None
-        (number,) = evaluate((rest,), {}, FLOAT)
-        return 1 if number > 0 else -1
+        return 1 if number_of(rest) > 0 else -1
 
     # -- axes ---------------------------------------------------------------------------------------
 
@@ -304,8 +303,7 @@ def _with_signs(x: Scalar) -> Scalar:
     for node in order((x,)):
         if node.op == "abs" and not symbols_of((node,)):
             (inside,) = node.args
-            (number,) = evaluate((inside,), {}, FLOAT)
-            known[node] = inside if number > 0 else -inside
+            known[node] = inside if number_of(inside) > 0 else -inside
     return substituted((x,), known)[0] if known else x
 
 
@@ -317,6 +315,5 @@ def numbers_in(
     Args:
         state: values of other symbols than parameters (None: those have none).
     """
-    symbols, known = symbols_of(tuple(scalars)), dict(state or {})
-    known |= known_parameters(scope)
-    return None if any(symbol not in known for symbol in symbols) else list(evaluate(tuple(scalars), known, FLOAT))
+    known = {**(state or {}), **known_exactly(scope)}
+    return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)

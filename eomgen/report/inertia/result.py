@@ -43,7 +43,7 @@ from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, minus
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.print.text import readable_text, text_size
 
 TENSOR = Law(
     "I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
@@ -181,7 +181,7 @@ class _Report:
 
     def _quantity(self, entry: InertiaEntry) -> Quantity:
         values = numbers_in((entry.value,), self.system.scope, self.start)
-        return Quantity(to_text(entry.value), None if values is None else values[0] + 0.0, entry.unit)
+        return Quantity(readable_text(entry.value), None if values is None else values[0] + 0.0, entry.unit)
 
     def _own(self, body: str) -> Section:
         return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))

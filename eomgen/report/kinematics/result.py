@@ -27,10 +27,9 @@ from eomgen.report.setting_steps import data_step
 from eomgen.report.statements import Cell, Law, Piece, Prose, Step
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.print.text import readable_text, text_size
 
 LINE = 80  # characters of a formula among the fields
-LONGEST = 20_000  # characters of an exact value
 
 
 @dataclass(frozen=True)
@@ -173,5 +172,5 @@ class Kinematics(Result):
 
     def _value(self, x: Scalar, exact: bool = True) -> Quantity:
         shown = self.state.put((x, 0, 0))[0]
-        written = to_text(shown) if exact and self.state.exact and text_size(shown) <= LONGEST else None
+        written = readable_text(shown) if exact and self.state.exact else None
         return Quantity(written, self.state.number(shown), unit=None)

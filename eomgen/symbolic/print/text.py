@@ -18,6 +18,7 @@ ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b
 Printed = dict[Node, tuple[str, int]]
 
 SHORTEST_NAMED = 16  # characters: what is shorter is not worth a name
+LONGEST_RESULT = 20_000  # characters of an exact result
 SHORTEST_LIMIT = 60
 
 
@@ -124,6 +125,11 @@ def _tight(a: Scalar, printed: Printed) -> str:
 
 
 # -- naming sub-expressions --------------------------------------------------------------------
+
+
+def readable_text(x: Scalar) -> str | None:
+    """The text of a result; None where it would be longer than anybody reads: a shared graph is far smaller."""
+    return to_text(x) if text_size(x) <= LONGEST_RESULT else None
 
 
 def text_size(x: Scalar) -> int:
