@@ -9,10 +9,12 @@ import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 from eomgen.codegen.factorization import factor_solution, operation_count
+from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.names import RESERVED, identifier, identifiers
 from eomgen.codegen.program import Assign, Solve, program_in_motion, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.solving import solve_bordered
+from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import cos, sin
@@ -86,9 +88,14 @@ def random_system(rng, n, k):
     return B @ B.T + 0.1 * np.eye(n), rng.normal(size=(k, n)), rng.normal(size=n)
 
 
+def full(n: int, k: int):
+    """The lists of a solve in which nothing is known to be zero."""
+    return Solve(((1,) * n,) * n, ((1,) * n,) * k, (), ()).tables
+
+
 def solved_by_rows(M, J, f, g):
     n = len(f)
-    found = solve_bordered([M[i, : i + 1].tolist() for i in range(n)], J.tolist(), f.tolist(), g.tolist())
+    found = solve_bordered(M.ravel().tolist(), J.ravel().tolist(), f.tolist(), g.tolist(), full(n, len(g)))
     return np.array(found[:n]), np.array(found[n:])
 
 
@@ -201,10 +208,11 @@ def test_every_name_becomes_an_identifier_of_its_own():
         "m-1",
         "é",
     ]
-    words = identifiers(names)
+    reserved = RESERVED | C.reserved | PYTHON.reserved
+    words = identifiers(names, reserved)
     assert words["theta"] == "theta" and words["ω₁"] == "omega1" and words["m-1"] == "m_1" and words["é"] == "e"
     assert len(set(words.values())) == len(names)
-    assert all(word.isidentifier() and word.isascii() and word not in RESERVED for word in words.values())
+    assert all(word.isidentifier() and word.isascii() and word not in reserved for word in words.values())
     assert not {"v1", "solve_M"} & set(words.values())
     assert identifier("7-axis arm") == "n7_axis_arm"
 
@@ -217,7 +225,7 @@ def test_any_names_become_different_identifiers():
     """Whatever letters a name has."""
     rng = random.Random(2)
     names = {random_name(rng) for _ in range(300)}
-    words = identifiers(names)
+    words = identifiers(names, RESERVED)
     assert len(set(words.values())) == len(names) and all(word.isidentifier() for word in words.values())
 
 
@@ -228,16 +236,12 @@ def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
     A = rng.normal(size=(size, size))
     scale = np.logspace(0, 4.5, size)
     M = scale[:, None] * (A @ A.T + size * np.eye(size)) * scale
-    lower = [[float(M[i, j]) for j in range(i + 1)] for i in range(size)]
-    J, f, g = rng.normal(size=(rows, size)).tolist(), rng.normal(size=size).tolist(), rng.normal(size=rows).tolist()
+    M = M.ravel().tolist()
+    J, f, g = rng.normal(size=rows * size).tolist(), rng.normal(size=size).tolist(), rng.normal(size=rows).tolist()
     exact = fifty_digits().number(1)
-    long = solve_bordered(
-        [[exact * x for x in row] for row in lower],
-        [[exact * x for x in row] for row in J],
-        [exact * x for x in f],
-        [exact * x for x in g],
-    )
-    assert solve_bordered(lower, J, f, g) == pytest.approx([float(x) for x in long], rel=1e-13)
+    tables = full(size, rows)
+    long = solve_bordered(*([exact * x for x in values] for values in (M, J, f, g)), tables)
+    assert solve_bordered(M, J, f, g, tables) == pytest.approx([float(x) for x in long], rel=1e-13)
 
 
 @pytest.mark.parametrize("made", [pendulum, lambda: spring_row(20), tied_pendulum], ids=["written out", "solve", "tie"])

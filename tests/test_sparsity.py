@@ -7,13 +7,13 @@ import pytest
 from hand_made import assembly, spring_row, symbols
 
 import eomgen
-from eomgen.codegen.program import Solve, bordered, program_of, right_hand_side
+from eomgen.codegen.kernel_reader import solve_bordered
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
 from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import layout
-from eomgen.codegen.targets.parts import LONG, program_parts
+from eomgen.codegen.targets.c import C
 from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.symbolic.expression.functions import cos, sin
@@ -100,9 +100,9 @@ def test_nothing_is_lost_along_the_lists(case):
     x = np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
     M, J, f, g = at(made, 0.0, x, [0.9])
     order = [made.symbols.a.index(a) for a in solve.unknowns[: len(f)]]
-    lower = [[M[i, j] for j in order[: row + 1]] for row, i in enumerate(order)]
-    arguments = lower, J[:, order].tolist(), f[order].tolist(), g.tolist()
-    known, unknown = solve_bordered(*arguments, solve.lists), solve_bordered(*arguments)
+    arguments = M[np.ix_(order, order)].ravel().tolist(), J[:, order].ravel().tolist(), f[order].tolist(), g.tolist()
+    full = Solve(((1,) * len(f),) * len(f), ((1,) * len(f),) * len(g), (), ())
+    known, unknown = solve_bordered(*arguments, solve.tables), solve_bordered(*arguments, full.tables)
     assert known[: len(f)] == pytest.approx(unknown[: len(f)], rel=1e-10, abs=1e-10)
 
 
@@ -131,12 +131,17 @@ def test_a_leg_more_costs_what_a_leg_costs():
     assert [len(reach) for reach in bordered(legs_under_a_plate(4)).zeros[0].reach] == [5] * 8
 
 
+def pieces(program: Program) -> int:
+    """How many parts C cuts a program into."""
+    return sum(function.apart for function in lowered(program, C, "dx").bodies)
+
+
 def long_row(n: int) -> Assembly:
-    """A full row of springs whose forces are long: solved in a loop, with more than LONG operations before it."""
+    """A full row of springs whose forces are long: solved in a loop, with more before it than C has in a function."""
     made = spring_row(n)
     q, u = made.symbols.q, made.symbols.u
     x, forces = q[0], []
-    for i in range(LONG // 4):
+    for i in range(C.longest // 4):
         x = sin(x + i) * cos(q[i % n]) + u[i % n] / 7
         forces.append(x)
     forcing = tuple(f + sum(forces[i::n], start=0) for i, f in enumerate(made.forcing))
@@ -148,7 +153,7 @@ def long_row(n: int) -> Assembly:
 def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):
     """Parts hand each other what they share: dx against 50 digits."""
     program = right_hand_side(long_row(n))
-    assert len(program_parts(layout(program)).all) > 2
+    assert pieces(program) > 2
     assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
     function = compiled(program, target)
     for v in vectors(program, count=2):
@@ -173,7 +178,7 @@ def test_a_tree_of_twenty_bodies_in_space_is_cut_and_runs():
         ]
     text += ["[forces.weight]", 'kind = "gravity"', 'acceleration = [0, 0, "-g"]']
     equations = eomgen.derive(eomgen.loads("\n".join(text)))
-    assert program_parts(layout(equations.program)).all
+    assert pieces(equations.program) > 0
     in_c, in_numpy = equations.rhs("c"), equations.rhs("numpy")
     x = in_c.x0 + np.random.default_rng(3).normal(size=40) / 3
     for inputs in ((), (0.7,)):

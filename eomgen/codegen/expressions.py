@@ -27,12 +27,21 @@ class ExpressionWriter:
 
     Args:
         call: a function's text from its op and its arguments' texts, in the language.
+        number: the text of an exact number, in the language.
         names: the identifier of each symbol, and the text of what was computed elsewhere.
+        inverse: of divisors the text of their reciprocals.
         prefix: of our variables, v1, v2, ...
     """
 
-    def __init__(self, call: CallText, names: Mapping[Node, str], prefix: str = "v") -> None:
-        self._call, self._prefix = call, prefix
+    def __init__(
+        self,
+        call: CallText,
+        number: Callable[[Number], RankedText],
+        names: Mapping[Node, str],
+        inverse: Mapping[Node, str],
+        prefix: str,
+    ) -> None:
+        self._call, self._number, self._inverse, self._prefix = call, number, inverse, prefix
         self._texts: dict[Node, RankedText] = {node: (text, ATOM) for node, text in names.items()}
         self._count = 0
 
@@ -58,39 +67,46 @@ class ExpressionWriter:
         """The text of a scalar whose node was assigned."""
         return self._text(x)[0]
 
+    def factor(self, x: Scalar) -> str:
+        """The same, to be divided by."""
+        return held(self._text(x), ATOM)
+
     def _text(self, x: Scalar) -> RankedText:
         if not isinstance(x, Node):
-            return ranked_number(x)
+            return self._number(x)
         known = self._texts.get(x)
         if known is None:
             if x.op == "neg":
-                known = f"-{_held(self._text(x.args[0]), PRODUCT)}", SUM
+                known = f"-{held(self._text(x.args[0]), PRODUCT)}", SUM
             else:  # an exact constant: sqrt(2), pi/2
-                known = ranked_number(Fraction(evaluate([x], {}, FLOAT)[0]))
+                known = self._number(Fraction(evaluate([x], {}, FLOAT)[0]))
             self._texts[x] = known
         return known
 
     def _operation(self, x: Node) -> RankedText:
+        if x.op == "div" and x.args[1] in self._inverse:
+            inverse = self._inverse[x.args[1]]
+            return (inverse, ATOM) if x.args[0] == 1 else (f"{held(self._text(x.args[0]), PRODUCT)}*{inverse}", PRODUCT)
         arguments = [self._text(a) for a in x.args]
         if x.op in ("add", "sub"):
             a, b = arguments
-            return f"{a[0]} {'+' if x.op == 'add' else '-'} {_held(b, PRODUCT)}", SUM
+            return f"{a[0]} {'+' if x.op == 'add' else '-'} {held(b, PRODUCT)}", SUM
         if x.op in ("mul", "div"):
             a, b = arguments
-            return f"{_held(a, PRODUCT)}{'*' if x.op == 'mul' else '/'}{_held(b, ATOM)}", PRODUCT
+            return f"{held(a, PRODUCT)}{'*' if x.op == 'mul' else '/'}{held(b, ATOM)}", PRODUCT
         return self._call(x.op, [text for text, _ in arguments]), ATOM
 
 
-def used_once(bodies: Iterable[tuple[Sequence[Node], Sequence[Scalar]]]) -> frozenset[Node]:
+def used_once(bodies: Iterable[tuple[Sequence[Node], Iterable[Scalar]]]) -> frozenset[Node]:
     """Nodes with one use in all, in the function body that computes them.
 
     Args:
-        bodies: of each function body the nodes that it computes and the scalars that it writes down.
+        bodies: of each function body the nodes that it computes and all that its text reads.
     """
     uses: Counter[Node] = Counter()
-    for computed, written in bodies:
+    for computed, read in bodies:
         own = frozenset(computed)
-        for x in [*(a for node in computed for a in node.args), *written]:
+        for x in read:
             if type(x) is Node:
                 x = x.args[0] if x.op == "neg" else x
                 uses[x] += 1 if x in own else 2
@@ -100,7 +116,7 @@ def used_once(bodies: Iterable[tuple[Sequence[Node], Sequence[Scalar]]]) -> froz
 def ranked_number(a: Number) -> RankedText:
     """The nearest double of an exact number; 1/3 stays a quotient, for the reader."""
     if a < 0:
-        return f"-{_held(ranked_number(-a), PRODUCT)}", SUM
+        return f"-{held(ranked_number(-a), PRODUCT)}", SUM
     a = Fraction(a)
     try:
         value = float(a)
@@ -111,6 +127,6 @@ def ranked_number(a: Number) -> RankedText:
     return f"{float(a.numerator)!r}/{float(a.denominator)!r}", PRODUCT
 
 
-def _held(text: RankedText, strength: int) -> str:
+def held(text: RankedText, strength: int) -> str:
     """The text, in parentheses where it holds together less than it must."""
     return text[0] if text[1] >= strength else f"({text[0]})"

@@ -1,36 +1,30 @@
-"""The user's names -> identifiers of C and Python, no two alike."""
+"""The user's names -> identifiers of a language, no two alike."""
 
 from __future__ import annotations
 
-import keyword
 import re
 import unicodedata
 from collections.abc import Container, Iterable
 
-C_WORDS = frozenset(
-    "auto break case char const continue default do double else enum extern float for goto if inline int long "
-    "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
-    "asm main near far huge linux unix errno complex imaginary I bool true false NULL NAN INFINITY HUGE_VAL".split()
-)
 MATH_WORDS = frozenset(
     "acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 "
     "log1p log2 logb modf cbrt fabs hypot pow sqrt erf erfc lgamma tgamma gamma ceil floor nearbyint rint lrint round "
     "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
     "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
 )
-OWN_WORDS = frozenset("between parts t x p c inputs dx out given n constants evaluate math float SIZE".split())
-RESERVED = C_WORDS | MATH_WORDS | OWN_WORDS | frozenset(keyword.kwlist) | frozenset(keyword.softkwlist)
+OWN_WORDS = frozenset("between acting t x p c inputs dx out given n constants evaluate math float SIZE".split())
+RESERVED = MATH_WORDS | OWN_WORDS
 # our own variables, functions and macros, and what C keeps for itself
 LOCAL = re.compile(
     r"[vi][0-9]+|samples[0-9]+|solve.*|.*_(rhs|reactions|inverse).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
 )
 
 
-def identifiers(names: Iterable[str], taken: Container[str] = ()) -> dict[str, str]:
+def identifiers(names: Iterable[str], taken: Container[str]) -> dict[str, str]:
     """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot.
 
     Args:
-        taken: words that stand for something else.
+        taken: words of the language, and what stands for something else.
     """
     chosen: dict[str, str] = {}
     for name in names:

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Literal
 
 from eomgen.codegen import factorization
+from eomgen.codegen.lowered import INT, Table
 from eomgen.codegen.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.assembly import Assembly
@@ -70,14 +71,33 @@ class Solve:
         return self.plain, zeros_with_ties(self.matrix, self.border)
 
     @property
-    def lists(self) -> tuple[tuple[PlaceLists, PlaceLists, PlaceLists], ...]:
-        """The same as plain lists, as codegen/solving.py reads them."""
-        return tuple((way.partners, way.reach, way.rows) for way in self.zeros)
+    def tables(self) -> list[Table]:
+        """The same as lists, each with where its parts begin, as codegen/kernels.py reads them."""
+        ways = self.zeros
+        return [
+            Table("N", (len(self.matrix),), INT),
+            Table("K", (len(self.border),), INT),
+            *_joined("PARTNER", "FIRST", [way.partners for way in ways]),
+            *_joined("REACH", "START", [way.reach for way in ways]),
+            *_joined("ROW", "FROM", [way.rows for way in ways]),
+        ]
 
     @property
     def operations(self) -> int:
         """L D L^T, and with a border the system of the multipliers, made and solved, and all solved once more."""
         return self.plain.operations
+
+
+def _joined(name: str, begin: str, ways: Sequence[PlaceLists]) -> tuple[Table, Table]:
+    """The lists of both ways as one, and where each begins; of each way where its last one ends too."""
+    found: list[int] = []
+    starts: list[int] = []
+    for places in ways:
+        for part in places:
+            starts.append(len(found))
+            found += part
+        starts.append(len(found))
+    return Table(name, found), Table(begin, starts)
 
 
 ProgramStatement = Assign | Solve

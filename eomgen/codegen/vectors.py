@@ -8,9 +8,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.program import Program, Solve
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.codegen.solving import solve_bordered
 from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import DerivationError
@@ -66,10 +66,9 @@ def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic
 def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
     n, k = len(solve.matrix), len(solve.border)
     rows = n * (n + 1) // 2
-    M = [entries[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
-    J = [entries[rows + m * n : rows + (m + 1) * n] for m in range(k)]
-    right = entries[rows + k * n :]
-    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.lists), strict=True))
+    M = [entries[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for i in range(n) for j in range(n)]
+    J, right = entries[rows : rows + k * n], entries[rows + k * n :]
+    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.tables), strict=True))
 
 
 def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> TestVector:

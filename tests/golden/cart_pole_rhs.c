@@ -27,8 +27,8 @@ void cart_pole_constants(const double *p, double *c)
     const double g = p[3];
     c[0] = M + m;
     c[1] = m*l;
-    c[2] = m*(l*l);
-    c[3] = l*(m*g);
+    c[2] = l*(m*g);
+    c[3] = 1.0/(m*(l*l));
 }
 
 void cart_pole_evaluate(double t, const double *x, const double *p, const double *c, const double *inputs, double *dx)
@@ -38,21 +38,22 @@ void cart_pole_evaluate(double t, const double *x, const double *p, const double
     const double theta = x[1];
     const double x_dot = x[2]; /* x' */
     const double theta_dot = x[3]; /* theta' */
-    double F;
+    double acting[1] = {0};
     if (inputs != NULL) {
-        F = inputs[0];
+        acting[0] = inputs[0];
     } else {
-        F = 0.0;
+        acting[0] = 0.0;
     }
+    const double F = acting[0];
     const double v1 = cos(theta)*c[1];
     const double v2 = sin(theta);
-    const double v3 = c[3]*v2;
-    const double v4 = v1/c[2];
+    const double v3 = c[2]*v2;
+    const double v4 = v1*c[3];
     const double v5 = (F + theta_dot*theta_dot*(c[1]*v2) + v3*v4)/(c[0] - v1*v4);
     dx[0] = x_dot;
     dx[1] = theta_dot;
     dx[2] = v5;
-    dx[3] = -(v3/c[2] + v4*v5);
+    dx[3] = -(v3*c[3] + v4*v5);
 }
 
 void cart_pole_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)
@@ -67,7 +68,8 @@ void cart_pole_many(size_t n, const double *t, const double *x, const double *p,
     double c[4];
     cart_pole_constants(p, c);
     for (size_t i = 0; i < n; i++)
-        cart_pole_evaluate(t[i], x + i*4, p, c, inputs ? inputs + i*1 : NULL, dx + i*4);
+        cart_pole_evaluate(t[i], x + i*4, p, c, inputs ? inputs + i*1 : NULL,
+            dx + i*4);
 }
 
 #ifdef EOMGEN_SELFTEST

@@ -34,12 +34,12 @@ void double_pendulum_reactions_constants(const double *p, double *c)
     const double v3 = l2*v2;
     const double v4 = m2*l1;
     c[0] = v2;
-    c[1] = v3;
-    c[2] = 1.0/3.0*v3;
-    c[3] = 0.5*v1 + v4;
-    c[4] = 1.0/3.0*(l1*v1) + l1*v4;
-    c[5] = m2*g;
-    c[6] = m1*g;
+    c[1] = 1.0/3.0*v3;
+    c[2] = 0.5*v1 + v4;
+    c[3] = 1.0/3.0*(l1*v1) + l1*v4;
+    c[4] = m2*g;
+    c[5] = m1*g;
+    c[6] = 1.0/v3;
 }
 
 void double_pendulum_reactions_evaluate(double t, const double *x, const double *p, const double *c, const double *inputs, double *out)
@@ -69,17 +69,17 @@ void double_pendulum_reactions_evaluate(double t, const double *x, const double 
     const double v12 = theta1_dot*theta1_dot;
     const double v13 = theta2_dot*theta2_dot;
     const double v14 = 0.5*(v7*(g + v4*v12)) - 0.5*(v8*(v3*v12));
-    const double v15 = g*(v1*c[3]) + (v14 + (0.5*(v3*(v8*v13)) - 0.5*(v4*(v7*v13))));
-    const double v16 = v11/c[1];
-    const double v17 = c[4] + (c[2] + v9 + v10) + c[2] - 2.0*(c[2] + v11) - 3.0*(v11*v16);
+    const double v15 = g*(v1*c[2]) + (v14 + (0.5*(v3*(v8*v13)) - 0.5*(v4*(v7*v13))));
+    const double v16 = v11*c[6];
+    const double v17 = c[3] + (c[1] + v9 + v10) + c[1] - 2.0*(c[1] + v11) - 3.0*(v11*v16);
     const double v18 = (3.0*(v14*v16) - (v15 - v14))/v17;
-    const double v19 = 3.0*(v14/c[1]) + 3.0*(v16*v18);
+    const double v19 = 3.0*(v14*c[6]) + 3.0*(v16*v18);
     const double v20 = l1*(v2*v18 - theta1_dot*(theta1_dot*v1));
     const double v21 = l1*(v1*v18 + theta1_dot*(theta1_dot*v2));
     const double v22 = m2*(v20 - 0.5*(l2*(v6*v19 + theta2_dot*(theta2_dot*v5))));
-    const double v23 = m2*(v21 + 0.5*(l2*(theta2_dot*(theta2_dot*v6) - v5*v19))) + c[5];
+    const double v23 = m2*(v21 + 0.5*(l2*(theta2_dot*(theta2_dot*v6) - v5*v19))) + c[4];
     out[0] = 0.5*(m1*v20) + v22;
-    out[1] = 0.5*(m1*v21) + c[6] + v23;
+    out[1] = 0.5*(m1*v21) + c[5] + v23;
     out[2] = v22;
     out[3] = v23;
 }
@@ -96,7 +96,8 @@ void double_pendulum_reactions_many(size_t n, const double *t, const double *x, 
     double c[7];
     double_pendulum_reactions_constants(p, c);
     for (size_t i = 0; i < n; i++)
-        double_pendulum_reactions_evaluate(t[i], x + i*4, p, c, inputs ? inputs + i*0 : NULL, out + i*4);
+        double_pendulum_reactions_evaluate(t[i], x + i*4, p, c, inputs ? inputs + i*0 : NULL,
+            out + i*4);
 }
 
 #ifdef EOMGEN_SELFTEST

@@ -6,11 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.codegen.expressions import CallText, used_once
-from eomgen.codegen.names import identifiers
-from eomgen.codegen.program import Assign, Program, Solve
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.traversal import order
+import numpy as np
+
+from eomgen.codegen.program import Program
 
 
 @dataclass(frozen=True)
@@ -25,8 +23,8 @@ class Functions:
     """
 
     constants: Callable[[Any], Any]
-    one: Callable[..., Any]
-    many: Callable[..., Any]
+    one: Callable[..., np.ndarray]
+    many: Callable[..., np.ndarray]
     address: Callable[[Any], Any] | None = None
 
 
@@ -121,81 +119,6 @@ class Target:
     files: Callable[[Program, str, Description], dict[str, str]]
     load: Callable[[Program], Functions]
     run: Callable[[Mapping[str, str], Program, str, Role], Called] | None = None
-
-
-@dataclass(frozen=True)
-class Layout:
-    """A program cut into function bodies, with the names that its text uses.
-
-    Args:
-        names: identifier of each symbol.
-        kept: hoisted nodes that the later bodies read, in the order of the array of constants.
-        once: nodes written where they are used.
-        before, solve, after: the statements around the solve (None: everything is in `before`).
-        sampled: the functions through samples that are called, samples1 first, by their number in the graph.
-        ops: the operations that the text takes.
-    """
-
-    program: Program
-    names: dict[Node, str]
-    kept: tuple[Node, ...]
-    once: frozenset[Node]
-    before: tuple[Node, ...]
-    solve: Solve | None
-    after: tuple[Node, ...]
-    sampled: dict[int, str]
-    ops: frozenset[str]
-
-    def calls(self, call: CallText) -> CallText:
-        """How functions are called, those through samples by their names here."""
-        return lambda op, arguments: call(*self._called(op, arguments))
-
-    def _called(self, op: str, arguments: list[str]) -> tuple[str, list[str]]:
-        return (self.sampled[int(float(arguments[1]))], arguments[:1]) if op == "sampled" else (op, arguments)
-
-    def loads(self, symbols: Sequence[Node], used: frozenset[Node]) -> list[tuple[int, Node]]:
-        """(place, symbol) of those arguments that are used."""
-        return [(place, symbol) for place, symbol in enumerate(symbols) if symbol in used]
-
-
-def layout(program: Program) -> Layout:
-    """The bodies of a program: constants from parameters, the inputs' own values, and the rest."""
-    symbols = program.symbols
-    arguments = [*program.moving, *symbols.parameters.values(), *symbols.inputs.values()]
-    solve = next((s for s in program.statements if type(s) is Solve), None)
-    unknowns = [x for x in (solve.unknowns if solve else ()) if x not in arguments]
-    arrays = ("a", "tau") if program.accelerations else ()
-    words = identifiers([x.name for x in [*arguments, *unknowns]], arrays)
-    names = {x: words[x.name] for x in [*arguments, *unknowns]} | {symbols.t: "t"}
-    cut = program.statements.index(solve) if solve else len(program.statements)
-    before, after = _nodes(program.statements[:cut]), _nodes(program.statements[cut + 1 :])
-    written = (*(solve.entries if solve else ()), *program.outputs)
-    preamble, hoisted = _nodes(program.preamble), _nodes(program.hoisted)
-    read = _read([*before, *after, *preamble], [*written, *program.defaults])
-    kept = tuple(x for x in hoisted if x in read)
-    once = used_once([(hoisted, ()), (before + after, written), (preamble, program.defaults)])
-    once |= frozenset(kept) - _read(hoisted, ())  # stored where they are computed
-    acts = any(x in used_symbols(written, kept) for x in symbols.inputs.values())
-    computed = (*hoisted, *(preamble if acts else ()), *before, *after)
-    numbers = dict.fromkeys(x.args[1] for x in computed if x.op == "sampled")
-    sampled = {number: f"samples{place}" for place, number in enumerate(numbers, start=1)}
-    ops = frozenset(x.op for x in computed)
-    return Layout(program, names, kept, once, before, solve, after, sampled, ops)
-
-
-def used_symbols(values: Sequence[Scalar], stop: Sequence[Node]) -> frozenset[Node]:
-    """The symbols from which values are computed; what is in `stop` was computed elsewhere."""
-    return frozenset(x for x in order(values, frozenset(stop)) if x.op == "symbol")
-
-
-def _nodes(statements: Sequence[Any]) -> tuple[Node, ...]:
-    return tuple(s.node for s in statements if type(s) is Assign)
-
-
-def _read(nodes: Sequence[Node], values: Sequence[Scalar]) -> frozenset[Node]:
-    """What is read by the nodes and values themselves, signs looked through."""
-    found = [*(a for node in nodes for a in node.args), *values]
-    return frozenset(x.args[0] if x.op == "neg" else x for x in found if type(x) is Node)
 
 
 def header(program: Program, description: Description) -> list[str]:

@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-import inspect
+import keyword
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eomgen.codegen import solving
-from eomgen.codegen.expressions import ExpressionWriter
-from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Description,
-    Functions,
-    Layout,
-    Role,
-    Target,
-    header,
-    layout,
-    used_symbols,
-)
-from eomgen.codegen.targets.samples import python_samples
-from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric import tolerances
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowering import Lowered, lowered
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets.base import RHS, Called, Description, Functions, Role, Target, header
 
+PYTHON = Language(
+    reserved=frozenset(keyword.kwlist) | frozenset(keyword.softkwlist),
+    functions={},
+    defined={},
+    words={"not": "not ", "nan": "math.nan", "given": "inputs is not None"},
+    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
+    at="{array}[{index}]",
+    let="{declared} = {value}",
+    put="{place} = {value}",
+    call="{function}({arguments})",
+    back="return {value}",
+    arrays=dict.fromkeys((CHANGED, ROOM), "{name} = [0.0]*({size})") | {PLACES: "{name} = [0]*({size})"},
+    tables={INT: "{name} = {value}", INDICES: "{name} = {values}", READ: "{name} = {values}"},
+    listed=("[", "]"),
+    loop=("for {name} in range({first}, {last}):", ""),
+    down=("for {name} in range({last} - 1, {first} - 1, -1):", ""),
+    branch=("if {condition}:", "else:", ""),
+    function=("def {declared}({arguments}):", ""),
+    out=("def {name}({arguments}):\n    {out} = [0.0]*{size}", "    return {out}"),
+    remark="# {text}",
+)
 SCALARS = {
     **{name: f"math.{name}" for name in "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()},
     "abs": "abs",
@@ -35,7 +42,6 @@ SCALARS = {
     "less": "lambda a, b: float(a < b) if a == a and b == b else a + b",
     "less_equal": "lambda a, b: float(a <= b) if a == a and b == b else a + b",
     "select": "lambda given, a, b: b if given == 0 else a if given == given else given",
-    "solve": "_solved",
 }
 ARRAYS = {
     **{name: f"np.{name}" for name in "sqrt sin cos sinh cosh tanh exp log abs sign".split()},
@@ -45,24 +51,31 @@ ARRAYS = {
     "less": "lambda a, b: np.where(a < b, 1.0, np.where(a >= b, 0.0, np.nan))",
     "less_equal": "lambda a, b: np.where(a <= b, 1.0, np.where(a > b, 0.0, np.nan))",
     "select": "lambda given, a, b: np.where(given == 0, b, np.where(given == given, a, given))",
-    "solve": "_solved_each",
 }
 
-_SOLVED = '''
-def _solved(values):
-    """The unknowns from the lower triangle of M, J, f and g, one after the other in `values`."""
-    n, k = SIZES
-    rows = n * (n + 1) // 2
-    M = [values[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
-    J = [values[rows + m * n : rows + (m + 1) * n] for m in range(k)]
-    right = values[rows + k * n :]
-    return solve_bordered(M, J, right[:n], right[n:], ZEROS)
+_EACH = '''
 
+def _each(solve):
+    """A solve at many states: lists of which some entries are arrays; the later half of them is changed."""
+    def solve_each(*lists):
+        entries = np.broadcast_arrays(*(value for values in lists for value in values))
+        states = np.stack(entries, axis=-1).reshape(-1, len(entries))
+        found = np.empty_like(states)
+        for state, row in zip(found, states.tolist()):
+            parts, start = [], 0
+            for values in lists:
+                parts.append(row[start : start + len(values)])
+                start += len(values)
+            solve(*parts)
+            state[:] = [value for part in parts for value in part]
+        start = 0
+        for place, values in enumerate(lists):
+            if 2*place >= len(lists):
+                values[:] = found.T[start : start + len(values)]
+            start += len(values)
 
-def _solved_each(values):
-    """The same at many states: an array of unknowns by states."""
-    states = np.stack(np.broadcast_arrays(*values), axis=-1).reshape(-1, len(values))
-    return np.array([_solved(state) for state in states.tolist()]).T
+    return solve_each
+
 '''
 
 _CALLS = '''
@@ -96,7 +109,7 @@ def constants(p):
 def evaluate(t, x, p, c, inputs):
     """{result} at one state, all lists of floats; outside a function's domain nan, as in C."""
     try:
-        return _evaluate(t, x, p, c, inputs)
+        return _evaluate(t, x, {states_of_x}p, c, inputs)
     except (ValueError, ArithmeticError):
         given = None if inputs is None else [inputs]
         return evaluate_many(np.array([t]), np.array([x]), p, given)[0].tolist()
@@ -107,7 +120,7 @@ def evaluate_many(t, x, p, inputs):
     with np.errstate(all="ignore"):
         p = [np.float64(value) for value in p]
         rows = None if inputs is None else np.asarray(inputs, dtype=float).T
-        {result} = _evaluate_arrays(t, x.T, p, _constants_of_arrays(p), rows)
+        {result} = _evaluate_arrays(t, x.T, {rows_of_x}p, _constants_of_arrays(p), rows)
         return np.stack([np.broadcast_to(value, t.shape) for value in {result}], axis=-1) if {result} else \
 np.empty((len(t), 0))
 '''
@@ -115,17 +128,17 @@ np.empty((len(t), 0))
 
 def python_text(program: Program, stem: str, role: Role = RHS) -> str:
     """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many, or what the role says."""
-    bodies, given = layout(program), len(program.accelerations)
-    used = sorted((bodies.ops & SCALARS.keys()) | ({"solve"} if bodies.solve else set()))
-    written = textwrap.indent("\n".join([*_constants(bodies), "", *_evaluate(bodies)]), "    ")
+    made, given, states = lowered(program, PYTHON, role.result), len(program.accelerations), len(program.states)
     calls = _CALLS.format(
         main=role.main(stem),
         others=role.others(stem),
         result=role.result,
-        scalars=", ".join(SCALARS[name] for name in used),
-        arrays=", ".join(ARRAYS[name] for name in used),
+        scalars=", ".join([*(SCALARS[op] for op in _ops(made)), *made.called]),
+        arrays=", ".join([*(ARRAYS[op] for op in _ops(made)), *map(_of_arrays, made.called)]),
         outputs=len(program.outputs),
-        states=len(program.states),
+        states=states,
+        states_of_x=f"x[{states}:], " if given else "",
+        rows_of_x=f"x.T[{states}:], " if given else "",
         a="a, " if given else "",
         all_x="[*x, *a]" if given else "x",
         a_size=f"a n x {given}, " if given else "",
@@ -133,20 +146,27 @@ def python_text(program: Program, stem: str, role: Role = RHS) -> str:
         parameters=len(program.symbols.parameters),
         inputs=len(program.symbols.inputs),
     )
+    kernels = [*map(PYTHON.holds, made.tables), *("\n\n" + "\n".join(PYTHON.defines(f)) for f in made.kernels)]
+    bodies = "\n\n".join("\n".join(PYTHON.defines(f)) for f in made.bodies)
     return "\n".join(
         [
             "import math\n\nimport numpy as np\n",
-            _solving_text(bodies.solve) if bodies.solve else "",
-            f"{python_samples(bodies)}\ndef _written({', '.join(used)}):",
-            '    """The functions in the arithmetic of the functions given."""',
-            "",
-            written,
-            "",
-            "    return constants, evaluate",
-            "",
+            *kernels,
+            _EACH if any(name.startswith("solve") for name in made.called) else "\n",
+            f"def _written({', '.join([*_ops(made), *made.called])}):",
+            '    """The functions in the arithmetic of the functions given."""\n',
+            textwrap.indent(f"{bodies}\n\nreturn constants, evaluate\n", "    "),
             calls,
         ]
     )
+
+
+def _ops(made: Lowered) -> list[str]:
+    return sorted(made.ops & SCALARS.keys())
+
+
+def _of_arrays(kernel: str) -> str:
+    return f"_each({kernel})" if kernel.startswith("solve") else f"np.vectorize({kernel}, otypes=[float])"
 
 
 def numpy_functions(program: Program) -> Functions:
@@ -188,93 +208,6 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
         return found
 
     return called
-
-
-def _constants(bodies: Layout) -> list[str]:
-    writer = ExpressionWriter(bodies.calls(_call), bodies.names)
-    parameters = list(bodies.program.symbols.parameters.values())
-    lines = _unpacked(bodies, "p", parameters, used_symbols(bodies.kept, ())) if bodies.kept else []
-    lines += _assignments(writer, [s.node for s in bodies.program.hoisted], bodies.once)
-    lines.append(f"return [{', '.join(writer.value(x) for x in bodies.kept)}]")
-    return _function("def constants(p):", lines)
-
-
-def _evaluate(bodies: Layout) -> list[str]:
-    program, solve = bodies.program, bodies.solve
-    symbols = program.symbols
-    inputs = list(symbols.inputs.values())
-    written = (*(solve.entries if solve else ()), *program.outputs)
-    used = used_symbols(written, bodies.kept)
-    given = [x for x in inputs if x in used]
-    loaded = used | (used_symbols(program.defaults, bodies.kept) if given else frozenset())
-    writer = ExpressionWriter(bodies.calls(_call), _names(bodies))
-    lines = _unpacked(bodies, "x", program.moving, loaded)
-    lines += _unpacked(bodies, "p", list(symbols.parameters.values()), loaded)
-    if bodies.kept:
-        lines.append(f"{_targets(_constant_names(bodies))} = c")
-    lines += _inputs(bodies, inputs) if given else []
-    lines += _assignments(writer, bodies.before, bodies.once)
-    if solve:
-        lines += _solve(solve, writer, bodies)
-    lines += _assignments(writer, bodies.after, bodies.once)
-    lines.append(f"return [{', '.join(writer.value(x) for x in program.outputs)}]")
-    return _function("def evaluate(t, x, p, c, inputs):", lines)
-
-
-def _inputs(bodies: Layout, inputs: Sequence[Node]) -> list[str]:
-    """All inputs from the caller, or all by the model's own expressions."""
-    program = bodies.program
-    writer = ExpressionWriter(bodies.calls(_call), _names(bodies), prefix="i")
-    own = _assignments(writer, [s.node for s in program.preamble], bodies.once)
-    own += [f"{bodies.names[x]} = {writer.value(d)}" for x, d in zip(inputs, program.defaults, strict=True)]
-    given = f"{_targets([bodies.names[x] for x in inputs])} = inputs"
-    return ["if inputs is not None:", f"    {given}", "else:", *(f"    {line}" for line in own)]
-
-
-def _solve(solve: Solve, writer: ExpressionWriter, bodies: Layout) -> list[str]:
-    values = ", ".join(writer.value(x) for x in solve.entries)
-    for x in solve.unknowns:
-        writer.define(x, bodies.names[x])
-    unknowns = _targets([bodies.names[x] for x in solve.unknowns])
-    return [f"{unknowns} = solve([{values}])"]
-
-
-def _unpacked(bodies: Layout, array: str, symbols: Sequence[Node], used: frozenset[Node]) -> list[str]:
-    if not any(x in used for x in symbols):
-        return []
-    return [f"{_targets([bodies.names[x] for x in symbols])} = {array}"]
-
-
-def _targets(names: Sequence[str]) -> str:
-    return f"({', '.join(names)},)"
-
-
-def _constant_names(bodies: Layout) -> list[str]:
-    return [f"_c{place}" for place in range(len(bodies.kept))]
-
-
-def _names(bodies: Layout) -> dict[Node, str]:
-    return bodies.names | dict(zip(bodies.kept, _constant_names(bodies), strict=True))
-
-
-def _assignments(writer: ExpressionWriter, nodes: Sequence[Node], once: frozenset[Node]) -> list[str]:
-    return [f"{variable} = {text}" for variable, text in writer.assignments(nodes, once)]
-
-
-def _function(head: str, lines: Sequence[str]) -> list[str]:
-    return [head, *(f"    {line}" for line in lines)]
-
-
-def _call(op: str, arguments: list[str]) -> str:
-    return f"{op}({', '.join(arguments)})"
-
-
-def _solving_text(solve: Solve) -> str:
-    text = inspect.getsource(solving)
-    sizes = f"SIZES = {len(solve.matrix)}, {len(solve.border)}  # accelerations, multipliers"
-    zeros = f"ZEROS = {solve.lists!r}  # what may not be zero in the factors: (partners, reach, rows)"
-    limits = [f"{name} = {getattr(tolerances, name)!r}" for name in solving.TOLERANCES]
-    return "\n".join([*limits, "", text[text.index("\ndef ") :], "", sizes, zeros, _SOLVED])
 
 
 TARGET = Target("numpy", "Python with numpy", python_text, numpy_files, numpy_functions, run)

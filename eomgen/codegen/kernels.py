@@ -1,0 +1,365 @@
+"""The algorithms with loops that emitted code calls, written once: every language prints them, Python runs them.
+
+A function here is made of what a lowered program has: a name for a value that stays, arrays that change (a number that
+changes is an array of one), `for` over range, `if`, calls, `return`. The kinds of its arguments are named; sizes and
+lists are constants of each program; arithmetic is + - * /, so that it runs over any scalar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eomgen.symbolic.numeric.tolerances import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED
+
+Int = int
+Real = float
+Ints = Sequence[int]
+Reals = Sequence[float]  # that are read
+Work = list[float]  # that are changed
+Places = list[int]
+
+nan = float("nan")
+
+# Of one solve: N accelerations, K multipliers; what may not be zero in the factors of M (w = 0) and of M + J^T W J
+# (w = 1): in column j of L the rows PARTNER[e], e from FIRST[w*(N + 1) + j] to the next one's; in row m of L^-1 J^T the
+# places REACH[e], e from START[w*(K + 1) + m]; at place j its rows ROW[e], e from FROM[w*(N + 1) + j].
+N = K = 0
+PARTNER: Ints = ()
+FIRST: Ints = ()
+REACH: Ints = ()
+START: Ints = ()
+ROW: Ints = ()
+FROM: Ints = ()
+
+
+def zeros(n: int) -> Work:
+    """An array of n numbers."""
+    return [0.0] * n
+
+
+def room(n: int) -> Work:
+    """An array of n numbers that are written before they are read."""
+    return [0.0] * n
+
+
+def places(n: int) -> Places:
+    """An array of n indices."""
+    return [0] * n
+
+
+def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
+    """f, g become a, lam of M a - J^T lam = f, J a = g (upper triangle of M), or nan.
+
+    M = L D L^T,  Y = L^-1 J^T,  (Y^T D^-1 Y) lam = g - Y^T D^-1 L^-1 f,  a = L^-T D^-1 (L^-1 f + Y lam)
+
+    Rows that depend on others have lam 0. Where M is no more positive, M + J^T W J stands in its place, and
+    f + J^T W g in that of f. All is done once more for what rounding left.
+    """
+    L = room(N * N)
+    weight = zeros(K)
+    w = chosen(M, J, L, weight)
+    if w < 0:
+        spoil(f, g)
+        return
+    mobility = room(N)
+    Y = room(K * N)
+    S = zeros(K * K)
+    order = places(K)
+    flexibility(w, L, J, mobility, Y, S)
+    rank = eliminated(S, order)
+    a = zeros(N)
+    lam = zeros(K)
+    for again in range(2):
+        left = room(N)
+        gap = room(K)
+        for i in range(N):
+            left[i] = f[i]
+        for m in range(K):
+            gap[m] = g[m]
+        if again > 0:
+            subtract(w, M, J, a, lam, left, gap)
+        push(w, J, weight, gap, left)
+        for j in range(N):
+            forward(w, L, j, left)
+        for m in range(K):
+            for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+                j = REACH[e]
+                gap[m] -= Y[m * N + j] * (left[j] * mobility[j])
+        multipliers(S, order, rank, gap)
+        for m in range(K):
+            pull = gap[m]
+            for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+                j = REACH[e]
+                left[j] += Y[m * N + j] * pull
+        backward(w, L, left)
+        for i in range(N):
+            a[i] += left[i]
+        for m in range(K):
+            lam[m] += gap[m]
+    for i in range(N):
+        f[i] = a[i]
+    for m in range(K):
+        g[m] = lam[m]
+
+
+def solve_plain(M: Work, f: Work) -> None:
+    """f becomes a of M a = f (upper triangle of M, which is lost); all nan where M is not positive definite."""
+    if factored(0, ROUNDING, M) == 0:
+        for i in range(N):
+            f[i] = nan
+        return
+    for j in range(N):
+        forward(0, M, j, f)
+    backward(0, M, f)
+
+
+def factored(w: Int, least: Real, M: Work) -> Int:
+    """M = L D L^T in place, by rows of L^T; 0 where a pivot is no more than its least part of the diagonal."""
+    whole = room(N)
+    for j in range(N):
+        whole[j] = M[j * N + j]
+    for j in range(N):
+        row = j * N
+        d = M[row + j]
+        if not d > least * whole[j]:
+            return 0
+        last = FIRST[w * (N + 1) + j + 1]
+        for e in range(FIRST[w * (N + 1) + j], last):
+            i = PARTNER[e]
+            factor = M[row + i] / d
+            for h in range(e, last):
+                k = PARTNER[h]
+                M[i * N + k] -= factor * M[row + k]
+            M[row + i] = factor
+    return 1
+
+
+def forward(w: Int, L: Reals, j: Int, y: Work) -> None:
+    """Column j's part of y = L^-1 y."""
+    row = j * N
+    push = y[j]
+    for e in range(FIRST[w * (N + 1) + j], FIRST[w * (N + 1) + j + 1]):
+        i = PARTNER[e]
+        y[i] -= L[row + i] * push
+
+
+def backward(w: Int, L: Reals, y: Work) -> None:
+    """y = (D L^T)^-1 y."""
+    for j in reversed(range(0, N)):
+        row = j * N
+        y[j] = y[j] / L[row + j]
+        for e in range(FIRST[w * (N + 1) + j], FIRST[w * (N + 1) + j + 1]):
+            i = PARTNER[e]
+            y[j] -= L[row + i] * y[i]
+
+
+def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
+    """L and D of M (0), or where M is not relied on without the rows, of M + J^T W J (1); -1 of neither."""
+    for i in range(N * N):
+        L[i] = M[i]
+    if factored(0, DEGENERATE, L) == 1:
+        return 0
+    for i in range(N * N):
+        L[i] = M[i]
+    weigh(M, J, weight)
+    for m in range(K):
+        last = START[K + 1 + m + 1]
+        for e in range(START[K + 1 + m], last):
+            for h in range(e, last):
+                L[REACH[e] * N + REACH[h]] += weight[m] * J[m * N + REACH[e]] * J[m * N + REACH[h]]
+    if factored(1, ROUNDING, L) == 1:
+        return 1
+    return -1
+
+
+def weigh(M: Reals, J: Reals, weight: Work) -> None:
+    """W: with it M + J^T W J is positive definite where M is so on J a = 0 only."""
+    mean = zeros(1)
+    for i in range(N):
+        mean[0] += M[i * N + i] / N
+    if not mean[0] > 0:
+        mean[0] = 1.0
+    for m in range(K):
+        for i in range(N):
+            mass = M[i * N + i]
+            if mass > 0:
+                weight[m] += J[m * N + i] * J[m * N + i] / mass
+            else:
+                weight[m] += J[m * N + i] * J[m * N + i] / mean[0]
+    invert(weight)
+
+
+def invert(size: Work) -> None:
+    """Each becomes 1/size; 0 of what is rounding: the sizes are squares of lengths."""
+    nothing = zeros(1)
+    for m in range(K):
+        if size[m] > nothing[0]:
+            nothing[0] = size[m]
+    for m in range(K):
+        if size[m] > ROUNDING_SQUARED * nothing[0]:
+            size[m] = 1.0 / size[m]
+        else:
+            size[m] = 0.0
+
+
+def flexibility(w: Int, L: Reals, J: Reals, mobility: Work, Y: Work, S: Work) -> None:
+    """D^-1, Y = L^-1 J^T and S = Y^T D^-1 Y = J M^-1 J^T (lower triangle)."""
+    column = room(K)
+    for i in range(K * N):
+        Y[i] = J[i]
+    for m in range(K):
+        row = m * N
+        for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+            j = REACH[e]
+            push = Y[row + j]
+            for h in range(FIRST[w * (N + 1) + j], FIRST[w * (N + 1) + j + 1]):
+                i = PARTNER[h]
+                Y[row + i] -= L[j * N + i] * push
+    for j in range(N):
+        mobility[j] = 1.0 / L[j * N + j]
+        first = FROM[w * (N + 1) + j]
+        last = FROM[w * (N + 1) + j + 1]
+        for e in range(first, last):
+            column[e - first] = Y[ROW[e] * N + j]
+        for e in range(first, last):
+            row = ROW[e] * K
+            part = column[e - first] * mobility[j]
+            for h in range(first, e + 1):
+                S[row + ROW[h]] += part * column[h - first]
+
+
+def eliminated(S: Work, order: Places) -> Int:
+    """S factored in place, largest pivot first, dependent rows passed over; the rank.
+
+    A row depends on those before it where its pivot, the squared sine of its angle to them, is no more than PIVOT.
+    """
+    whole = room(K)
+    column = room(K)
+    pivot = places(1)
+    best = zeros(1)
+    for m in range(K):
+        order[m] = m
+        whole[m] = S[m * K + m]
+    invert(whole)
+    for c in range(K):
+        pivot[0] = -1
+        best[0] = PIVOT
+        for m in range(c, K):
+            if S[m * K + m] * whole[m] > best[0]:
+                best[0] = S[m * K + m] * whole[m]
+                pivot[0] = m
+        if pivot[0] < 0:
+            return c
+        if pivot[0] > c:
+            exchanged(S, whole, order, c, pivot[0])
+        d = S[c * K + c]
+        for i in range(c + 1, K):
+            column[i] = S[i * K + c]
+        for i in range(c + 1, K):
+            row = i * K
+            factor = column[i] / d
+            if factor != 0:
+                for j in range(c + 1, i + 1):
+                    S[row + j] -= factor * column[j]
+                S[row + c] = factor
+    return K
+
+
+def exchanged(S: Work, whole: Work, order: Places, c: Int, p: Int) -> None:
+    """Rows and columns c < p of S (lower triangle) exchanged, and what belongs to them."""
+    kept = order[c]
+    order[c] = order[p]
+    order[p] = kept
+    exchange(whole, c, p)
+    exchange(S, c * K + c, p * K + p)
+    for j in range(c):
+        exchange(S, c * K + j, p * K + j)
+    for i in range(c + 1, p):
+        exchange(S, i * K + c, p * K + i)
+    for i in range(p + 1, K):
+        exchange(S, i * K + c, i * K + p)
+
+
+def exchange(values: Work, i: Int, j: Int) -> None:
+    """Two numbers exchanged."""
+    kept = values[i]
+    values[i] = values[j]
+    values[j] = kept
+
+
+def multipliers(S: Reals, order: Places, rank: Int, r: Work) -> None:
+    """r becomes lam of S lam = r by the factors, 0 of the rows that were passed over."""
+    y = room(K)
+    for i in range(rank):
+        y[i] = r[order[i]]
+        for j in range(i):
+            y[i] -= S[i * K + j] * y[j]
+    for m in range(K):
+        r[m] = 0.0
+    for i in reversed(range(0, rank)):
+        y[i] = y[i] / S[i * K + i]
+        for j in range(i + 1, rank):
+            y[i] -= S[j * K + i] * y[j]
+        r[order[i]] = y[i]
+
+
+def push(w: Int, J: Reals, weight: Reals, gap: Reals, left: Work) -> None:
+    """left += J^T W gap."""
+    for m in range(K):
+        if weight[m] != 0:
+            pull = weight[m] * gap[m]
+            for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+                left[REACH[e]] += J[m * N + REACH[e]] * pull
+
+
+def subtract(w: Int, M: Reals, J: Reals, a: Reals, lam: Reals, left: Work, gap: Work) -> None:
+    """left -= M a - J^T lam,  gap -= J a."""
+    for j in range(N):
+        row = j * N
+        left[j] -= M[row + j] * a[j]
+        for e in range(FIRST[w * (N + 1) + j], FIRST[w * (N + 1) + j + 1]):
+            i = PARTNER[e]
+            left[i] -= M[row + i] * a[j]
+            left[j] -= M[row + i] * a[i]
+    for m in range(K):
+        row = m * N
+        for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+            i = REACH[e]
+            left[i] += J[row + i] * lam[m]
+            gap[m] -= J[row + i] * a[i]
+
+
+def spoil(f: Work, g: Work) -> None:
+    """No value anywhere."""
+    for i in range(N):
+        f[i] = nan
+    for m in range(K):
+        g[m] = nan
+
+
+def through_samples(
+    t: Real, n: Int, closed: Int, steps: Ints, depth: Int, bounds: Reals, degree: Int, v: Reals
+) -> Real:
+    """A function of time by pieces, at t on the one that has k bounds at or before t.
+
+    ((v[0][k] s + v[1][k]) s + ...) + v[degree][k],  s = t - v[degree + 1][k]
+
+    Args:
+        n: of the bounds; one piece more.
+        closed: 1 where the last bound belongs to the piece before it.
+        steps: powers of two from above n/2 down to 1, depth of them: k is found bit by bit.
+        v: the coefficients, of the highest power first, and the origins; n + 1 of each.
+    """
+    k = places(1)
+    for i in range(depth):
+        if k[0] + steps[i] <= n:  # noqa: SIM102 (a language may look at both at once)
+            if bounds[k[0] + steps[i] - 1] <= t:
+                k[0] += steps[i]
+    if closed == 1:  # noqa: SIM102
+        if t == bounds[n - 1]:
+            k[0] = n - 1
+    s = t - v[(degree + 1) * (n + 1) + k[0]]
+    value = zeros(1)
+    for i in range(degree + 1):
+        value[0] = value[0] * s + v[i * (n + 1) + k[0]]
+    return value[0]
