@@ -1,4 +1,6 @@
-"""Report formats: the seam of ways to print a derivation. Each gives `name` and `render(derivation)`."""
+"""Report formats: the seam of ways to print a document. Each gives `name` and `render(document)`."""
+
+from collections.abc import Callable
 
 from eomgen.errors import UsageError
 from eomgen.report import json_form, latex, markdown, text
@@ -7,13 +9,13 @@ from eomgen.report.document import Document
 ALL = (text, latex, markdown, json_form)
 
 
-def rendered(derivation: Document, format: str = "text") -> str:
-    """The derivation in one of the formats of ALL: text, latex, markdown, json.
+def rendered(document: Document, format: str = "text") -> str:
+    """The document in one of the formats of ALL: text, latex, markdown, json.
 
     Raises:
         UsageError: an unknown format.
     """
-    formats = {member.name: member for member in ALL}
+    formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
     if format not in formats:
         raise UsageError(f"unknown format '{format}'", mend=f"one of {', '.join(formats)}")
-    return formats[format].render(derivation)
+    return formats[format](document)

@@ -19,7 +19,7 @@ from eomgen.report.motion_steps import Pair
 from eomgen.report.reaction_names import Lettered
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count
-from eomgen.report.statements import Formula, Law, Name, Omitted, Prose, Statement, Step
+from eomgen.report.statements import Formula, Law, Name, Omitted, Statement, Step, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.print.layout import terms
 from eomgen.symbolic.print.text import text_size
@@ -45,8 +45,8 @@ def reactions_table_step(letters: Lettered) -> Step:
         f"{count(len(balance.equations), 'equation')} for {count(n, 'reaction')} and the motion."
     )
     if not n:
-        return Step("unknowns", "Unknown reactions", (Prose(("Nothing reacts: no body is held by joints or ties.",)),))
-    return Step("unknowns", "Unknown reactions", (Prose((words,)), letters.table()))
+        return Step("unknowns", "Unknown reactions", (prose("Nothing reacts: no body is held by joints or ties."),))
+    return Step("unknowns", "Unknown reactions", (prose(words), letters.table()))
 
 
 def body_steps(reader: Reader, letters: Lettered) -> tuple[Step, ...]:
@@ -69,7 +69,7 @@ def body_steps(reader: Reader, letters: Lettered) -> tuple[Step, ...]:
 
 def _others(number: int) -> Step:
     words = f"{count(number, 'body', 'bodies')} more, each likewise: too long to print here; "
-    return Step("bodies", "The other bodies", (Prose((words, FULL, " prints them.")),))
+    return Step("bodies", "The other bodies", (prose(words, FULL, " prints them."),))
 
 
 def _body(
@@ -81,14 +81,14 @@ def _body(
     length = 0
     if inertia:
         where = "" if plane else ", in the axes of the body"
-        statements.append(Prose(("Inertia force and couple at the mass centre, ", INERTIA, f"{where}:")))
+        statements.append(prose("Inertia force and couple at the mass centre, ", INERTIA, f"{where}:"))
         for name, value in inertia:
             shown = reader.shown(value)
             statements.append(Formula((name, shown)))
             length += 0 if isinstance(shown, Omitted) else text_size(shown)
     words = "" if inertia else "No inertia force and no inertia couple. "
     words += "Everything on it is in balance, moments about the mass centre, "
-    statements.append(Prose((words, DALEMBERT, ":")))
+    statements.append(prose(words, DALEMBERT, ":"))
     for equation in equations:
         total = _balanced(reader, letters, equation)
         statements.append(Formula((total, 0)))
@@ -174,5 +174,5 @@ def _multipliers(system: System, letters: Lettered) -> tuple[Step, ...]:
             statements.append(Formula((lam, reaction)))
     if not statements:
         return ()
-    words = Prose(("Ties that the coordinates do not satisfy stay in the equations of motion by their reactions:",))
+    words = prose("Ties that the coordinates do not satisfy stay in the equations of motion by their reactions:")
     return (Step("multipliers", "Reactions of the ties that close", (words, *statements)),)

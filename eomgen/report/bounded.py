@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from eomgen.report.latex_names import latex_escaped
 from eomgen.report.reading import Reader, omitted
-from eomgen.report.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement
+from eomgen.report.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement, prose
 from eomgen.report.text import side_text
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.print.text import text_size
@@ -54,17 +54,15 @@ def _named(first: Cell, what: str) -> Law:
 def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:
     number = f"{left_out} more" if kept else "All" if left_out > 1 else "It"
     verb = "are" if left_out > 1 else "is"
-    return (Prose((f"{number} {verb} too long to print here; ", FULL, f" prints {'them' if left_out > 1 else 'it'}.")),)
+    return (prose(f"{number} {verb} too long to print here; ", FULL, f" prints {'them' if left_out > 1 else 'it'}."),)
 
 
 def elsewhere(operations: int) -> Prose:
     """Where to get what is too long to print."""
-    return Prose(
-        (
-            f"The equations take {operations} operations and are too long to print here: ",
-            FULL,
-            " prints them with names for their parts, ",
-            Code("eomgen codegen MODEL"),
-            " gives them as code.",
-        )
+    return prose(
+        f"The equations take {operations} operations and are too long to print here: ",
+        FULL,
+        " prints them with names for their parts, ",
+        Code("eomgen codegen MODEL"),
+        " gives them as code.",
     )

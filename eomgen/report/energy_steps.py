@@ -13,7 +13,7 @@ from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, axes, component_pairs
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Law, Name, Partial, Prose, Rate, Side, Statement, Step
+from eomgen.report.statements import Law, Name, Partial, Rate, Side, Statement, Step, prose
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
@@ -65,8 +65,8 @@ def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEner
         if not is_zero(rotor):
             formulas.append((Name("T", f"{link.name}, rotor"), rotor))
     if len(formulas) <= 1:
-        return Step("kinetic_energy", "Kinetic energy", (Prose((KINETIC, ":")), *page(reader, [(T, total)])))
-    statements = (Prose(("Of each body ", KINETIC, ":")), *page(reader, formulas), Prose(("Together:",)))
+        return Step("kinetic_energy", "Kinetic energy", (prose(KINETIC, ":"), *page(reader, [(T, total)])))
+    statements = (prose("Of each body ", KINETIC, ":"), *page(reader, formulas), prose("Together:"))
     return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, total)])))
 
 
@@ -78,17 +78,17 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
     formulas = [(name, reader.as_square(x) if _is_potential(name) else x) for name, x in formulas]
     statements: list[Statement] = []
     if not system.loads.applied and not system.loads.efforts:
-        statements.append(Prose(("Nothing is applied.",)))
+        statements.append(prose("Nothing is applied."))
     elif names or formulas:
-        statements.append(Prose(("Potentials and virtual work, ", WORK, ":")))
+        statements.append(prose("Potentials and virtual work, ", WORK, ":"))
     else:
-        statements.append(Prose(("Nothing is free to move: what is applied enters the reactions alone.",)))
+        statements.append(prose("Nothing is free to move: what is applied enters the reactions alone."))
     statements += page(reader, formulas)
     if sum(_is_potential(name) for name, _ in formulas) > 1:
-        statements += [Prose(("The potential energy together:",))]
+        statements += [prose("The potential energy together:")]
         statements += page(reader, [(V, system.loads.potential_energy)])
     if names:
-        statements.append(Prose(("The generalized forces of everything applied:",)))
+        statements.append(prose("The generalized forces of everything applied:"))
         statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])
     return Step("work", "Work and generalized forces", tuple(statements))
 

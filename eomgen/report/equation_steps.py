@@ -22,7 +22,7 @@ from eomgen.report.reading import (
     shortened,
 )
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step
+from eomgen.report.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step, prose
 from eomgen.symbolic.exact.normal_form import cancelled, common_factor, readable, simple_constants
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
@@ -86,9 +86,7 @@ def equations_of(
         rule: the law by which they come, in words.
     """
     if not sides:
-        return EquationSteps(
-            (), (), (Step("equations", "Equations of motion", (Prose(("Nothing is free to move.",)),)),)
-        )
+        return EquationSteps((), (), (Step("equations", "Equations of motion", (prose("Nothing is free to move."),)),))
     if assembly.friction:
         friction = friction_of(system, reader, assembly)
         sides = [Sides(row.left, row.right + force) for row, force in zip(sides, friction.forces, strict=True)]
@@ -113,7 +111,7 @@ def _equations(
     equations, definitions = found
     statements = (
         Prose(rule),
-        Prose((f"{SHORTEST}{', with names for parts' if definitions else ''}:",)),
+        prose(f"{SHORTEST}{', with names for parts' if definitions else ''}:"),
         *map(Formula, definitions),
         *printed(system, equations),
         *closing(reader, assembly),
@@ -176,7 +174,7 @@ def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
     for equation in equations:
         if type(equation.divisor) is Node or equation.divisor != 1:
             q = coordinates[equation.speed]
-            statements.append(Prose(("For ", q, ", ", *_divided(system, equation.divisor), ":")))
+            statements.append(prose("For ", q, ", ", *_divided(system, equation.divisor), ":"))
         statements.append(Formula((equation.left, equation.right)))
     return statements
 
@@ -200,7 +198,7 @@ def closing(reader: Reader, assembly: Assembly) -> list[Statement]:
     if not rows:
         return []
     words = "The constraints, differentiated until accelerations stand in them:"
-    return [Prose((words,)), *(Formula((reader.shown(row), 0)) for row in rows)]
+    return [prose(words), *(Formula((reader.shown(row), 0)) for row in rows)]
 
 
 def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
@@ -221,10 +219,10 @@ def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -
     if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:
         return []
     taken = {node.name for node in _symbols(assembly)}
-    symbol = assembly.symbols.graph.symbol("D" if "D" not in taken else free_names("D", 1, taken.__contains__)[0])
+    symbol = assembly.symbols.graph.symbol("D" if "D" not in taken else next(free_names("D", taken)))
     formulas = [Formula((symbol, determinant))]
     formulas += [Formula((symbol * x, n)) for x, n in zip(a, numerators, strict=True)]
-    words = Prose(("By Cramer's rule, with the determinant of the equations",))
+    words = prose("By Cramer's rule, with the determinant of the equations")
     return [Step("solved", "Accelerations", (words, *formulas))]
 
 

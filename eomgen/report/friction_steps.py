@@ -15,7 +15,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
-from eomgen.report.statements import Formula, Omitted, Prose, Step
+from eomgen.report.statements import Formula, Omitted, Step, prose
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt
@@ -71,7 +71,7 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> FrictionT
             statements += [Formula((normal, value)), *_along(reader, letters, rub, frictions, senses)]
         row = rub.along if rub.normals else substituted(rub.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
-    step = Step("friction", "Friction", (Prose((WORDS,)), *statements))
+    step = Step("friction", "Friction", (prose(WORDS), *statements))
     return FrictionTerms(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
 
 
@@ -128,7 +128,7 @@ def _solved(reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
     if not shown or any(x is None or length_in_print(x) > LONGEST for x in shown):
         return ()
     formulas = tuple(Formula((a, x)) for a, x in zip(assembly.symbols.a, shown, strict=True) if x is not None)
-    return (Step("solved", "Accelerations", (Prose(("While the contact slides:",)), *formulas)),)
+    return (Step("solved", "Accelerations", (prose("While the contact slides:"), *formulas)),)
 
 
 def _senses(letters: Lettered, system: System) -> dict[Node, Node]:

@@ -16,7 +16,7 @@ from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import listed_symbols
-from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Statement, Step
+from eomgen.report.statements import Formula, Law, Name, Partial, Prose, Statement, Step, prose
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
@@ -48,7 +48,7 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
             pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in rates]
             statements += page(reader, pairs)
         for each in (other for other in cyclic if other not in rates):
-            statements.append(Prose(("The momentum of the speed ", speeds[each.coordinate], " stays constant:")))
+            statements.append(prose("The momentum of the speed ", speeds[each.coordinate], " stays constant:"))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
     energies = energy_integral(system, assembly)
     for energy in energies:
@@ -63,7 +63,7 @@ def _of_the_whole(system: System, reader: Reader, assembly: Assembly, known: Seq
     found = momenta_of_the_whole(system, assembly, known)
     for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
         what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
-        statements.append(Prose((f"The {what}, in the axes of the ground, stays constant:",)))
+        statements.append(prose(f"The {what}, in the axes of the ground, stays constant:"))
         statements += page(reader, [(_side(each), each.expression) for each in group])
     return statements
 
@@ -75,7 +75,7 @@ def _side(each: Constant) -> Name:
 def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
     many = len(coordinates) > 1
     verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
-    return Prose((f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:"))
+    return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:")
 
 
 def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statement]:
@@ -88,8 +88,8 @@ def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statem
         law = ENERGY_AND_WORK
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
     if any(node.op == "select" for node in order((energy.expression,))):
-        return [Prose((*words, "."))]
-    return [Prose((*words, ":")), *page(reader, [(law, energy.expression)])]
+        return [prose(*words, ".")]
+    return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
 
 
 def _laws(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
@@ -104,7 +104,7 @@ def _laws(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...
     found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
     if not found:
         return ()
-    words = Prose(("From the start values, in closed form:",))
+    words = prose("From the start values, in closed form:")
     return (Step("laws", "Laws of motion", (words, *(Formula((q, _law(reader, x))) for q, x in found))),)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from eomgen.report.document import Document
@@ -29,6 +29,7 @@ from eomgen.report.statements import (
     Statement,
     Table,
     parts_of,
+    prose,
 )
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -191,7 +192,7 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
     for row in statement.rows:
         found = row.quantity
         way, message = (f" [{found.method}]" if found.method else ""), (f" ({found.message})" if found.message else "")
-        yield Prose((Code(row.name), f": {row.words}" if row.words else "", way, message))
+        yield prose(Code(row.name), f": {row.words}" if row.words else "", way, message)
         sides = [] if found.exact is None else [_read_back(graph, found.exact)]
         sides += [Law(found.number, _number_latex(found.number))] if found.number else []
         yield from [Formula(tuple(sides))] if sides else []
@@ -200,7 +201,8 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
 def _read_back(graph: Graph, exact: str) -> Side:
     """What a text of the grammar says, as a formula."""
     expression = parse(exact, longest=len(exact))
-    return expression.evaluate({name: graph.symbol(name) for name in expression.names} | {"pi": graph.pi})
+    read: Scalar = expression.evaluate({name: graph.symbol(name) for name in expression.names} | {"pi": graph.pi})
+    return read
 
 
 def _number_latex(number: str) -> str:
@@ -221,7 +223,7 @@ def equations_latex(derivation: Document) -> str:
     return f"$${aligned([row for each in sides for row in rows_of(setter, each, lead)])}$$"
 
 
-def piece_latex(setter: Setter, piece: Piece, escape) -> str:
+def piece_latex(setter: Setter, piece: Piece, escape: Callable[[str], str]) -> str:
     """One piece of a sentence, formulas between dollars."""
     if isinstance(piece, str):
         return escape(piece)

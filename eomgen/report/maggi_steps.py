@@ -16,7 +16,7 @@ from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import EquationSteps, Sides, closing, multiplier_forces, printed, readable_equations
 from eomgen.report.reading import Reader
-from eomgen.report.statements import Formula, Law, Omitted, Prose, Step
+from eomgen.report.statements import Formula, Law, Omitted, Step, prose
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -53,10 +53,10 @@ def maggi_equations(
     law = WITH_TIES if assembly.J else MAGGI
     words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
     statements = (
-        Prose((words, law, ":")),
+        prose(words, law, ":"),
         *printed(system, equations),
         *closing(reader, assembly),
-        Prose(("The dependent coordinates follow, their rates as above:",)),
+        prose("The dependent coordinates follow, their rates as above:"),
         *map(Formula, shown[len(shown) // 2 :]),
     )
     definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))

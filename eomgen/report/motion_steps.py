@@ -12,7 +12,7 @@ from eomgen.model.forces.load import PointForce
 from eomgen.model.quaternions import quaternions_of
 from eomgen.report.bounded import page
 from eomgen.report.reading import Reader
-from eomgen.report.statements import Law, Meaning, Name, Prose, Rate, Side, Statement, Step, Table
+from eomgen.report.statements import Law, Meaning, Name, Rate, Side, Statement, Step, Table, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector, dot
 
@@ -43,7 +43,7 @@ def positions_step(system: System, reader: Reader) -> Step:
     for name, point in points_of_forces(system):
         formulas += component_pairs(system, "", name, point)
     angles = ", and the angles of the bodies against the x axis" if any(_turns(link) for link in motion.links) else ""
-    return Step("positions", "Positions", (Prose((f"The mass centres{angles}:",)), *page(reader, formulas)))
+    return Step("positions", "Positions", (prose(f"The mass centres{angles}:"), *page(reader, formulas)))
 
 
 def _turns(link: BodyLink) -> bool:
@@ -76,7 +76,7 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
         formulas += spins(system, energy.body, energy.spin)
     words = "The derivatives of the positions, and the angular velocities"
     words += ":" if len(axes(system)) == 2 else " in the axes of the bodies:"
-    return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
+    return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
 
 
 def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
@@ -91,18 +91,11 @@ def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
         for q, rate in zip(scope.symbols.q, scope.rates, strict=True)
         if f"{q.name}'" not in own and not model.coordinates[q.name].driven
     ]
-    statements: list[Statement] = [Prose(("The speeds are combinations of the rates:",)), *page(reader, meant)]
+    statements: list[Statement] = [prose("The speeds are combinations of the rates:"), *page(reader, meant)]
     for each in quaternions_of(model):
         words = f"{', '.join(each.coordinates)} is a unit quaternion, and {', '.join(each.speeds)} "
-        statements.append(
-            Prose(
-                (
-                    words,
-                    f"is the angular velocity of {each.body} against what it hangs on.",
-                )
-            )
-        )
-    return (Step("speeds", "Speeds", (*statements, Prose(("Solved for the rates:",)), *page(reader, rates))),)
+        statements.append(prose(words, f"is the angular velocity of {each.body} against what it hangs on."))
+    return (Step("speeds", "Speeds", (*statements, prose("Solved for the rates:"), *page(reader, rates))),)
 
 
 def is_still(velocity: Vector) -> bool:
@@ -126,12 +119,12 @@ def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
         return ()
     satisfied = [row for row in system.ties.rows if row.identical]
     statements: list[Statement] = [
-        Prose((f"{row.tie}, row {row.number}: satisfied by the coordinates.",)) for row in satisfied
+        prose(f"{row.tie}, row {row.number}: satisfied by the coordinates.") for row in satisfied
     ]
-    statements += [Prose((f"{tie}: open at the start, and left out.",)) for tie in away]
+    statements += [prose(f"{tie}: open at the start, and left out.") for tie in away]
     held = _held(system)
     if held:
-        statements += [Prose(("These must vanish along the motion:",)), *page(reader, held, then=(0,))]
+        statements += [prose("These must vanish along the motion:"), *page(reader, held, then=(0,))]
     if system.free is not None and system.elimination is not None:
         statements += _dependent(system, system.free, reader)
     if system.ties.closing:
@@ -152,9 +145,9 @@ def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
     solved = [u for u in free.symbols.u if parts[u.name[:-1]].dependent]
     rates: list[Pair] = [(u, known[u.name[:-1]]) for u in solved]
     return [
-        Prose(("Their time derivatives are linear in the rates. Solved for those of the dependent coordinates:",)),
+        prose("Their time derivatives are linear in the rates. Solved for those of the dependent coordinates:"),
         *page(reader, rates),
-        Prose(("Along the motions that the constraints allow, ", ALONG, ", ", WITH, ".")),
+        prose("Along the motions that the constraints allow, ", ALONG, ", ", WITH, "."),
     ]
 
 

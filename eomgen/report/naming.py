@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeGuard
 
-from eomgen.report.reading import LONGEST, NAMED_PART
+from eomgen.report.reading import LONGEST, NAMED_PART, free_names
 from eomgen.report.statements import Equation, Formula, Side, Statement, Step
 from eomgen.symbolic.exact.roots import is_root_of_sum
 from eomgen.symbolic.expression.derivative import substituted
@@ -49,8 +49,8 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
             whole[symbol] = value
     written = _substituted(written, whole)
     parts = {symbol: substituted((value,), whole)[0] for symbol, value in roots.items() if symbol not in whole}
-    names = {letter: _Names(graph, letter, taken) for letter in "rv"}
-    return _introduced(written, parts, lambda part: names["r" if is_root_of_sum(parts[part]) else "v"].new(), _always)
+    names = {letter: map(graph.symbol, free_names(letter, taken)) for letter in "rv"}
+    return _introduced(written, parts, lambda part: next(names["r" if is_root_of_sum(parts[part]) else "v"]), _always)
 
 
 def _always(x: Scalar) -> bool:
@@ -67,22 +67,9 @@ def with_parts_named(written: Written, graph: Graph, taken: Container[str], raw:
     def is_long(x: Scalar) -> bool:
         return x in raw or text_size(x) > LONGEST
 
-    names = _Names(graph, "z", taken)
+    names = map(graph.symbol, free_names("z", taken))
     parts = named_parts([x for x in _scalars(written.steps) if is_long(x)], NAMED_PART)
-    return _introduced(written, {part: part for part in parts}, lambda part: names.new(), is_long)
-
-
-class _Names:
-    """New symbols: z1, z2, ..., without the names that are taken."""
-
-    def __init__(self, graph: Graph, letter: str, taken: Container[str]) -> None:
-        self.graph, self.letter, self.taken, self.number = graph, letter, taken, 0
-
-    def new(self) -> Node:
-        self.number += 1
-        while f"{self.letter}{self.number}" in self.taken:
-            self.number += 1
-        return self.graph.symbol(f"{self.letter}{self.number}")
+    return _introduced(written, {part: part for part in parts}, lambda part: next(names), is_long)
 
 
 def _substituted(written: Written, known: Mapping[Node, Scalar]) -> Written:

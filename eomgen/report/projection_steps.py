@@ -10,7 +10,7 @@ from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, component_pairs, is_still, spins
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Entry, Formula, Law, Name, Prose, Step
+from eomgen.report.statements import Entry, Formula, Law, Name, Step, prose
 from eomgen.symbolic.expression.graph import is_zero
 
 BALANCE = Law(
@@ -35,7 +35,7 @@ def twists_step(system: System, reader: Reader) -> Step:
                 formulas += component_pairs(system, "v", f"{link.name}.center", velocity)
         formulas += spins(system, link.name, link.twist.w)
     words = "Each body moves with the one it hangs on and by its joint:"
-    return Step("velocities", "Velocities", (Prose((words,)), *page(reader, formulas)))
+    return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
 
 
 def balance_step(system: System, reader: Reader, assembly: Assembly) -> Step:
@@ -50,9 +50,9 @@ def balance_step(system: System, reader: Reader, assembly: Assembly) -> Step:
     inertia += [(Name("c", by=x), c) for x, c in zip(u, assembly.c, strict=True)]
     forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, assembly.Q, strict=True)]
     statements = (
-        Prose(("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that")),
+        prose("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that"),
         Formula((PROJECTED,)),
-        Prose(("Sorted by accelerations:",)),
+        prose("Sorted by accelerations:"),
         *page(reader, inertia),
         *page(reader, forces),
     )

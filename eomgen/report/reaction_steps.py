@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import islice
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.loads import start_value
@@ -12,9 +13,9 @@ from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of, shown_system
-from eomgen.report.reading import LONGEST, TRIED, Reader, length_in_print
+from eomgen.report.reading import LONGEST, TRIED, Reader, free_names, length_in_print
 from eomgen.report.setting_steps import count, listed_symbols
-from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table
+from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -45,7 +46,7 @@ def reactions_step(
         table: what the symbols mean stands here, and not in a step before.
     """
     if isinstance(letters, str):
-        return (Step("reactions", "Reactions", (Prose((f"The reactions do not follow: {letters}.",)),)),)
+        return (Step("reactions", "Reactions", (prose(f"The reactions do not follow: {letters}."),)),)
     if not letters.symbols:
         return ()
     formulas, left_out = _formulas(readings_of(system, reader, assembly, free=True), letters)
@@ -56,7 +57,7 @@ def reactions_step(
     }
     statements: list[Statement] = [letters.table(shown)] if table and shown else []
     if formulas:
-        statements += [Prose(("From the balance of forces and moments of every body:",)), *formulas]
+        statements += [prose("From the balance of forces and moments of every body:"), *formulas]
     if left_out:
         statements.append(_too_long(left_out, bool(formulas)))
     statements += _open(reader, letters)
@@ -65,14 +66,12 @@ def reactions_step(
 
 def _too_long(number: int, after: bool) -> Prose:
     more = f"{number} more" if after else "All of them" if number > 1 else "It"
-    return Prose(
-        (
-            f"{more} {'are' if number > 1 else 'is'} too long to print here: ",
-            VERB,
-            " evaluates them, ",
-            Code("eomgen codegen MODEL"),
-            " gives them as code.",
-        )
+    return prose(
+        f"{more} {'are' if number > 1 else 'is'} too long to print here: ",
+        VERB,
+        " evaluates them, ",
+        Code("eomgen codegen MODEL"),
+        " gives them as code.",
     )
 
 
@@ -131,8 +130,8 @@ def along_the_motion(system: System, reader: Reader, assembly: Assembly, letters
             formulas.append(Formula((symbol, found)))
     if not formulas:
         return ()
-    words = Prose(("The motion from the start has, by its first integrals,",))
-    then = Prose(("so that along it the reactions are functions of the coordinates:",))
+    words = prose("The motion from the start has, by its first integrals,")
+    then = prose("so that along it the reactions are functions of the coordinates:")
     statements = (words, *map(Formula, squares), then, *formulas)
     return (Step("along", "Reactions along the motion from the start", statements),)
 
@@ -184,14 +183,10 @@ def _open(reader: Reader, letters: Lettered) -> list[Statement]:
 def _factors(reactions: Reactions, letters: Lettered, number: int) -> list[Node]:
     """k, or k1, k2, ..."""
     scope = reactions.balance.system.scope
-    found: list[Node] = []
-    n = 0
-    while len(found) < number:
-        name = "k" if number == 1 and n == 0 else f"k{n}"
-        n += 1
-        if name != "k0" and name not in scope.names and name not in letters.names:
-            found.append(scope.graph.symbol(name))
-    return found
+    names = free_names("k", scope.names, letters.names)
+    if number == 1 and "k" not in scope.names and "k" not in letters.names:
+        names = iter(["k"])
+    return [scope.graph.symbol(name) for name in islice(names, number)]
 
 
 def _shares(reader: Reader, symbol: Mapping[str, Node], k: Node, space: Mapping[str, Scalar]) -> Sequence[Statement]:
@@ -207,5 +202,5 @@ def _shares(reader: Reader, symbol: Mapping[str, Node], k: Node, space: Mapping[
         else:
             formulas.append(Formula((Name("Delta", by=symbol[name]), shown * k)))
     if left_out:
-        formulas.append(Prose((f"{count(left_out, 'more share')} with {k.name} too long to print here.",)))
+        formulas.append(prose(f"{count(left_out, 'more share')} with {k.name} too long to print here."))
     return formulas

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Sequence
+from collections.abc import Collection, Container, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import count
 
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.exact.collect import gathered, with_squares
@@ -250,10 +251,9 @@ def shortened(graph: Graph, expressions: Sequence[Scalar], limit: int, taken: Co
     if len(parts) > NAMED:
         return None
     used = {node.name for node in order(expressions) if node.op == "symbol"}
-    names = free_names("z", len(parts), lambda name: name in taken or name in used)
     known: dict[Node, Scalar] = {}
     definitions = []
-    for part, name in zip(parts, names, strict=True):
+    for part, name in zip(parts, free_names("z", taken, used), strict=False):
         value = substituted((part,), known)[0]
         known[part] = graph.symbol(name)
         definitions.append((graph.symbol(name), value))
@@ -262,12 +262,7 @@ def shortened(graph: Graph, expressions: Sequence[Scalar], limit: int, taken: Co
     return Shortened(tuple(definitions), written) if length <= NAMED_LENGTH else None
 
 
-def free_names(letter: str, count: int, taken) -> list[str]:
+def free_names(letter: str, *taken: Container[str]) -> Iterator[str]:
     """letter1, letter2, ..., without those that are taken."""
-    names: list[str] = []
-    number = 0
-    while len(names) < count:
-        number += 1
-        if not taken(f"{letter}{number}"):
-            names.append(f"{letter}{number}")
-    return names
+    names = (f"{letter}{number}" for number in count(1))
+    return (name for name in names if not any(name in each for each in taken))

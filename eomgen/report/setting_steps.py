@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 from eomgen.errors import EomgenError
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.integrability import integrability_of
 from eomgen.mechanics.equations.system import System
+from eomgen.model.parts import Coordinate, Input, Parameter
 from eomgen.model.values import exact_parameters
-from eomgen.report.statements import Formula, Meaning, Piece, Prose, Rate, Statement, Step, Table
+from eomgen.report.statements import Formula, Meaning, Piece, Rate, Statement, Step, Table, prose
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
+Quantified = Parameter | Coordinate | Input | None
 INPUTS = ("input", "meaning", "unit", "value")
 
 
@@ -44,7 +49,7 @@ def data_step(system: System) -> Step:
     for name, symbol in symbols.parameters.items():
         part = model.parameters[name]
         rows.append(Meaning(symbol, part.about or "", _unit(part), _in_unit(values.get(name), part)))
-    statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [Prose(("No parameters.",))]
+    statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [prose("No parameters.")]
     inputs = tuple(
         Meaning(
             symbol,
@@ -59,15 +64,15 @@ def data_step(system: System) -> Step:
     return Step("data", "Data", tuple(statements))
 
 
-def _unit(part) -> str:
-    return "" if part.unit is None else str(part.unit)
+def _unit(part: Quantified) -> str:
+    return "" if part is None or part.unit is None else str(part.unit)
 
 
-def _in_unit(value, part) -> str:
+def _in_unit(value: Any, part: Quantified) -> str:
     """A value in the unit in which the user gave it."""
     if value is None:
         return ""
-    return f"{float(value if part.unit is None else part.unit.from_si(value, math.pi)):.10g}"
+    return f"{float(value if part is None or part.unit is None else part.unit.from_si(value, math.pi)):.10g}"
 
 
 def _freedom(system: System) -> Step:
@@ -77,56 +82,48 @@ def _freedom(system: System) -> Step:
     driven = sum(part.driven for part in system.scope.model.coordinates.values())
     others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
     statements: list[Statement] = [
-        Prose(
-            (
-                f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
-                "".join(f", {other}" for other in others),
-                ".",
-            )
+        prose(
+            f"{count(len(system.motion.links), 'body', 'bodies')}, {count(len(symbols.q), 'coordinate')}",
+            "".join(f", {other}" for other in others),
+            ".",
         )
     ]
     identical = [row for row in system.ties.rows if row.identical]
     if identical:
         ties = ", ".join(dict.fromkeys(row.tie for row in identical))
         statements.append(
-            Prose(
-                (
-                    f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves "
-                    f"({ties}): they carry reactions and take no freedom.",
-                )
+            prose(
+                f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves "
+                f"({ties}): they carry reactions and take no freedom."
             )
         )
     eliminated = [row for row in system.ties.rows if row.status == "eliminated"]
     if eliminated:
         ties = ", ".join(dict.fromkeys(row.tie for row in eliminated))
         statements.append(
-            Prose(
-                (
-                    f"{count(len(eliminated), 'equation')} of the constraints ",
-                    "gives" if len(eliminated) == 1 else "give",
-                    " the rate of the dependent coordinate"
-                    if dependent == 1
-                    else " the rates of the dependent coordinates",
-                    f" ({ties}).",
-                )
+            prose(
+                f"{count(len(eliminated), 'equation')} of the constraints ",
+                "gives" if len(eliminated) == 1 else "give",
+                " the rate of the dependent coordinate"
+                if dependent == 1
+                else " the rates of the dependent coordinates",
+                f" ({ties}).",
             )
         )
     if closing:
         statements.append(
-            Prose(
-                (
-                    f"{count(len(closing), 'equation')} of the constraints ",
-                    "remains to be satisfied by the motion"
-                    if len(closing) == 1
-                    else "remain to be satisfied by the motion",
-                    " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
-                )
+            prose(
+                f"{count(len(closing), 'equation')} of the constraints ",
+                "remains to be satisfied by the motion"
+                if len(closing) == 1
+                else "remain to be satisfied by the motion",
+                " and brings a multiplier." if len(closing) == 1 else " and bring a multiplier each.",
             )
         )
     statements += _velocities(system)
     freedom = len(symbols.u) - len(closing)
     independent = ", where the constraints' equations are independent" if closing else ""
-    statements.append(Prose((f"{count(freedom, 'degree')} of freedom{independent}.",)))
+    statements.append(prose(f"{count(freedom, 'degree')} of freedom{independent}."))
     return Step("freedom", "Degrees of freedom", tuple(statements))
 
 
@@ -140,11 +137,11 @@ def _velocities(system: System) -> list[Statement]:
     for row in () if found is None else found.rows:
         condition = f"The condition on velocities of '{row.tie}' (row {row.number}) "
         if not row.integrable:
-            statements.append(Prose((condition, "cannot be integrated: it restricts no position (Frobenius).")))
+            statements.append(prose(condition, "cannot be integrated: it restricts no position (Frobenius)."))
         elif row.integral is None:
-            statements.append(Prose((condition, "can be integrated (Frobenius): it is holonomic.")))
+            statements.append(prose(condition, "can be integrated (Frobenius): it is holonomic."))
         else:
-            statements.append(Prose((condition, "can be integrated, it is holonomic; with the constant of the start")))
+            statements.append(prose(condition, "can be integrated, it is holonomic; with the constant of the start"))
             statements.append(Formula((row.integral, 0)))
     return statements
 
@@ -177,7 +174,7 @@ def _coordinates(system: System) -> Step:
         if q.name not in free:
             driven += _as_given(scope, q, rate)
     if driven:
-        statements += [Prose(("Driven coordinates move as given:",)), *driven]
+        statements += [prose("Driven coordinates move as given:"), *driven]
     return Step("coordinates", "Coordinates", tuple(statements))
 
 
@@ -187,7 +184,7 @@ def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
     of = {"": part.motion, "The rate of ": part.rate, "The acceleration of ": part.acceleration}
     for what, law in of.items():
         if law is not None and law.sampled is not None:
-            return [Prose((what, q, f" is {law.text}."))]
+            return [prose(what, q, f" is {law.text}.")]
     motion = [] if part.motion is None else [Formula((q, scope.value(part.motion)))]
     return [*motion, Formula((Rate(q), rate))]
 
@@ -200,16 +197,9 @@ def _speeds(system: System) -> list[Meaning]:
     for u, a in zip(symbols.u, symbols.a, strict=True):
         if u.name in model.speeds:
             part = model.speeds[u.name]
-            start = "" if part.start is None else _start_text(part.start, values)
+            start = "" if part.start is None else _shown_value(part.start, values, None)
             rows += [Meaning(u, part.about or "speed", "", start), Meaning(a, "its derivative", "")]
     return rows
-
-
-def _start_text(expression, values) -> str:
-    """A start value in SI; an expression of parameters without values as text."""
-    if not expression.names <= values.keys() | {"pi"}:
-        return expression.text
-    return f"{float(expression.evaluate({**values, 'pi': math.pi})):.10g}"
 
 
 def _per(unit: str, time: str) -> str:
@@ -217,10 +207,15 @@ def _per(unit: str, time: str) -> str:
     return "" if not unit else f"{unit}/{time}" if "/" not in unit else f"({unit})/{time}"
 
 
-def _start(part, expression, values) -> str:
-    """A start value in the user's unit; an expression of parameters without values as text."""
+def _start(part: Coordinate, expression: Expression | None, values: Mapping[str, Any]) -> str:
+    """A start value in the user's unit, "0" where none is given."""
     if expression is None:
         return "" if part.driven else "0"
+    return _shown_value(expression, values, part)
+
+
+def _shown_value(expression: Expression, values: Mapping[str, Any], part: Coordinate | None) -> str:
+    """A value in the unit of a coordinate, else in SI; an expression of parameters without values as text."""
     if expression.names <= values.keys() | {"pi"}:
         return _in_unit(expression.evaluate({**values, "pi": math.pi}), part)
     return expression.text

@@ -87,6 +87,11 @@ class Prose:
     pieces: tuple[Piece, ...]
 
 
+def prose(*pieces: Piece) -> Prose:
+    """A sentence of these pieces."""
+    return Prose(pieces)
+
+
 @dataclass(frozen=True)
 class Formula:
     """sides joined by equality signs, on a line of their own."""

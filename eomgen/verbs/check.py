@@ -118,7 +118,7 @@ def _started(start: LoopStart) -> dict[str, Any]:
     }
 
 
-def _velocity_rows(freedom: Freedom) -> list[dict]:
+def _velocity_rows(freedom: Freedom) -> list[dict[str, Any]]:
     rows = () if freedom.integrability is None else freedom.integrability.rows
     return [
         {

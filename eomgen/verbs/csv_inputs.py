@@ -43,7 +43,8 @@ def following(model: Model, given: Sequence[str]) -> Model:
         replace(model, **changes)  # what is wrong with a model is wrong with this one
     except ModelError as error:
         raise UsageError(f"--follow: {error.problems[0].what}", mend=error.problems[0].mend) from error
-    return altered(model, **changes)
+    followed: Model = altered(model, **changes)
+    return followed
 
 
 def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
@@ -51,7 +52,8 @@ def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
         raise UsageError(f"--follow: coordinate '{name}' is dependent, the ties move it", mend="drive another one")
     (way,) = [way for way in LAWS if getattr(part, way) is not None] or ["motion"]
     own = {} if way != "motion" else {"start": None, "speed": None}
-    return altered(part, **{way: law}, **own)
+    driven: Coordinate = altered(part, **{way: law}, **own)
+    return driven
 
 
 def _read(path: str, name: str) -> Expression:

@@ -28,7 +28,7 @@ from eomgen.report.document import plain_document
 from eomgen.report.quantity import Quantity
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space, reaction_formulas
-from eomgen.report.statements import Found, Lines, Listing, Prose, Statement
+from eomgen.report.statements import Found, Lines, Listing, Statement, prose
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
@@ -197,8 +197,8 @@ def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:
     """What may be added to the indeterminate ones without a trace."""
     for number, shares in enumerate(space, start=1):
         k = "k" if len(space) == 1 else f"k{number}"
-        yield Prose(("",))
-        yield Prose((f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:",))
+        yield prose("")
+        yield prose(f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:")
         yield Lines(tuple(f"    {name}: {_times(share, k)}" for name, share in shares.items()))
 
 

@@ -12,12 +12,13 @@ import numpy as np
 from eomgen import pipeline
 from eomgen.codegen.accelerations import closing_accelerations
 from eomgen.codegen.rhs import parameter_vector
+from eomgen.equations import Equations
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.questions.run import run as simulated
 from eomgen.report.document import plain_document
-from eomgen.report.statements import Grid, Prose, Statement
+from eomgen.report.statements import Grid, Statement, prose
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
@@ -75,7 +76,7 @@ def simulate_outcome(
     return proven(Outcome(document, notes), run.certify() if certify else None)
 
 
-def _first_instant(equations: pipeline.Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:
+def _first_instant(equations: Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:
     """Accelerations and multipliers at the start; null where one has no single value."""
     if not len(run.t):
         return {"start_accelerations": {}, "start_multipliers": {}}
@@ -119,7 +120,7 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     lines += [f"and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
     rows = tuple((name, f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in run.columns().items() if len(x))
     table = (Grid(("", "start", "end"), rows),) if rows else ()
-    return (Prose((f"{model.name}: {run.summary()}",)), *(Prose((f"  {line}",)) for line in lines), *table)
+    return (prose(f"{model.name}: {run.summary()}"), *(prose(f"  {line}") for line in lines), *table)
 
 
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:
@@ -163,7 +164,7 @@ def _parameters(model: Model, given: tuple[str, ...]) -> dict[str, float]:
     return values
 
 
-def _start(equations: pipeline.Equations, parameters: Mapping[str, float], given: tuple[str, ...]) -> dict[str, float]:
+def _start(equations: Equations, parameters: Mapping[str, float], given: tuple[str, ...]) -> dict[str, float]:
     """The values of `--start theta=pi/2`, in which parameters may stand.
 
     Raises:

@@ -38,7 +38,7 @@ from eomgen.report.inertia.steps import (
 from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.report.statements import Law, Prose, Statement, Step
+from eomgen.report.statements import Law, Prose, Statement, Step, prose
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
@@ -144,7 +144,7 @@ class _Report:
         moving = set(self.system.scope.symbols.q) & set(symbols_of((*section.point, *chain(*section.tensor))))
         if moving and self.start:
             where = ", ".join(f"{q.name} = {self.start[q]:.6g}" for q in self.system.scope.symbols.q if q in moving)
-            yield Prose((f"Numbers at the start: {where}.",))
+            yield prose(f"Numbers at the start: {where}.")
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -200,7 +200,7 @@ class _Report:
             silent = ", ".join(f"'{body}'" for body in section.silent)
             words = f"No moments: of the inertia of {silent} the model says nothing."
             self._state(section, masses, None, None)
-            return Step(key, title, (*statements, Prose((words,)))), masses, (section.of, None)
+            return Step(key, title, (*statements, prose(words))), masses, (section.of, None)
         statements += [*moments_grid(section), conventions_grid(section)]
         if any(text_size(result.value) > LONGEST for result in tensor):  # the table then holds numbers
             statements += [line(section, result) for result in tensor]

@@ -12,7 +12,7 @@ from eomgen.mechanics.masses.inertia_about import about_axis, polar, second_mome
 from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.report.inertia.rows import InertiaSum
 from eomgen.report.latex_names import letter_law
-from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement
+from eomgen.report.statements import Cell, Formula, Grid, Law, Side, Statement, prose
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Vector
@@ -134,7 +134,7 @@ def moments_grid(section: Section) -> Iterator[Statement]:
         for what, part in (("own", row.own()), ("parallel axes", row.shift(section.point))):
             rows.append((f"{row.label}, {what}", *(_plus(part, i, j) for i, j in columns)))
     rows.append(("sum", *(_plus(section.tensor, i, j) for i, j in columns)))
-    yield Prose(("Own moments, and with d from the point to the mass centre, ", STEINER, ":"))
+    yield prose("Own moments, and with d from the point to the mass centre, ", STEINER, ":")
     yield grid(section, ("", *(letter_law(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
 
 
@@ -206,7 +206,7 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Inerti
         radii = (_radius(section.sum, x) for x in found.moments)
         results += [section.named("k", str(k), x, "m") for k, x in enumerate(radii, start=1)]
     rows = axes_in_numbers(section, found)
-    statements: list[Statement] = [Prose((_words(found),)), *(line(section, result) for result in results)]
+    statements: list[Statement] = [prose(_words(found)), *(line(section, result) for result in results)]
     return [*statements, *_axes_grid(section, found, rows)], results, rows
 
 
@@ -234,13 +234,13 @@ def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | Non
     words = "The rows of R are the principal axes, right-handed: R I R^T is diagonal."
     longest = LONGEST if rows is not None else LONGEST_LINE
     if found.axes is not None and all(text_size(x) <= longest for row in found.axes for x in row):
-        yield Prose((words,))
+        yield prose(words)
         yield Grid(head, tuple((str(k), *row) for k, row in enumerate(found.axes, start=1)))
     elif rows is not None:
-        yield Prose((f"{words} In numbers, the closed form is long:",))
+        yield prose(f"{words} In numbers, the closed form is long:")
         yield Grid(head, tuple((str(k), *(f"{x + 0.0:.6f}" for x in row)) for k, row in enumerate(rows, start=1)))
     else:
-        yield Prose(("The principal axes have no short closed form; give the parameters values to see them.",))
+        yield prose("The principal axes have no short closed form; give the parameters values to see them.")
 
 
 def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | None:

@@ -11,7 +11,7 @@ from eomgen.mechanics.fields.curves import Curve
 from eomgen.mechanics.fields.motion_kind import HELICAL, Kind, Kinds
 from eomgen.mechanics.instant.body_motion import BodyMotion, body_motions
 from eomgen.report.bounded import tabled
-from eomgen.report.statements import Cell, Formula, Law, Name, Piece, Prose, Statement, Step
+from eomgen.report.statements import Cell, Formula, Law, Name, Piece, Prose, Statement, Step, prose
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -134,26 +134,26 @@ def fields_step(motions: Sequence[BodyMotion], shown: Shown, *, plane: bool) -> 
     """Spins, centres and poles of the bodies that move, and the slowest points of bars; () where all rest."""
     moving = [m for m in motions if not all(is_zero(x) for x in (*m.field.w, *m.field.v, *m.field.a, *m.field.e))]
     statements: tuple[Statement, ...] = (
-        Prose(("Every body has one field of velocities and accelerations, ", VELOCITIES, ".")),
+        prose("Every body has one field of velocities and accelerations, ", VELOCITIES, "."),
         *(_in_plane(moving, shown) if plane else _in_space(moving, shown)),
     )
     bars = tuple((f"{m.slowest[0]} to {m.slowest[1]}", shown(m.slowest[2])) for m in moving if m.slowest is not None)
     if bars:
         words = "Of a bar the slowest point is the foot of the perpendicular from the centre of rotation, or an end:"
-        statements += (Prose((words,)), *tabled(("bar", "least speed"), bars))
+        statements += (prose(words), *tabled(("bar", "least speed"), bars))
     return (Step("fields", "Angular velocities, centres, poles", statements),) if moving else ()
 
 
 def _in_plane(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
     yield from tabled(NUMBERS, [(m.body, shown(m.field.w[2]), shown(m.field.e[2])) for m in moving])
-    yield Prose(
-        ("From the origin of the body to its centre of rotation ", CENTER, ", to its pole of accelerations ", POLE, ":")
+    yield prose(
+        "From the origin of the body to its centre of rotation ", CENTER, ", to its pole of accelerations ", POLE, ":"
     )
     yield from tabled(PLACES, [(m.body, *_pair(m.center, shown), *_pair(m.pole, shown)) for m in moving])
     circles = tuple(row for m in moving for row in _inflection(m, shown))
     if circles:
         words = "The points whose path is straight there lie on the inflection circle, through the centre of rotation:"
-        yield Prose((words,))
+        yield prose(words)
         yield from tabled(("body", "centre of the circle: x", "centre of the circle: y", "radius"), circles)
 
 
@@ -165,12 +165,10 @@ def _inflection(motion: BodyMotion, shown: Shown) -> Iterator[tuple[Cell, ...]]:
 def _in_space(moving: Sequence[BodyMotion], shown: Shown) -> Iterator[Statement]:
     rows = [(f"{m.body}, {AXES[i]}", shown(m.field.w[i]), shown(m.field.e[i])) for m in moving for i in range(3)]
     yield from tabled(VECTORS, rows)
-    yield Prose(
-        (
-            "The two invariants of the field; the axis of the motion at this instant goes through the point ",
-            CENTER,
-            " from the origin of the body, the advance along it per radian is omega.v/omega.omega:",
-        )
+    yield prose(
+        "The two invariants of the field; the axis of the motion at this instant goes through the point ",
+        CENTER,
+        " from the origin of the body, the advance along it per radian is omega.v/omega.omega:",
     )
     yield from tabled(INVARIANTS, [(m.body, *map(shown, m.invariants)) for m in moving])
 
@@ -188,13 +186,13 @@ def centrodes_step(found: Sequence[Centrodes], positive: frozenset[Node]) -> tup
     statements: list[Statement] = []
     for centrodes in found:
         words = f"{centrodes.body}: its centre of rotation in the axes of the ground, and in its own:"
-        statements.append(Prose((words,)))
+        statements.append(prose(words))
         places, curves = (centrodes.fixed, centrodes.moving), (centrodes.fixed_curve, centrodes.moving_curve)
         for of, place, curve in zip(("", f"{centrodes.body}"), places, curves, strict=True):
             owner = f"C, {of}" if of else "C"
             statements += [Formula((Name(axis, owner), x)) for axis, x in zip("xy", place, strict=False)]
             if curve.kind in ("line", "circle"):
-                statements.append(Prose(("a ", *equation_of(curve, positive), ".")))
+                statements.append(prose("a ", *equation_of(curve, positive), "."))
     return (Step("centrodes", "Centrodes", tuple(statements)),) if statements else ()
 
 

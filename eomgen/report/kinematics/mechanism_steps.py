@@ -11,7 +11,7 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism, RotationCenter
 from eomgen.report.latex_names import letter_law
 from eomgen.report.setting_steps import count
-from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Prose, Side, Statement, Step
+from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Side, Statement, Step, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.traversal import operations
@@ -47,23 +47,21 @@ def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
 def _mechanism(state: KinematicState) -> Step:
     number, formula = state.formula
     statements: list[Statement] = [
-        Prose(
-            (
-                f"{count(state.freedoms, 'degree')} of freedom by the rank of the constraints {state.when}; ",
-                f"by count {formula} = {number}" if formula else "",
-                "."
-                if number == state.freedoms
-                else ": the count takes constraints for independent that are not."
-                if number < state.freedoms
-                else ": the count does not see what coordinates hold by themselves.",
-            )
+        prose(
+            f"{count(state.freedoms, 'degree')} of freedom by the rank of the constraints {state.when}; ",
+            f"by count {formula} = {number}" if formula else "",
+            "."
+            if number == state.freedoms
+            else ": the count takes constraints for independent that are not."
+            if number < state.freedoms
+            else ": the count does not see what coordinates hold by themselves.",
         )
     ]
     if state.given:
-        statements.append(Prose(("Given: " + ", ".join(state.given) + ".",)))
+        statements.append(prose("Given: " + ", ".join(state.given) + "."))
     if state.symbol is not None:
         what: tuple[Piece, ...] = ("All velocities are expressed by one: ", state.symbol)
-        statements.append(Prose((*what, f" = {state.rate}." if state.rate != state.symbol.name else ".")))
+        statements.append(prose(*what, f" = {state.rate}." if state.rate != state.symbol.name else "."))
     statements += _blocks(state)
     return Step("mechanism", "The mechanism", tuple(statements))
 
@@ -77,9 +75,9 @@ def _blocks(state: KinematicState) -> list[Statement]:
         listed = ", ".join(bodies)
         if name == FIXED and bodies:
             whose = "It belongs" if len(bodies) == 1 else "They belong"
-            statements.append(Prose((f"At rest: {listed}. {whose} to the ground, 0.",)))
+            statements.append(prose(f"At rest: {listed}. {whose} to the ground, 0."))
         elif name != FIXED and len(bodies) > 1:
-            statements.append(Prose((f"{listed} move as one body, called {name}.",)))
+            statements.append(prose(f"{listed} move as one body, called {name}."))
     return statements
 
 
@@ -102,8 +100,8 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
         if state.found
         else ""
     )
-    words = (Prose((theory,)), Grid(("centre", letter_law("x"), letter_law("y"), "where"), rows))
-    return Step("centers", "Centres of rotation", (*words, *((Prose((agree,)),) if agree else ())))
+    words = (prose(theory), Grid(("centre", letter_law("x"), letter_law("y"), "where"), rows))
+    return Step("centers", "Centres of rotation", (*words, *((prose(agree),) if agree else ())))
 
 
 def place_cells(state: KinematicState, center: RotationCenter) -> tuple[Cell, Cell]:
@@ -190,7 +188,7 @@ def _velocities(state: KinematicState) -> Step:
         "Velocities",
         (
             *_spins(state, f"Angular velocities, {sense}:", "omega", {n: f.w for n, f in state.turning.items()}),
-            Prose(("Velocities of points, ground axes:",)),
+            prose("Velocities of points, ground axes:"),
             _vectors(state, "v", [(names, v) for names, _, v, _ in state.points]),
         ),
     )
@@ -202,7 +200,7 @@ def _accelerations(state: KinematicState) -> Step:
         "Accelerations",
         (
             *_spins(state, "Angular accelerations:", "epsilon", {n: f.e for n, f in state.turning.items()}),
-            Prose(("Accelerations of points, ground axes:",)),
+            prose("Accelerations of points, ground axes:"),
             _vectors(state, "a", [(names, a) for names, _, _, a in state.points if a is not None]),
         ),
     )
@@ -213,11 +211,9 @@ def _spins(state: KinematicState, words: str, letter: str, spins: Mapping[str, V
         return ()
     turns = [(name, state.put(w)) for name, w in spins.items()]
     if state.plane:
-        return Prose((words,)), Grid(
-            ("body", letter_law(letter)), tuple((name, cell(state, w[2])) for name, w in turns)
-        )
+        return prose(words), Grid(("body", letter_law(letter)), tuple((name, cell(state, w[2])) for name, w in turns))
     head: tuple[Cell, ...] = ("body", *_components(letter, "xyz"))
-    return Prose((words,)), Grid(head, tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
+    return prose(words), Grid(head, tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
 
 
 def _vectors(state: KinematicState, letter: str, rows: Sequence[tuple[str, Vector]]) -> Grid:

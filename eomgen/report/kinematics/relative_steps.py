@@ -15,7 +15,7 @@ from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.instant.body_motion import Readable, readable_at
 from eomgen.report.bounded import tabled
 from eomgen.report.motion_steps import axes
-from eomgen.report.statements import Grid, Law, Prose, Statement, Step
+from eomgen.report.statements import Grid, Law, Prose, Statement, Step, prose
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, plus, times, transposed
@@ -69,7 +69,7 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
             "relative velocity",
             f"Velocity of {title}",
             (
-                Prose((f"In the axes of {body}, ", VELOCITY, f"; {TRANSPORT}:")),
+                prose(f"In the axes of {body}, ", VELOCITY, f"; {TRANSPORT}:"),
                 *_table(parts, VELOCITIES, letters, readable),
             ),
         ),
@@ -77,7 +77,7 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
             "relative acceleration",
             f"Acceleration of {title}",
             (
-                Prose((f"In the axes of {body}, ", ACCELERATION, ":")),
+                prose(f"In the axes of {body}, ", ACCELERATION, ":"),
                 *_table(parts, ACCELERATIONS, letters, readable),
             ),
         ),

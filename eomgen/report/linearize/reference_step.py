@@ -6,7 +6,7 @@ from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM, STEADY, ReferenceMotion
 from eomgen.report.setting_steps import listed_symbols
-from eomgen.report.statements import Cell, Formula, Prose, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Formula, Prose, Statement, Step, narrow_grid, prose
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.print.text import text_size
 
@@ -24,15 +24,15 @@ def reference_step(modes: Modes) -> Step:
     for x in shown:
         exact: Cell = reference.exact.get(x, "")
         rows.append((x, exact, _number(float(reference.numbers[x])) if reference.valued else ""))
-    statements: list[Statement] = [Prose((_words(reference),)), narrow_grid(("quantity", "exact", "value"), rows)]
+    statements: list[Statement] = [prose(_words(reference)), narrow_grid(("quantity", "exact", "value"), rows)]
     if reference.family is not None:
         statements += _family(modes, reference.family)
     if reference.place is not None and reference.place.statics.held:
-        statements.append(Prose((f"What the model drives is held there: {', '.join(reference.place.statics.held)}.",)))
+        statements.append(prose(f"What the model drives is held there: {', '.join(reference.place.statics.held)}."))
     if small.left_out:
         one = len(small.left_out) == 1
         why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS
-        statements.append(Prose(("Left out: ", *listed_symbols(small.left_out), f"; {why}.")))
+        statements.append(prose("Left out: ", *listed_symbols(small.left_out), f"; {why}."))
     return Step("reference", "Reference", tuple(statements))
 
 
@@ -57,7 +57,7 @@ def _family(modes: Modes, family: Family) -> list[Statement]:
     formulas = {x: value for x, value in family.formulas.items() if text_size(value) <= LONG}
     formulas = {x: value for x, value in formulas.items() if depends_on(value, family.held)}
     if formulas:
-        found.append(Prose(("As a function of ", *listed_symbols(family.held), ":")))
+        found.append(prose("As a function of ", *listed_symbols(family.held), ":"))
         found += [Formula((x, value)) for x, value in formulas.items()]
     if len(family.others) > 1 and modes.small.reference.valued:
         found += _others(modes, family)
@@ -78,7 +78,7 @@ def _others(modes: Modes, family: Family) -> list[Statement]:
             short = x in closed and text_size(closed[x]) <= SHORT
             row += [_number(at[x]), closed[x] if short else ""]
     table = [(*row, stability) for row, stability in zip(rows, modes.beside, strict=True)]
-    return [Prose((words, *held, f"{where}:")), narrow_grid((*head, "stability"), table)]
+    return [prose(words, *held, f"{where}:"), narrow_grid((*head, "stability"), table)]
 
 
 def _at_rest(modes: Modes) -> bool:

@@ -16,7 +16,7 @@ from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.mechanics.small_motions.transfer import TransferFunction
 from eomgen.report.linearize.reference_step import reference_step
 from eomgen.report.setting_steps import listed_symbols
-from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Side, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Formula, Grid, Law, Side, Statement, Step, narrow_grid, prose
 from eomgen.report.statements import Entry as Place
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -64,33 +64,31 @@ def _equations(modes: Modes) -> Step:
     e = small.exact or small.numbers
     tied = len(e.coordinates) < len(e.all) or bool(small.reference.system.ties.closing)
     statements: list[Statement] = [
-        Prose(
-            (
-                "The equations of motion ",
-                Law("R = 0", "R = 0"),
-                ", ",
-                WHERE,
-                ", to first order in the displacements ",
-                *listed_symbols(e.coordinates),
-                " from it",
-                ", along the ties" if tied else "",
-                ": ",
-                ALONG if tied else PLAIN,
-                ".",
-            )
+        prose(
+            "The equations of motion ",
+            Law("R = 0", "R = 0"),
+            ", ",
+            WHERE,
+            ", to first order in the displacements ",
+            *listed_symbols(e.coordinates),
+            " from it",
+            ", along the ties" if tied else "",
+            ": ",
+            ALONG if tied else PLAIN,
+            ".",
         )
     ]
     undamped = all(is_zero(x) for row in e.C for x in row)
     turns = tuple(q for q in e.coordinates if q not in e.all)
     if turns:
         words = " are small turns about the axes of the body that spins, of which its speeds are the rates."
-        statements.append(Prose((*listed_symbols(turns), words)))
+        statements.append(prose(*listed_symbols(turns), words))
     if tied:
-        statements.append(Prose(("The ties, differentiated, say what follows: ", FOLLOW, ".")))
+        statements.append(prose("The ties, differentiated, say what follows: ", FOLLOW, "."))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
-    statements.append(Prose((law, ".")))
+    statements.append(prose(law, "."))
     if len(e.speeds) > MOST_SHOWN:
-        statements.append(Prose((f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines.",)))
+        statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
         return Step("equations", "Equations to first order", tuple(statements))
     rows = _rows(modes)
     statements += _entries("M", e.M, rows, rows, symmetric=True)
@@ -99,7 +97,7 @@ def _equations(modes: Modes) -> Step:
     statements += _entries("K", e.K, rows, e.coordinates, symmetric=symmetric)
     if small.is_second_order and not symmetric:
         H = [[modes.tidy(x) for x in row] for row in modes.symmetric_parts["H"]]
-        statements.append(Prose(("The skew part H = (K - K^T)/2 of K is circulatory.",)))
+        statements.append(prose("The skew part H = (K - K^T)/2 of K is circulatory."))
         statements += _entries("H", H, rows, e.coordinates, symmetric=False)
     statements += _entries("B", e.B, rows, e.inputs, symmetric=False)
     if not small.is_second_order:
@@ -128,7 +126,7 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
         "G": "C = G, gyroscopic (skew).",
         "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew).",
     }
-    shown: list[Statement] = [Prose((words.get("".join(there), ""),))] if there else []
+    shown: list[Statement] = [prose(words.get("".join(there), ""))] if there else []
     for letter, A in parts.items():
         shown += _entries(letter, A, e.coordinates, e.coordinates, symmetric=letter == "D")
     return shown
@@ -180,7 +178,7 @@ def _characteristic(modes: Modes) -> tuple[Step, ...]:
     if exact is not None and not isinstance(shown, Law):
         s = laplace_variable(exact).name
     law = Law(*(x.format(s=s) for x in (DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT)))
-    statements = (Prose((f"With displacements that go as exp({s} t):",)), Formula((law, shown, 0)))
+    statements = (prose(f"With displacements that go as exp({s} t):"), Formula((law, shown, 0)))
     return (Step("characteristic", "Characteristic equation", statements),)
 
 
@@ -238,7 +236,7 @@ def _modes(modes: Modes) -> Step:
         head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
         statements += [narrow_grid(head, rows), _shapes(listed_modes)]
     if not statements:
-        statements.append(Prose(("The modes depend on the values of the parameters.",)))
+        statements.append(prose("The modes depend on the values of the parameters."))
     return Step("modes", "Modes", tuple(statements))
 
 
@@ -286,11 +284,11 @@ def _tidied(x: complex) -> complex:
 def _stability(modes: Modes) -> tuple[Step, ...]:
     statements: list[Statement] = []
     if modes.small.reference.valued:
-        statements.append(Prose((f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}.",)))
+        statements.append(prose(f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}."))
     conditions = modes.conditions
     if conditions.expressions:
         which = "all motions but those that stay as they are" if conditions.zeros else "all motions"
-        statements.append(Prose((f"By Routh and Hurwitz {which} {conditions.words} where these are positive:",)))
+        statements.append(prose(f"By Routh and Hurwitz {which} {conditions.words} where these are positive:"))
         for k, x in enumerate(conditions.expressions, start=1):
             statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _or_number(modes, x))))
     return (Step("stability", "Stability", tuple(statements)),) if statements else ()
@@ -309,7 +307,7 @@ def _transfers(modes: Modes) -> tuple[Step, ...]:
         return ()
     exact = modes.small.exact
     s = "s" if exact is None else laplace_variable(exact).name
-    statements: list[Statement] = [Prose((f"From inputs to coordinates, as functions of {s}:",))]
+    statements: list[Statement] = [prose(f"From inputs to coordinates, as functions of {s}:")]
     for f in modes.transfers:
         statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f))))
     return (Step("transfer", "Transfer functions", tuple(statements)),)

@@ -13,7 +13,7 @@ from eomgen.report.naming import Written, with_roots_named
 from eomgen.report.reaction_names import said
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import count, listed_symbols
-from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Prose, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Entry, Formula, Law, Name, Piece, Statement, Step, narrow_grid, prose
 from eomgen.symbolic.expression.graph import Scalar
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
@@ -40,19 +40,19 @@ def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tu
 def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     """That the virtual work vanishes for every displacement: the equations."""
     if not statics.q:
-        return Step("balance", "Balance at rest", (Prose(("No force changes with the place.",)),))
+        return Step("balance", "Balance at rest", (prose("No force changes with the place."),))
     law = REST_WITH_TIES if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
     words += ", those of the ties included: " if statics.lam else ": "
     held: list[Statement] = []
     if statics.held:
-        held = [Prose((f"What the model drives is held where it starts: {', '.join(statics.held)}.",))]
+        held = [prose(f"What the model drives is held where it starts: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
     own = len(statics.phi) - statics.norms
     ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
     ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
-    between = [Prose(("The ties hold the coordinates by",))] if ties else []
-    return Step("balance", "Balance at rest", (*held, Prose((words, law, ".")), *forces, *between, *ties))
+    between = [prose("The ties hold the coordinates by")] if ties else []
+    return Step("balance", "Balance at rest", (*held, prose(words, law, "."), *forces, *between, *ties))
 
 
 def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
@@ -72,17 +72,17 @@ def _places(found: Equilibria) -> Step:
     if found.indifferent:
         symbols = found.indifferent
         stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
-        statements.append(Prose(("No force holds ", *listed_symbols(symbols), f": {stay}.")))
+        statements.append(prose("No force holds ", *listed_symbols(symbols), f": {stay}."))
     if found.chosen:
         stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
         any_ = "The velocity ties let it rest at any "
-        statements.append(Prose((any_, *listed_symbols(found.chosen), f" near {stay} there.")))
+        statements.append(prose(any_, *listed_symbols(found.chosen), f" near {stay} there."))
     if not found.found:
-        statements.append(Prose((_how_many(found),)))
+        statements.append(prose(_how_many(found)))
         return Step("places", "Places of rest", tuple(statements))
     rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
     grid = narrow_grid(("place", "coordinate", "exact", "value", "stability"), rows)
-    return Step("places", "Places of rest", (*statements, Prose((_how_many(found),)), grid))
+    return Step("places", "Places of rest", (*statements, prose(_how_many(found)), grid))
 
 
 def _how_many(found: Equilibria) -> str:
@@ -116,14 +116,14 @@ def _rows(number: int, place: Equilibrium) -> list[tuple[Cell, ...]]:
 def _stability(found: Equilibria) -> Step:
     ties = bool(found.statics.lam)
     law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if ties else (SECOND,)
-    statements: list[Statement] = [Prose(("The second variation of the potential energy decides: ", *law, "."))]
+    statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
     for number, place in enumerate(found.found, start=1):
         statements += _verdict(number, place.stability)
     return Step("stability", "Stability", tuple(statements))
 
 
 def _verdict(number: int, stability: Stability) -> list[Statement]:
-    words: list[Statement] = [Prose((f"Place {number}: {stability.kind}; {stability.why}.",))]
+    words: list[Statement] = [prose(f"Place {number}: {stability.kind}; {stability.why}.")]
     if not stability.K or len(stability.along) > MOST_SHOWN:
         return words
     symmetric = stability.kind != "no potential energy"
@@ -149,14 +149,14 @@ def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
     reactions, found, why = those
     title = "Reactions at place 1"
     if reactions is None:
-        return (Step("reactions", title, (Prose((f"The reactions do not follow: {why}.",)),)),)
+        return (Step("reactions", title, (prose(f"The reactions do not follow: {why}."),)),)
     if not found:
         return ()
     numbers = shown_numbers([each.value for each in found], known_exactly(place.statics.system.scope))
     rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
     grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
-    pulls = [Prose((f"But '{name}' would have to pull there: it does not hold.",)) for name in place.pulling]
-    return (Step("reactions", title, (Prose(("By the balance of every body:",)), grid, *pulls)),)
+    pulls = [prose(f"But '{name}' would have to pull there: it does not hold.") for name in place.pulling]
+    return (Step("reactions", title, (prose("By the balance of every body:"), grid, *pulls)),)
 
 
 def _reaction_row(

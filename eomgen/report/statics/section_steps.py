@@ -12,7 +12,7 @@ from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
 from eomgen.report.latex_names import letter_law
-from eomgen.report.statements import Formula, Grid, Law, Name, Prose, Side, Statement, Step
+from eomgen.report.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
@@ -60,7 +60,7 @@ def section_steps(sections: Sections) -> tuple[Step, ...]:
         for number, (body, forces) in enumerate(sections.found.items())
     ]
     if sections.reasons:
-        words = [Prose((f"{reason}.",)) for reason in sections.reasons.values()]
+        words = [prose(f"{reason}.") for reason in sections.reasons.values()]
         steps.append(Step("section_none", "Bodies without section forces", tuple(words)))
     return tuple(steps)
 
@@ -87,19 +87,17 @@ def _row(forces: SectionForces, piece: SectionPiece, x: Node) -> dict[str, str]:
 def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
     x = _variable(forces)
     line = "its axis" if forces.axis.is_straight else f"its axis of {len(forces.axis.legs)} straight parts"
-    yield Prose(
-        (
-            f"Along {line}, ",
-            x,
-            " from its start; all that acts before the section gives N, V and M. ",
-            *((SIGNS, RELATIONS, ":") if number == 0 else (RELATIONS, ":")),
-        )
+    yield prose(
+        f"Along {line}, ",
+        x,
+        " from its start; all that acts before the section gives N, V and M. ",
+        *((SIGNS, RELATIONS, ":") if number == 0 else (RELATIONS, ":")),
     )
     rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in KINDS)) for piece in forces.pieces]
     written = tuple(tuple(forces.sizes.shortest(cell) for cell in row) for row in rows)
     yield Grid(("from x", "to x", *map(letter_law, "NVM")), written)
     if forces.extremes:
-        yield Prose(("Where V = 0 within a part, M has an extreme:",))
+        yield prose("Where V = 0 within a part, M has an extreme:")
         for extreme in forces.extremes:
             yield Formula((Name("M", "extreme"), extreme.M))
             yield Formula((x, extreme.x))
@@ -126,7 +124,7 @@ def influence_step(line: InfluenceLine) -> Step:
     for span in line.spans:
         rows.append((span.name, span.start[0], span.start[1], span.at_start, span.end[0], span.end[1], span.at_end))
     head = ("along", "from x", "y", "value", "to x", "y", "value")
-    return Step("influence", f"Influence line of {line.name}", (Prose((words,)), Grid(head, tuple(rows))))
+    return Step("influence", f"Influence line of {line.name}", (prose(words), Grid(head, tuple(rows))))
 
 
 def influence_payload(line: InfluenceLine) -> dict[str, Any]:

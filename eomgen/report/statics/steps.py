@@ -13,7 +13,7 @@ from eomgen.model.trusses import is_node
 from eomgen.report.document import Document, document_of
 from eomgen.report.reaction_names import lettered, said
 from eomgen.report.setting_steps import count, data_step
-from eomgen.report.statements import Cell, Formula, Grid, Law, Prose, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Formula, Grid, Law, Statement, Step, narrow_grid, prose
 from eomgen.report.statics.work_steps import virtual_work_step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
@@ -88,24 +88,20 @@ def structure_step(statics: StaticReactions) -> Step:
     unknowns = len(structure.unknowns)
     besides = f" and {count(unknowns, 'unknown load')}" if unknowns else ""
     statements: list[Statement] = [
-        Prose(
-            (
-                f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
-                "The count of freedoms, everything that holds taken as independent:",
-            )
+        prose(
+            f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
+            "The count of freedoms, everything that holds taken as independent:"
         ),
         Formula((_law(formula), number)),
-        Prose(
-            (
-                f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
-                f"reactions forbid {structure.rank}. {_free(structure)}"
-                + (
-                    ": the structure is statically determinate."
-                    if not structure.indeterminacy
-                    else f"; there {'is' if structure.indeterminacy == 1 else 'are'} "
-                    f"{count(structure.indeterminacy, 'reaction')} more than independent ones: the structure is "
-                    f"statically indeterminate, to the degree {structure.indeterminacy}."
-                ),
+        prose(
+            f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
+            f"reactions forbid {structure.rank}. {_free(structure)}"
+            + (
+                ": the structure is statically determinate."
+                if not structure.indeterminacy
+                else f"; there {'is' if structure.indeterminacy == 1 else 'are'} "
+                f"{count(structure.indeterminacy, 'reaction')} more than independent ones: the structure is "
+                f"statically indeterminate, to the degree {structure.indeterminacy}."
             )
         ),
     ]
@@ -143,7 +139,7 @@ def _open(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
     for number, stress in enumerate(statics.structure.stresses, start=1):
         k = graph.symbol(_untaken("k" if statics.structure.indeterminacy == 1 else f"k{number}", set(symbols)))
         statements += [
-            Prose(("To these at once may be added, with any number ", k, ", without a trace:")),
+            prose("To these at once may be added, with any number ", k, ", without a trace:"),
             Grid(("reaction", "added"), tuple((letters[j], share * k) for j, share in stress.items())),
         ]
     ties = dict.fromkeys(
@@ -153,7 +149,7 @@ def _open(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
         if j < len(statics.structure.components)
     )
     statements.append(
-        Prose((f"One tie too many for each of these is among: {', '.join(ties)}. What stays determinate is given.",))
+        prose(f"One tie too many for each of these is among: {', '.join(ties)}. What stays determinate is given.")
     )
     return (Step("indeterminate", "Self-stresses", tuple(statements)),)
 
@@ -172,7 +168,7 @@ def static_reactions_step(statics: StaticReactions, symbols: SymbolsByName, valu
         words = meaning_of(statics.balance, reaction)
         rows.append((symbols[reaction.name], words, exact, number, reaction.unit, sense))
     if not rows:
-        return Step("reactions", "Reactions", (Prose(("Nothing reacts.",)),))
+        return Step("reactions", "Reactions", (prose("Nothing reacts."),))
     head = ("reaction", "meaning", "exact", "value", "unit", "sense")
     return Step("reactions", "Reactions", (narrow_grid(head, rows),))
 
@@ -220,14 +216,14 @@ def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
     if not wrong:
         what = "value" if len(compared) == 1 else f"{len(compared)} values"
         text = f"The balance of forces and moments of every body gives the same {what}, as formulas of the parameters."
-        return (Step("agreement", "Check by equilibrium", (Prose((text,)),)),)
+        return (Step("agreement", "Check by equilibrium", (prose(text),)),)
     rows = [(r.name, _or_open(None if r.work is None else r.work.value), _or_open(r.balanced)) for r in wrong]
     return (
         Step(
             "agreement",
             "Check by equilibrium: FAILED",
             (
-                Prose(("The two ways do not agree; do not trust this result:",)),
+                prose("The two ways do not agree; do not trust this result:"),
                 Grid(("reaction", "by virtual work", "by equilibrium"), tuple(rows)),
             ),
         ),
@@ -243,9 +239,9 @@ def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) ->
         return ()
     rows = tuple((c.tie, MARGINS[c.kind], c.margin) for c in conditions)
     statements: list[Statement] = [
-        Prose(("The contacts are as they were taken while none of these is negative:",)),
+        prose("The contacts are as they were taken while none of these is negative:"),
         Grid(("contact", "what", "formula"), rows),
-        *(Prose((f"It is not at rest like this: {words}.",)) for words in broken),
+        *(prose(f"It is not at rest like this: {words}.") for words in broken),
     ]
     return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
 

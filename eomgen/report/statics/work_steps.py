@@ -13,7 +13,7 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
-from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid
+from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector, plus, times, vector_of
 
@@ -29,16 +29,16 @@ def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
     assert equation is not None, "an indeterminate reaction has no equation of work"
     plan, blocks = equation.plan, blocks_of(equation.plan)
     if not blocks:
-        nothing = Prose(("Its tie leaves this motion free, and so bears nothing: ", symbol, " = 0."))
+        nothing = prose("Its tie leaves this motion free, and so bears nothing: ", symbol, " = 0.")
         return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", (nothing,))
     delta = _scale(blocks, symbol)
     statements: list[Statement] = [_released(plan, blocks, symbol, delta), _mechanism(plan, blocks, delta)]
     if equation.terms:
-        statements += [Prose(("The loads do the virtual works:",)), _works(plan, equation.terms, delta)]
+        statements += [prose("The loads do the virtual works:"), _works(plan, equation.terms, delta)]
     else:
-        statements.append(Prose(("No load does any work in this motion.",)))
+        statements.append(prose("No load does any work in this motion."))
     statements += [
-        Prose(("The principle of virtual work says", *_without(equation), ":")),
+        prose("The principle of virtual work says", *_without(equation), ":"),
         *_equations(equation, symbol, delta),
     ]
     return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", tuple(statements))
@@ -55,14 +55,12 @@ def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, de
     still = resting_blocks(plan)
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
-    return Prose(
-        (
-            "Released along ",
-            symbol,
-            f", the structure is a mechanism: {many} can move{rest}. Its virtual displacements, all by ",
-            delta,
-            ":",
-        )
+    return prose(
+        "Released along ",
+        symbol,
+        f", the structure is a mechanism: {many} can move{rest}. Its virtual displacements, all by ",
+        delta,
+        ":",
     )
 
 
