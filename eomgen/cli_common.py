@@ -56,7 +56,7 @@ class Verbs(click.Group):
         sys.exit(self._run(words, name, complete_var, extra))
 
     def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
-        wants_json = "--json" in words
+        wants_json = "--json" in words or "--format json" in " ".join(words).replace("=", " ")
         os.environ.setdefault(*ONE_THREAD)
         try:
             return super().main(words, name, complete_var, standalone_mode=False, **extra) or 0
@@ -105,24 +105,9 @@ def _problems(error: EomgenError) -> tuple[Problem, ...]:
 def _told(code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
     """The problems for machines, where they are asked for."""
     if wants_json:
-        error = {"exit_code": code, "problems": [_as_dict(problem) for problem in problems]}
+        error = {"exit_code": code, "problems": [problem.as_dict() for problem in problems]}
         _say(json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, ensure_ascii=False, indent=1) + "\n")
     return code
-
-
-def _as_dict(problem: Problem) -> dict[str, Any]:
-    """A problem with its place taken apart: file, line and column where there are any."""
-    file, line, column = (*problem.where.rsplit(":", 2), "", "")[:3]
-    placed = line.isdigit() and column.isdigit()
-    return {
-        "where": problem.where,
-        "file": file if placed else None,
-        "line": int(line) if placed else None,
-        "column": int(column) if placed else None,
-        "what": problem.what,
-        "excerpt": problem.excerpt,
-        "mend": problem.mend,
-    }
 
 
 def _say(text: str) -> None:
@@ -147,7 +132,7 @@ def deliver(outcome: Outcome, form: str, output: str | None = None, *, on_stderr
         _say(result)
     else:
         write_text(output, result)
-    for line in (*outcome.notes, outcome.failed):
+    for line in (*outcome.notes, *(f"warning: {each}" for each in outcome.document.warnings), outcome.failed):
         if line:
             click.echo(line, err=True)
     return 3 if outcome.failed else 0

@@ -49,6 +49,20 @@ class Problem:
             lines.append(f"mend: {self.mend}")
         return "\n".join(lines)
 
+    def as_dict(self) -> dict[str, str | int | None]:
+        """For machines, its place taken apart: file, line and column where there are any."""
+        file, line, column = (*self.where.rsplit(":", 2), "", "")[:3]
+        placed = line.isdigit() and column.isdigit()
+        return {
+            "where": self.where,
+            "file": file if placed else None,
+            "line": int(line) if placed else None,
+            "column": int(column) if placed else None,
+            "what": self.what,
+            "excerpt": self.excerpt,
+            "mend": self.mend,
+        }
+
 
 class ModelError(EomgenError):
     """The model is wrong. Carries every problem that was found, not just the first."""

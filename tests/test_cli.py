@@ -397,6 +397,25 @@ def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(forma
         assert "the certificate FAILS: do not trust this result" in result.stdout
 
 
+def test_what_could_not_be_checked_is_a_warning_and_no_failure(monkeypatch):
+    """`ok` is null, exit 0; the warning stands on stderr and in the JSON; with a proof there is none."""
+    unchecked = Certificate((Check("it is so", "unchecked", "looking", "it is dark"),))
+    proven = json.loads(run("derive", SEED, "--json").stdout)
+    monkeypatch.setattr(equations, "certify", lambda *_: unchecked)
+    result = run("derive", SEED, "--json")
+    data = json.loads(result.stdout)
+    assert (result.exit_code, data["certificate"]["ok"], proven["warnings"]) == (0, None, [])
+    assert [each["what"] for each in data["warnings"]] == ["nothing of this result could be checked"]
+    assert "warning: nothing of this result could be checked" in result.stderr
+
+
+@pytest.mark.parametrize("words", [("--json",), ("--format", "json"), ("--format=json",)])
+def test_errors_are_json_where_json_is_asked_in_any_way(words):
+    """derive --format json of a model that does not move: one JSON object, as with --json."""
+    result = run("derive", TRUSS, *words)
+    assert json.loads(result.stdout)["error"]["exit_code"] == result.exit_code != 0
+
+
 def test_solve_gives_every_output_in_the_fixed_shape():
     """{name: {exact, value, unit, method, message}}; what cannot be answered has nulls, and exit 3."""
     whole, part = run("solve", SEED, "--json"), run("solve", "-", "--json", text=OSCILLATIONS)

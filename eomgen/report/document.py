@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.report.quantity import Quantity
@@ -13,7 +14,7 @@ from eomgen.report.statements import Equation, Lines, Meaning, Statement, Step, 
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 DISTRUST = "the certificate FAILS: do not trust this result"
-NOTHING_CHECKED = "warning: nothing of this result could be checked"
+NOTHING_CHECKED = Problem("", "nothing of this result could be checked")
 
 
 def _nothing() -> Mapping[str, Any]:
@@ -70,6 +71,12 @@ class Document:
     def distrust(self) -> str:
         """That the proof contradicts the result, in words; "" as it must be."""
         return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
+
+    @property
+    def warnings(self) -> tuple[Problem, ...]:
+        """What a user should know before the result is used."""
+        unchecked = self.certificate is not None and self.certificate.ok is None
+        return (NOTHING_CHECKED,) if unchecked else ()
 
     def proven(self, certificate: Certificate | None) -> Document:
         """With its proof; None: none was asked for."""

@@ -24,7 +24,8 @@ def render(document: Document) -> str:
 def as_dict(document: Document) -> dict[str, Any]:
     """The document as plain data; of one without entries what is printed."""
     entries = document.entries() or _printed(document)
-    own = {"steps": steps(document)} if document.has_heads else {}
+    own: dict[str, Any] = {"warnings": [each.as_dict() for each in document.warnings]} if document.title else {}
+    own |= {"steps": steps(document)} if document.has_heads else {}
     return {"schema_version": SCHEMA_VERSION, **_plain(entries), **own}
 
 

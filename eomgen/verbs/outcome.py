@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.errors import RunFailed
 from eomgen.proof.check import Certificate
 from eomgen.report import json_form
-from eomgen.report.document import NOTHING_CHECKED, Document
+from eomgen.report.document import Document
 from eomgen.report.result import Result
 
 
@@ -46,11 +46,9 @@ def told(found: Result, *, plot: str | None) -> Outcome:
     return Outcome(found.document)
 
 
-def proven(outcome: Outcome, certificate: Certificate | None, format: str = "text") -> Outcome:
+def proven(outcome: Outcome, certificate: Certificate | None) -> Outcome:
     """A result with its certificate: a contradiction stands first and ends in exit 3; None: none was asked for."""
-    doubt = certificate is not None and certificate.ok is None
-    notes = (*outcome.notes, NOTHING_CHECKED) if doubt else outcome.notes
-    return Outcome(outcome.document.proven(certificate), notes)
+    return Outcome(outcome.document.proven(certificate), outcome.notes)
 
 
 def listed(names: Iterable[str]) -> str:
