@@ -30,6 +30,7 @@ from eomgen.report.document import Document
 from eomgen.report.latex import equations_latex
 from eomgen.report.payload import equations_payload
 from eomgen.report.result import Result
+from eomgen.report.statements import Prose, Step
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.traversal import operations
@@ -53,12 +54,14 @@ class Equations(Result):
             by every method, and are held in their shortest form, the recursion over the tree.
         system: motion, loads and ties.
         graph: the equations as graph scalars.
+        assumptions: what had to be assumed of contacts: "floor assumed closed: h has no value".
     """
 
     model: Model
     method: str
     system: System
     graph: Assembly
+    assumptions: tuple[str, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -171,16 +174,25 @@ class Equations(Result):
     @cached_property
     def derivation(self) -> Document:
         """The derivation, step by step."""
-        return derivation_of(self.system, self.graph, self.method)
+        return self._with_assumptions(derivation_of(self.system, self.graph, self.method))
+
+    def _with_assumptions(self, derivation: Document) -> Document:
+        """What had to be assumed stands first."""
+        told = tuple(Prose((f"{what}.",)) for what in self.assumptions)
+        first = (Step("assumptions", "Assumptions", told),) if told else ()
+        return replace(derivation, steps=(*first, *derivation.steps))
 
     def written(self, *, full: bool) -> Document:
         """The document; `full`: everything is printed, however long."""
-        derivation = derivation_of(self.system, self.graph, self.method, full=full) if full else self.derivation
-        return replace(derivation, entries=self.entries)
+        if not full:
+            return replace(self.derivation, entries=self.entries)
+        derivation = derivation_of(self.system, self.graph, self.method, full=True)
+        return replace(self._with_assumptions(derivation), entries=self.entries)
 
     def entries(self) -> dict[str, Any]:
         """What `derive --json` carries."""
-        return equations_payload(self.system, self.graph, self.method)
+        payload = equations_payload(self.system, self.graph, self.method)
+        return {**payload, "assumptions": list(self.assumptions)}
 
     def _repr_latex_(self) -> str:
         return equations_latex(self.derivation)

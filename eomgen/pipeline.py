@@ -10,15 +10,16 @@ from eomgen.codegen.inverse import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion
 from eomgen.questions.run import run
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.phase_change import modes_at_start
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
@@ -27,13 +28,13 @@ METHODS = ("lagrange", "projection", "kinetostatic")
 
 
 @growing()
-def derive(model: Model, method: str = "lagrange") -> Equations:
+def derive(model: Model, method: str = "lagrange", contacts: ContactModes | None = None) -> Equations:
     """The equations of motion of a model; no certificate is made.
-
-    Contacts that can end are closed, but those that are open at the start; what rubs pushes as it does at the start.
 
     Args:
         method: by which the derivation is written, one of METHODS.
+        contacts: how the contacts are that can end, rub or stick, by tie or body on a path, what is not named closed;
+            None: as they are at the start. What had to be assumed of them is among the equations' `assumptions`.
     Raises:
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
@@ -43,10 +44,12 @@ def derive(model: Model, method: str = "lagrange") -> Equations:
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
-    system = system_of(model, modes_at_start(model))
+    at_start = contacts_at_start(model) if contacts is None else ContactsAtStart(contacts)
+    system = system_of(model, at_start.modes)
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
-    return Equations(model, method, system, with_friction(system, recursive.assembled_by_recursion(system)))
+    assembly = with_friction(system, recursive.assembled_by_recursion(system))
+    return Equations(model, method, system, assembly, at_start.assumptions)
 
 
 def inverse_dynamics(model: Model, actuated: Sequence[str] = ()) -> InverseDynamics:

@@ -20,10 +20,10 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.accelerations import accelerations_at
 from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse

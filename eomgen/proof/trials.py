@@ -18,11 +18,11 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
 from eomgen.mechanics.bodies.contact_modes import CLOSED
 from eomgen.mechanics.bodies.kinematics import spin_between
+from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.proof.accelerations import exact_accelerations
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.states import States, in_doubles

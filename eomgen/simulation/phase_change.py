@@ -11,14 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eomgen.codegen.rhs import parameter_vector
-from eomgen.errors import DerivationError, EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.stabilization import PullBack
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import Start
-from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
@@ -212,25 +210,3 @@ def _contact(course: Course, t: float, values: Values, before: Configuration) ->
 def _jammed(standing: Configuration) -> str:
     names = ", ".join(f"'{name}'" for name in standing.modes)
     return f"no forces of the contacts {names} agree with their state (rigid bodies with so much friction jam)"
-
-
-def modes_at_start(model: Model) -> dict[str, ContactMode]:
-    """The contacts that the start values leave open, their gaps not 0, and those that push against their normals there.
-
-    What the coordinates satisfy by themselves is closed, whatever its force; without coordinates what is rough sticks.
-    {} where nothing can be told.
-    """
-    if not contacts_of(model):
-        return {}
-    if not model.coordinates:
-        return dict(modes_at_rest(model))
-    try:
-        p = parameter_vector(model)
-        course = course_of(model, p, "numpy")
-        here = at_start(course, 0.0, None, None)
-        gaps = course.loose.gaps(0.0, here.values) if here.configuration.open else {}
-    except EomgenError:  # a missing value, a start that does not hold: said by whoever needs them
-        return {}
-    away = {name: ContactMode(closed=False) for name in here.configuration.open if gaps[name][0] > _length(here.values)}
-    modes = here.configuration.modes.items()
-    return away | {name: ContactMode(push=mode.push) for name, mode in modes if mode.closed and mode.push < 0}

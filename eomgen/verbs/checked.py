@@ -12,12 +12,12 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.assembly_modes import Branches, branches_of_loops
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.instant.velocity_analysis import mobility_of
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.phase_change import modes_at_start
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def checked_model(model: Model) -> Checked:
     Raises:
         ModelError: declared speeds that do not stand for the rates.
     """
-    modes = modes_at_start(model)
+    modes = contacts_at_start(model).modes
     freedom = freedom_of(model, modes)
     still = not model.coordinates and bool(model.constraints or model.trusses)
     return Checked(

@@ -14,12 +14,12 @@ import eomgen
 from eomgen.mechanics.bodies.inertia import armature_energy
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.equations import articulated
+from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
 from eomgen.mechanics.formulations.free_bodies import free_body_accelerations
 from eomgen.model.unbuilt import unbuilt
-from eomgen.proof.accelerations import accelerations_at
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 pytestmark = pytest.mark.slow

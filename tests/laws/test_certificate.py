@@ -18,13 +18,13 @@ from eomgen.mechanics.balance.balance import Balance, BodyEquation
 from eomgen.mechanics.bodies import contact_modes as contacts
 from eomgen.mechanics.bodies import inertia, kinematics, recursion, tree
 from eomgen.mechanics.constraints import ties
+from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.reactions import reactions
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
 from eomgen.model.unknowns import in_loads
-from eomgen.proof.accelerations import accelerations_at
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times

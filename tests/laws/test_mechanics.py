@@ -11,8 +11,8 @@ import pytest
 
 import eomgen
 from eomgen.equations import Equations
+from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.model.unknowns import in_loads
-from eomgen.proof.accelerations import accelerations_at
 from eomgen.proof.states import closed_state, real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted

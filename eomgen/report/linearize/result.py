@@ -20,6 +20,7 @@ from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.reaction_outputs import output_name
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
@@ -30,7 +31,6 @@ from eomgen.report.linearize.picture import modes_picture
 from eomgen.report.linearize.steps import linearization_steps
 from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
-from eomgen.simulation.phase_change import modes_at_start
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -310,4 +310,6 @@ def linearize(model: Model, about: str | None = None, coordinates: Sequence[str]
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    return Linearization(model, Modes(small_motions_of(system_of(model, modes_at_start(model)), about, wanted)))
+    return Linearization(
+        model, Modes(small_motions_of(system_of(model, contacts_at_start(model).modes), about, wanted))
+    )

@@ -1,0 +1,193 @@
+"""Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
+
+A contact that can end is open where its gap is positive there. What rubs and holds both ways pushes along its normal or
+against it, by the sign of N there: N with friction for that sign. Where a number is missing, or the start does not
+hold, a contact is taken as closed, pushing along its normal, and that is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from random import Random
+
+from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.mechanics.balance.friction import frictions, with_friction
+from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
+from eomgen.mechanics.constraints.closure import of_50_digits
+from eomgen.mechanics.constraints.ties import rows_of_tie
+from eomgen.mechanics.equations.accelerations import exact_accelerations
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
+from eomgen.model.contacts import Contact, contacts_of
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+
+ROUNDS = 4  # of signs of N, each with the friction of the one before
+Numbers = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class ContactsAtStart:
+    """How the contacts of a model are at its start.
+
+    Args:
+        modes: of those that are not closed, or push against their normals.
+        assumptions: what had to be assumed, in words: "floor assumed closed: h has no value".
+    """
+
+    modes: ContactModes = field(default_factory=dict)
+    assumptions: tuple[str, ...] = ()
+
+
+def contacts_at_start(model: Model) -> ContactsAtStart:
+    """The contacts that the start values leave open, and those that push against their normals there.
+
+    Without coordinates what is rough sticks.
+    """
+    contacts = contacts_of(model)
+    if not contacts:
+        return ContactsAtStart()
+    if not model.coordinates:
+        return ContactsAtStart(dict(modes_at_rest(model)))
+    start = _StartNumbers(model)
+    opened = start.open_contacts([c.name for c in contacts if c.unilateral])
+    both_ways = [c for c in contacts if c.friction is not None and not c.unilateral and not c.round]
+    pushing = start.pushing(both_ways, opened.modes) if both_ways else ContactsAtStart()
+    return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
+
+
+@dataclass(frozen=True)
+class _StartNumbers:
+    """The start of a model in numbers, those that nobody gave drawn."""
+
+    model: Model
+
+    @cached_property
+    def missing(self) -> tuple[str, ...]:
+        known = exact_parameters(self.model)
+        return tuple(name for name in self.model.parameters if name not in known)
+
+    @cached_property
+    def drawn(self) -> Numbers:
+        rng = Random(11)
+        return {name: rng.uniform(0.7, 1.3) for name in self.missing}
+
+    def open_contacts(self, names: Sequence[str]) -> ContactsAtStart:
+        """Those of the contacts that can end whose gap is positive; none where the start leaves all of them closed."""
+        if not names:
+            return ContactsAtStart()
+        try:
+            start_state(system_of(self.model), self.drawn)
+            return ContactsAtStart()
+        except DerivationError:  # as a start that leaves a contact open is refused
+            return self._by_gaps(names)
+        except (ModelError, UsageError) as error:
+            return ContactsAtStart({}, tuple(_closed(name, error.what) for name in names))
+
+    def _by_gaps(self, names: Sequence[str]) -> ContactsAtStart:
+        try:
+            free = system_of(self.model, {name: ContactMode(closed=False) for name in names})
+            gaps = _gaps(free, names, self.drawn)
+            others = {p: _gaps(free, names, {**self.drawn, p: 1.7 * self.drawn[p]}) for p in self.missing}
+        except (DerivationError, ModelError, UsageError) as error:
+            why = _lacking(self.missing) if self.missing else error.what
+            return ContactsAtStart({}, tuple(_closed(name, why) for name in names))
+        modes, assumptions = {}, []
+        for name, gap in gaps.items():
+            lacking = [p for p, found in others.items() if abs(found[name] - gap) > COMPUTED * (1 + abs(gap))]
+            if lacking:
+                assumptions.append(_closed(name, _lacking(lacking)))
+            elif gap > CARRIED:
+                modes[name] = ContactMode(closed=False)
+            elif gap < -CARRIED:
+                assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
+        return ContactsAtStart(modes, tuple(assumptions))
+
+    def pushing(self, contacts: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
+        """Those of the contacts that push against their normals: N < 0, with the friction of just that."""
+        signs = {contact.name: 1 for contact in contacts}
+        try:
+            for _ in range(ROUNDS):
+                found = self._signs(contacts, signs, opened)
+                if found == signs:
+                    break
+                signs = found
+        except _Lacking as lacking:
+            return ContactsAtStart({}, tuple(_pushing(c.name, _lacking(lacking.names)) for c in contacts))
+        except (DerivationError, ModelError, UsageError, NoValue) as error:
+            why = error.what if isinstance(error, ModelError | DerivationError | UsageError) else str(error)
+            return ContactsAtStart({}, tuple(_pushing(c.name, why) for c in contacts))
+        return ContactsAtStart({name: ContactMode(push=-1) for name, sign in signs.items() if sign < 0})
+
+    def _signs(self, contacts: Sequence[Contact], signs: Mapping[str, int], opened: ContactModes) -> dict[str, int]:
+        """The sign of N of each contact, with the friction of given signs; what does not slide sticks."""
+        still = self._still(opened)
+        modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
+        system = system_of(self.model, {**opened, **modes})
+        assembly = with_friction(system, recursive.assembled_by_recursion(system))
+        reactions = reactions_of(system)
+        normals = {c.name: reactions.normal(c.name) for c in contacts}
+        entries = (*normals.values(), *assembly.forcing, *(x for row in assembly.M for x in row))
+        if lacking := [x.name for x in symbols_of(entries) if x.name in self.missing]:
+            raise _Lacking(tuple(lacking))
+        state = _state(system, self.drawn)
+        state |= dict(zip(system.symbols.a, exact_accelerations(assembly, state), strict=True))
+        values = evaluate(tuple(normals.values()), state, fifty_digits())
+        return {name: -1 if N < -CARRIED else 1 for name, N in zip(normals, values, strict=True)}
+
+    def _still(self, opened: ContactModes) -> set[str]:
+        """The contacts with dry friction that do not slide at the start."""
+        system = system_of(self.model, opened)
+        state, rough = _state(system, self.drawn), {c.name for c in contacts_of(self.model) if c.mu is not None}
+        sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in frictions(system) if name in rough]
+        values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
+        return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= CARRIED}
+
+
+class _Lacking(Exception):
+    """Parameters without values decide."""
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        self.names = names
+
+
+def _state(system: System, drawn: Numbers) -> State:
+    """Every symbol of a system at the start but a, multipliers 0."""
+    symbols, values = system.symbols, start_state(system, drawn)
+    known = {**exact_parameters(system.scope.model, drawn), **values}
+    nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
+    state = {node: of_50_digits(float(known[name])) for name, node in nodes.items()}
+    state |= {x: of_50_digits(0.0) for x in (symbols.t, *symbols.lam)}
+    own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
+    return state | dict(zip(symbols.inputs.values(), own, strict=True))
+
+
+def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
+    """How far each contact is open at the start; a strand that has no gap is taut."""
+    state = _state(free, drawn)
+    gaps = {name: rows_of_tie(free.motion, name)[0].gap for name in names}
+    values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
+    return {name: float(value) for name, value in zip(gaps, values, strict=True)}
+
+
+def _closed(name: str, why: str) -> str:
+    return f"{name} assumed closed: {why}"
+
+
+def _pushing(name: str, why: str) -> str:
+    return f"{name} assumed to push along its normal: {why}"
+
+
+def _lacking(names: Sequence[str]) -> str:
+    listed = ", ".join(dict.fromkeys(names))
+    return f"{listed} {'has' if len(set(names)) == 1 else 'have'} no value"

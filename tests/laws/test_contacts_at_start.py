@@ -1,0 +1,125 @@
+"""How the contacts of a model are at its start: by its numbers; where one is missing, what was assumed is said."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import eomgen
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.mechanics.bodies.contact_modes import ContactMode
+from eomgen.model.contacts import contacts_of
+from eomgen.simulation.phase_models import PhaseModels
+
+MODELS = Path(__file__).parents[2] / "models"
+BALL = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = 1.0
+g = 9.81
+h = HEIGHT
+[coordinates]
+x = 0
+y = { start = "START" }
+[bodies.ball]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[constraints.floor]
+kind = "support"
+point = "ball.center"
+at = [0, 0]
+normal = [0, 1]
+unilateral = true
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+SLEEVE = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = MASS
+[coordinates]
+x = { start = 0.2, speed = 0.5 }
+y = 0.3
+[bodies.sleeve]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[constraints.bar]
+kind = "support"
+point = "sleeve.center"
+at = [0, 0.3]
+normal = [0, NORMAL]
+friction = 0.2
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""
+
+
+def ball(height: str = "1", start: str = "h") -> eomgen.Model:
+    return eomgen.loads(BALL.replace("HEIGHT", height).replace("START", start))
+
+
+def sleeve(mass: str = "2", normal: str = "1") -> eomgen.Model:
+    return eomgen.loads(SLEEVE.replace("MASS", mass).replace("NORMAL", normal))
+
+
+@pytest.mark.parametrize(("model", "open"), [(ball(), True), (ball("0"), False), (ball("{ unit = 'm' }", "0"), False)])
+def test_a_contact_is_open_where_its_gap_is_positive_and_nothing_is_assumed(model, open):
+    """y > 0 at the start: no row of the floor; y = 0, whatever h: one."""
+    equations = eomgen.derive(model)
+    assert equations.assumptions == () and len(equations.graph.J) == (not open)
+
+
+def test_a_gap_that_hangs_on_a_missing_number_is_assumed_closed_and_said_in_every_format():
+    """y(0) = h, h has no value: closed, in words."""
+    equations, words = eomgen.derive(ball("{ unit = 'm' }")), "floor assumed closed: h has no value"
+    assert equations.assumptions == (words,) and len(equations.graph.J) == 1
+    for format in ("text", "latex", "markdown"):
+        assert words in equations.render(format)
+    assert json.loads(equations.render("json"))["assumptions"] == [words]
+
+
+def test_a_start_inside_of_a_contact_is_said():
+    """y(0) = -0.25: the ball is below its floor."""
+    assert eomgen.derive(ball("-0.25")).assumptions == ("floor assumed closed: the start passes through it, by 0.25 m",)
+
+
+@pytest.mark.parametrize(("normal", "push"), [("1", 1), ("-1", -1)])
+def test_what_holds_both_ways_pushes_by_the_sign_of_its_normal_force(normal, push):
+    """N = m g along +y: against a normal that points down."""
+    equations = eomgen.derive(sleeve(normal=normal))
+    assert equations.system.modes.get("bar", ContactMode()).push == push and equations.assumptions == ()
+    assert equations.certify().ok
+
+
+def test_a_normal_force_without_a_number_is_assumed_to_push_along_its_normal():
+    assert eomgen.derive(sleeve(mass="{ unit = 'kg' }")).assumptions == (
+        "bar assumed to push along its normal: m has no value",
+    )
+
+
+def test_modes_that_are_given_are_taken():
+    """The floor open although the ball lies on it; closed although it does not."""
+    assert not eomgen.derive(ball("0"), contacts={"floor": ContactMode(closed=False)}).graph.J
+    assert len(eomgen.derive(ball(), contacts={}).graph.J) == 1
+
+
+def test_derive_runs_no_simulation_and_no_compiler(monkeypatch):
+    """Of every model with contacts: no program is made, no phase is looked at."""
+
+    def refused(*_, **__):
+        raise AssertionError("derive ran a simulation, a program or a compiler")
+
+    monkeypatch.setattr(PhaseModels, "of", refused)
+    monkeypatch.setattr(RightHandSide, "__init__", refused)
+    monkeypatch.setattr(subprocess, "run", refused)
+    touched = [model for path in sorted(MODELS.rglob("*.toml")) if contacts_of(model := eomgen.load(path))]
+    for model in touched:
+        eomgen.derive(model)
+    assert len(touched) > 8
