@@ -34,9 +34,6 @@ FOLLOW = click.option(
 )
 
 
-NO_CERTIFY = click.option("--no-certify", is_flag=True, help="Make no certificate.")
-
-
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
     from eomgen.verbs.csv_inputs import following
@@ -181,7 +178,10 @@ def reactions_command(model: str, wants_json: bool, output: str | None, format_:
 @_written
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
-def statics_command(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+@NO_CERTIFY
+def statics_command(
+    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
+) -> int:
     """Give reactions at rest by virtual work, or the places of rest.
 
     Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
@@ -190,7 +190,7 @@ def statics_command(model: str, wants_json: bool, output: str | None, format_: s
     """
     from eomgen.verbs.statics import statics_outcome as found
 
-    return _write(found, model, wants_json, output, format_, **options)
+    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
 
 
 @main.command("kinematics")

@@ -118,17 +118,18 @@ def _step(dimension: int, k: int) -> np.ndarray:
 
 
 def _at(cell: Cell, s: np.ndarray) -> np.ndarray:
-    return np.array([np.broadcast_to(x, s.shape[1:]) for x in cell(s)])
+    return np.array([np.broadcast_to(x, s.shape[1:]) for x in cell(tuple(s))])
 
 
 def _measure(slopes: np.ndarray) -> np.ndarray:
     """det(dr/ds) of a volume, and of a surface in the plane, with its sign; else sqrt(det(dr/ds . dr/ds))."""
     columns = np.moveaxis(slopes, -1, 0)  # nodes x parts x 3
     if columns.shape[1] == 3:
-        return np.linalg.det(columns)
-    if columns.shape[1] == 2 and not columns[:, :, 2].any():
-        return np.linalg.det(columns[:, :, :2])
-    found: np.ndarray = np.sqrt(np.linalg.det(columns @ np.swapaxes(columns, 1, 2)))
+        found: np.ndarray = np.linalg.det(columns)
+    elif columns.shape[1] == 2 and not columns[:, :, 2].any():
+        found = np.linalg.det(columns[:, :, :2])
+    else:
+        found = np.sqrt(np.linalg.det(columns @ np.swapaxes(columns, 1, 2)))
     return found
 
 
@@ -213,7 +214,7 @@ class _Proof:
         if body not in self._known:
             part = self.motion.scope.model.bodies[body]
             if part.parts is not None:
-                self._known[body] = sum(map(self._piece, made_of(self.motion.scope, body).pieces))
+                self._known[body] = np.sum([self._piece(p) for p in made_of(self.motion.scope, body).pieces], axis=0)
             elif part.shape is not None:
                 (m,) = self.numbers((mass_properties(self.motion.scope, body).m,))
                 self._known[body] = m * filled(part.shape, self.value)[1]
@@ -222,7 +223,7 @@ class _Proof:
         return self._known[body]
 
     @cached_property
-    def _known(self) -> dict[str, Any]:
+    def _known(self) -> dict[str, np.ndarray]:
         return {}
 
     def _piece(self, placed: PlacedPiece) -> np.ndarray:
@@ -251,7 +252,7 @@ class _Proof:
 
     # -- what is stated --------------------------------------------------------------------------------------
 
-    def about(self, stated: Stated, point: Sequence[float]) -> np.ndarray:
+    def about(self, stated: Stated, point: Sequence[float] | np.ndarray) -> np.ndarray:
         """S of its bodies about a point, in its axes."""
         shift = np.eye(4)
         shift[:3, 3] = -np.array(point)

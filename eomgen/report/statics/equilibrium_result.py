@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import RunFailed
+from eomgen.certificate import certify
+from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
@@ -16,7 +17,10 @@ from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reacti
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters, shown_numbers
+from eomgen.mechanics.small_motions.first_order import first_order_of
 from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate, unchecked
+from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, resting_checks
 from eomgen.report.document import Document, document_of
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
@@ -50,6 +54,18 @@ class Resting(Result):
     def reactions(self) -> ReactionsOrWhy | None:
         """Those at the first place; None without any."""
         return reactions_or_why(self.places[0]) if self.places else None
+
+    def certify(self) -> Certificate:
+        """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
+        if not self.places:
+            return Certificate(())
+        balanced = balance_check(self.places)
+        first = first_order_of(self.places[0].statics.system)
+        try:
+            base = certify(first.system, first.assembly)
+        except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
+            return Certificate((balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
+        return Certificate((*base.checks, balanced, *resting_checks(first, self.places)))
 
     @cached_property
     def derivation(self) -> Document:

@@ -19,6 +19,8 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
+from eomgen.proof.check import Certificate
+from eomgen.proof.structure import structure_checks
 from eomgen.report.document import Document
 from eomgen.report.figures import Picture
 from eomgen.report.result import Result
@@ -108,6 +110,10 @@ class Statics(Result):
         names, scalars = zip(*pairs, strict=True) if pairs else ((), ())
         found = shown_numbers(scalars, known_exactly(self.found.system.scope))
         return {name: x for name, x in zip(names, found, strict=True) if x is not None}
+
+    def certify(self) -> Certificate:
+        """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
+        return Certificate(tuple(structure_checks(self.found, self.sections.found, self.influence)))
 
     @cached_property
     def derivation(self) -> Document:

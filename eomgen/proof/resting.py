@@ -1,0 +1,169 @@
+"""Places of rest -> checks by the equations of motion: nothing is accelerated there, and what is said of stability.
+
+    a = 0 at u = 0;      d a_i/dq_j, by differences, has the eigenvalues -w^2 of small motions about the place
+
+The places come from the equations of statics, Q + J^T lam = 0, phi = 0; the equations of motion are another way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.small_motions.first_order import FirstOrder
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.nearby import Nearby
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE, ZERO_AT_50
+
+MOST = 12  # places that are looked at
+STEP = fifty_digits().number(1) / 10**15  # of a central difference
+BY_MOTION = "50 digits"
+NOTHING_ACCELERATED = "nothing is accelerated at the places of rest"
+
+
+def balance_check(places: Sequence[Equilibrium]) -> Check:
+    """Q + J^T lam = 0 and phi = 0, put back into the equations of statics."""
+    name = "the forces balance and the ties close at every place of rest"
+    try:
+        wrong = next(filter(None, (_at(k, _unbalanced(place)) for k, place in enumerate(places, start=1))), "")
+    except (NoValue, ZeroDivisionError) as error:
+        return unchecked(name, str(error) or "no value", BY_MOTION)
+    return checked(name, wrong, BY_MOTION)
+
+
+def _unbalanced(place: Equilibrium) -> str:
+    """Against the change that a displacement of each coordinate, or of the size of it, makes."""
+    statics, digits = place.statics, fifty_digits()
+    known: dict[Node, Any] = values_of_parameters(statics.system.scope, Random(3))
+    known |= _places(place, statics.unknowns, known)
+    left = evaluate(statics.equations, known, digits)
+    slopes = evaluate(tuple(x for row in jacobian(statics.equations, statics.unknowns) for x in row), known, digits)
+    n = len(statics.unknowns)
+    sizes = [max(1, abs(known[x])) for x in statics.unknowns]
+    for i, x in enumerate(left):
+        usual = sum(abs(slope) * size for slope, size in zip(slopes[n * i : n * i + n], sizes, strict=True))
+        if abs(x) > COMPUTED * usual + ZERO_AT_50:
+            return f"{float(x):.3g} is left of equation {i + 1}"
+    return ""
+
+
+def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any]) -> dict[Node, Any]:
+    """Coordinates and multipliers with 50 digits, as far as they are known so."""
+    exact = {x: place.exact[x] for x in wanted if x in place.exact}
+    missing = [x.name for x in wanted if x not in exact and x not in place.numbers]
+    if missing:
+        raise NoValue(f"'{missing[0]}' has no value")
+    found = dict(zip(exact, evaluate(tuple(exact.values()), known, fifty_digits()), strict=True))
+    return found | {x: fifty_digits().number(1) * place.numbers[x] for x in wanted if x not in exact}
+
+
+def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:
+    """Of the places of rest of a system, whose equations of motion are given."""
+    proofs = [_Proof(first, place) for place in places[:MOST]]
+    yield _of_all(NOTHING_ACCELERATED, proofs, _Proof.wrong, BY_MOTION)
+    said = [proof for proof in proofs if proof.place.stability.kind in ("stable", "unstable")]
+    if said:
+        what = "what is said of stability is so of small motions"
+        yield _of_all(what, said, _Proof.wrong_stability, "differences at 50 digits")
+
+
+def _of_all(name: str, proofs: Sequence[_Proof], wrong: Callable[[_Proof], str], how: str) -> Check:
+    """At every place; where one has no value and nothing is wrong, that is said."""
+    open_ = ""
+    for k, proof in enumerate(proofs, start=1):
+        try:
+            if found := wrong(proof):
+                return checked(name, _at(k, found), how)
+        except (NoValue, ZeroDivisionError) as error:
+            open_ = _at(k, str(error) or "no value")
+    return unchecked(name, open_, how) if open_ else checked(name, "", how)
+
+
+def _at(k: int, wrong: str) -> str:
+    return wrong and f"place {k}: {wrong}"
+
+
+@dataclass(frozen=True)
+class _Proof:
+    """What is wrong with one place, in words.
+
+    Args:
+        first: the equations of motion of its system.
+        place: where it is.
+    """
+
+    first: FirstOrder
+    place: Equilibrium
+
+    @cached_property
+    def numbers(self) -> Mapping[Node, Any]:
+        """Every symbol at rest there, with 50 digits."""
+        system, digits = self.first.system, fifty_digits()
+        symbols = system.symbols
+        known: dict[Node, Any] = values_of_parameters(system.scope, Random(3))
+        known |= {x: digits.number(0) for x in (symbols.t, *symbols.u)}
+        known |= _places(self.place, symbols.q, known)
+        inputs = {node: system.inputs[name] for name, node in symbols.inputs.items()}
+        return known | dict(zip(inputs, evaluate(tuple(inputs.values()), known, digits), strict=True))
+
+    @cached_property
+    def nearby(self) -> Nearby:
+        """The states beside it, speeds all 0."""
+        system = self.first.system
+        along = self.place.stability.along or tuple(q for q in system.symbols.q if q in self.place.statics.q)
+        return Nearby(system, self.first.assembly, self.first.relations, self.numbers, tuple(along), system.symbols.u)
+
+    def _accelerations(self, given: Mapping[Node, Any]) -> np.ndarray:
+        going = self.nearby.going(self.nearby.state({**given, **self._still}))
+        return np.array([going.a[u] for u in self.first.system.symbols.u], dtype=object)
+
+    @property
+    def _still(self) -> dict[Node, Any]:
+        return {u: self.numbers[u] for u in self.first.system.symbols.u}
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """d a/dq of the coordinates whose variations are free, all speeds x these."""
+        columns = []
+        for q in self.nearby.q:
+            late, early = (self._accelerations({q: self.numbers[q] + sign * STEP}) for sign in (1, -1))
+            columns.append((late - early) / (2 * STEP))
+        return np.array(columns, dtype=object).reshape(len(columns), -1).T.astype(float)
+
+    def wrong(self) -> str:
+        """Against what a displacement of one unit, or of the size of the coordinates, accelerates, the ties let go."""
+        rng, numbers = Random(5), self.numbers
+        aside = {q: rng.choice((-1, 1)) * STEP * max(1, abs(numbers[q])) for q in self.first.system.symbols.q}
+        late, early = (
+            self.nearby.going({**numbers, **{q: numbers[q] + sign * d for q, d in aside.items()}}).a for sign in (1, -1)
+        )
+        usual = max((abs(late[u] - early[u]) / (2 * STEP) for u in late), default=0)
+        for u, x in self.nearby.going(numbers).a.items():
+            if abs(x) > COMPUTED * usual + ZERO_AT_50:
+                return f"{u.name} changes by {float(x):.3g}"
+        return ""
+
+    def wrong_stability(self) -> str:
+        """Eigenvalues of the slopes of the free coordinates along themselves: positive ones grow."""
+        kind = self.place.stability.kind
+        rows = {u.name.removesuffix("'"): i for i, u in enumerate(self.first.system.symbols.u)}
+        along = [q.name for q in self.place.stability.along]
+        if not along or any(name not in rows for name in along):
+            return ""
+        values = np.linalg.eigvals(self.slopes[[rows[name] for name in along]]).real
+        largest = abs(values).max(initial=0)
+        if kind == "stable" and values.max() > SAME_PLACE * largest:
+            return "said to be stable, and a small motion grows"
+        if kind == "unstable" and largest and values.max() < -SAME_PLACE * largest:
+            return "said to be unstable, and all small motions oscillate"
+        return ""

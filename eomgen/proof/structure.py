@@ -1,0 +1,309 @@
+"""StaticReactions, section forces, influence lines -> checks of a structure at rest, in numbers.
+
+    N = R . t,  V = -R . n,  M = T        of all that acts behind the section (R, and T about it): from the other end
+    dM/dx = V,   dV/dx = q . n,   dN/dx = -q . t
+    G rho = -e                            reactions to a unit load at a place of an influence line, by balance
+
+Reactions are found in two ways before they come here, by virtual work and by the balance of the bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.balance.unit_wrenches import Axes
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.reactions.equilibrium import imbalance
+from eomgen.mechanics.statics.influence import InfluenceLine, InfluenceSpan
+from eomgen.mechanics.statics.member_axis import MemberAxis
+from eomgen.mechanics.statics.member_loads import MemberLoads, place_of
+from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece
+from eomgen.mechanics.statics.two_ways import StaticReactions
+from eomgen.proof.check import Check, checked, unchecked
+from eomgen.symbolic.expression.expressions import single_call
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
+
+IN_NUMBERS = "floating point"
+QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
+
+
+def structure_checks(
+    found: StaticReactions, sections: Mapping[str, SectionForces], influence: InfluenceLine | None = None
+) -> Iterator[Check]:
+    """Of every reaction, of the section forces by body, and of an influence line."""
+    wrong = ", ".join(reaction.name for reaction in found.disagreeing)
+    both = [reaction for reaction in found.reactions if reaction.work is not None]
+    if both:
+        yield checked("virtual work and the balance of the bodies give the same reactions", wrong, "exact")
+    proof = _Proof(found)
+    name = "every body, every pair and the whole are in balance"
+    try:
+        yield checked(name, imbalance(found.balance, proof.state, Random(7)), IN_NUMBERS)
+    except (NoValue, ZeroDivisionError) as error:
+        yield unchecked(name, str(error) or "no value", IN_NUMBERS)
+    if sections:
+        wrong = next(filter(None, (proof.wrong_from_behind(forces) for forces in sections.values())), "")
+        yield checked("N, V and M are the same from the other end", wrong, IN_NUMBERS)
+        wrong = next(filter(None, (proof.wrong_slopes(forces) for forces in sections.values())), "")
+        yield checked("dM/dx = V, dV/dx = q . n, dN/dx = -q . t", wrong, IN_NUMBERS)
+    if influence is not None:
+        wrong = proof.wrong_influence(influence)
+        yield checked("the influence line is what unit loads give at places of it", wrong, IN_NUMBERS)
+
+
+@dataclass(frozen=True)
+class _Proof:
+    """What is wrong, in words.
+
+    Args:
+        found: the structure and its reactions.
+    """
+
+    found: StaticReactions
+
+    # -- numbers ---------------------------------------------------------------------------------------------
+
+    @cached_property
+    def state(self) -> dict[Node, Any]:
+        """Every symbol with 50 digits; parameters without a value are something, unknown loads what they come to."""
+        structure = self.found.structure
+        known: dict[Node, Any] = values_of_parameters(structure.system.scope, Random(3))
+        for given in (structure.at, self.found.balance.unknowns):
+            known |= dict(zip(given, evaluate(tuple(given.values()), known, fifty_digits()), strict=True))
+        return {**dict.fromkeys(structure.unknowns, 0), **known}
+
+    @cached_property
+    def values(self) -> dict[Node, float]:
+        return {node: float(x) for node, x in self.state.items()}
+
+    def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
+        return np.array([float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)])
+
+    def one(self, x: Scalar) -> float:
+        return float(self.numbers((x,))[0])
+
+    # -- section forces --------------------------------------------------------------------------------------
+
+    @cached_property
+    def _loads(self) -> dict[str, _Along]:
+        return {}
+
+    def along(self, forces: SectionForces) -> _Along:
+        """What acts along a body, in numbers."""
+        body = forces.axis.body
+        if body not in self._loads:
+            loads = MemberLoads(self.found.balance, body, forces.sizes)
+            actions = [
+                (self._x(forces.axis, place), self.numbers(place), self.numbers(force), self.one(couple))
+                for place, force, couple in loads.actions
+            ]
+            spreads = []
+            for start, end, at_start, at_end in loads.spreads:
+                ends = [self._x(forces.axis, place) for place in (start, end)]
+                spreads.append((ends, *map(self.numbers, (start, end, at_start, at_end))))
+            self._loads[body] = _Along(tuple(actions), tuple(spreads))
+        return self._loads[body]
+
+    def _x(self, axis: MemberAxis, place: Vector) -> float:
+        """How far along the axis a place is, body axes; off it nothing has section forces."""
+        x = axis.distance(place)
+        return 0.0 if x is None else self.one(x)
+
+    def wrong_from_behind(self, forces: SectionForces) -> str:
+        along = self.along(forces)
+        for piece in forces.pieces:
+            start, end = self.one(piece.start), self.one(piece.end)
+            leg = piece.leg
+            origin, x0 = self.numbers(leg.start), self.one(leg.x)
+            t, n = self.numbers(leg.along), self.numbers(leg.left)
+            for part in QUARTERS:
+                x = start + part * (end - start)
+                R, T, size, moment = along.behind(x, origin + (x - x0) * t)
+                found = {"axial_force": R @ t, "shear_force": -R @ n, "bending_moment": T}
+                for kind, value in found.items():
+                    stated = self._value(piece, kind, x - start)
+                    if abs(stated - value) > COMPUTED * (moment if kind == "bending_moment" else size):
+                        return f"{kind}({forces.axis.body}, {x:.6g}): {stated:.10g} against {value:.10g}"
+        return ""
+
+    def _value(self, piece: SectionPiece, kind: str, s: float) -> float:
+        return float(np.polyval(self.numbers(piece.coefficients(kind))[::-1], s))
+
+    def wrong_slopes(self, forces: SectionForces) -> str:
+        """Of the polynomials, whose derivatives have coefficients k c_k."""
+        along = self.along(forces)
+        for piece in forces.pieces:
+            start, end = self.one(piece.start), self.one(piece.end)
+            N, V, M = (self.numbers(piece.coefficients(kind))[::-1] for kind in KINDS)
+            t, n = self.numbers(piece.leg.along), self.numbers(piece.leg.left)
+            for part in QUARTERS:
+                s = part * (end - start)
+                q, scale = along.load_at(start + s), abs(V).max() + along.largest * (end - start) + along.force
+                pairs = (("dM/dx", M, np.polyval(V, s)), ("dV/dx", V, q @ n), ("dN/dx", N, -q @ t))
+                for what, series, value in pairs:
+                    unit = scale if what == "dM/dx" else scale / (end - start)
+                    if abs(np.polyval(np.polyder(series), s) - value) > COMPUTED * unit:
+                        return f"{what} of '{forces.axis.body}' at x = {start + s:.6g}"
+        return ""
+
+    # -- influence lines -------------------------------------------------------------------------------------
+
+    def wrong_influence(self, line: InfluenceLine) -> str:
+        for span in line.spans:
+            ends = [self.numbers(place) for place in (span.start, span.end)]
+            stated = [self.one(x) for x in (span.at_start, span.at_end)]
+            for part, body in self._stops(span):
+                place = ends[0] + part * (ends[1] - ends[0])
+                value = self._by_load(line, body, place)
+                expected = stated[0] + part * (stated[1] - stated[0])
+                if abs(value - expected) > COMPUTED * (1 + abs(value)):
+                    return f"at ({place[0]:.6g}, {place[1]:.6g}): {expected:.10g} against {value:.10g}"
+        return ""
+
+    def _stops(self, span: InfluenceSpan) -> Iterator[tuple[float, str]]:
+        """(part of the span, body or node that takes the load there)."""
+        if span.name in self.found.system.motion.index:
+            yield from ((part, span.name) for part in QUARTERS)
+            return
+        first, _, last = span.name.rpartition("-")
+        yield from ((0.0, first), (1.0, f"{first.partition('.')[0]}.{last}"))
+
+    def _by_load(self, line: InfluenceLine, body: str, place: np.ndarray) -> float:
+        """The force under the unit load at a place of a body, by the balance of all bodies."""
+        load = self.numbers(line.load)
+        i = self.found.system.motion.index[body]
+        right = np.zeros(self._G.shape[0])
+        right[3 * i : 3 * i + 3] = _wrench(load, place - self._centers[i])
+        scale = 1 / np.maximum(abs(self._G).max(axis=0, initial=0), RANK)
+        x = scale * np.linalg.lstsq(self._G * scale, -right, rcond=RANK)[0]
+        if line.cut is None:
+            return self._named(line.name, x)
+        return self._in_section(line, x, (body, place, load))
+
+    @cached_property
+    def _centers(self) -> list[np.ndarray]:
+        motion = self.found.system.motion
+        masses = Axes(motion).masses
+        return [self.numbers(link.pose.point(mass.com)) for link, mass in zip(motion.links, masses, strict=True)]
+
+    @cached_property
+    def _G(self) -> np.ndarray:
+        """(force, moment about the mass centre) of a unit of each component on each body."""
+        components = self.found.structure.components
+        G = np.zeros((3 * len(self._centers), len(components)))
+        for j, component in enumerate(components):
+            for e in component.effects:
+                force, couple, arm = (self.numbers(v) for v in (e.force, e.couple, e.arm))
+                G[3 * e.link : 3 * e.link + 3, j] += _wrench(force, arm) + np.array([0, 0, couple[2]])
+        return G
+
+    def _named(self, name: str, x: np.ndarray) -> float:
+        table = {n.name: n for n in named_reactions(self.found.structure.balance)}
+        known = {str(single_call(n)): n for n in table} | {n: n for n in table}
+        combination = table[known[name]].combination
+        return float(sum(self.one(k) * x[j] for j, k in combination.items()))
+
+    def _in_section(self, line: InfluenceLine, x: np.ndarray, load: tuple[str, np.ndarray, np.ndarray]) -> float:
+        """N, V or M of what acts before the section."""
+        cut = line.cut
+        assert cut is not None
+        motion = self.found.system.motion
+        i, at, section = motion.index[cut.axis.body], self.numbers(cut.place), self.one(cut.x)
+        R, T = np.zeros(3), 0.0
+        for j, component in enumerate(self.found.structure.components):
+            for e in component.effects:
+                place = place_of(self.found.structure.components, e, component.owner)
+                s = None if place is None else cut.axis.distance(place)
+                if e.link != i or place is None or s is None or not cut.before(s):
+                    continue
+                force = self.numbers(e.force) * x[j]
+                arm = self.numbers(motion.position((cut.axis.body, place))) - at
+                R, T = R + force, T + _wrench(force, arm)[2] + self.one(e.couple[2]) * x[j]
+        body, place_, force = load
+        if body == cut.axis.body and self._distance(line, place_) < section:
+            R, T = R + force, T + _wrench(force, place_ - at)[2]
+        shift, spin = self.numbers(cut.shift), self.one(cut.spin)
+        return float(-(R @ shift) - T * spin)
+
+    def _distance(self, line: InfluenceLine, place: np.ndarray) -> float:
+        """How far along the axis of the cut body a place is."""
+        assert line.cut is not None
+        axis = line.cut.axis
+        best, away = 0.0, np.inf
+        for leg in axis.legs:
+            ends = [self._on(axis.body, leg.place(x)) for x in (leg.x, leg.x + leg.length)]
+            along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+            s = (place - ends[0]) @ along
+            off = float(np.linalg.norm(place - ends[0] - s * along))
+            if off < away:
+                best, away = self.one(leg.x) + s, off
+        return float(best)
+
+    def _on(self, body: str, place: Vector) -> np.ndarray:
+        return self.numbers(self.found.system.motion.position((body, place)))
+
+
+def _wrench(force: np.ndarray, arm: np.ndarray) -> np.ndarray:
+    """(f_x, f_y, moment)"""
+    return np.array([force[0], force[1], arm[0] * force[1] - arm[1] * force[0]])
+
+
+@dataclass(frozen=True)
+class _Along:
+    """What acts along a body, body axes, in numbers.
+
+    Args:
+        actions: (x, place, force, couple) each.
+        spreads: ((x of the start, of the end), start, end, load per length at the start, at the end) each.
+    """
+
+    actions: tuple[tuple[float, np.ndarray, np.ndarray, float], ...]
+    spreads: tuple[Any, ...]
+
+    def behind(self, x: float, section: np.ndarray) -> tuple[np.ndarray, float, float, float]:
+        """(R, T about the section, and what is large for each) of all behind x; line loads by Simpson's rule, exact."""
+        R, T, size, moment = np.zeros(3), 0.0, self.force, 0.0
+        for at, place, force, couple in self.actions:
+            T_here = _wrench(force, place - section)[2] + couple
+            moment += abs(couple) + float(np.linalg.norm(force) * np.linalg.norm(place - section))
+            if at > x:
+                R, T = R + force, T + T_here
+        for (a, b), start, end, at_start, at_end in self.spreads:
+            begin = min(max((x - a) / (b - a), 0.0), 1.0)
+            if a > b:
+                begin = 1 - min(max((x - b) / (a - b), 0.0), 1.0)
+            first, last = (0.0, begin) if a > b else (begin, 1.0)
+            length = abs(last - first) * abs(b - a)
+            moment += self.largest * abs(b - a) * float(np.linalg.norm(end - section) + np.linalg.norm(start - section))
+            for part, weight in ((first, 1), ((first + last) / 2, 4), (last, 1)):
+                q, r = at_start + part * (at_end - at_start), start + part * (end - start) - section
+                R, T = R + weight * length / 6 * q, T + weight * length / 6 * _wrench(q, r)[2]
+        return R, float(T), size, moment
+
+    def load_at(self, x: float) -> np.ndarray:
+        """The load per length."""
+        q = np.zeros(3)
+        for (a, b), _, _, at_start, at_end in self.spreads:
+            if min(a, b) <= x <= max(a, b):
+                q = q + at_start + (x - a) / (b - a) * (at_end - at_start)
+        return q
+
+    @cached_property
+    def largest(self) -> float:
+        return max((float(np.linalg.norm(q)) for s in self.spreads for q in s[3:]), default=0.0)
+
+    @cached_property
+    def force(self) -> float:
+        """What is large of forces here."""
+        spread = sum(self.largest * abs(b - a) for (a, b), *_ in self.spreads)
+        return float(sum(np.linalg.norm(force) for _, _, force, _ in self.actions) + spread)

@@ -1,0 +1,99 @@
+"""The proof of `statics` sees errors that are planted in reactions, section forces, influence lines, places of rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from known_answers import MODELS
+
+import eomgen
+from eomgen.mechanics.equilibria import search
+from eomgen.mechanics.statics import influence, section_forces, two_ways
+from eomgen.verbs.statics import statics_outcome as verb
+
+BEAM = MODELS / "gerber_beam.toml"
+PENDULUM = MODELS / "simple_pendulum.toml"
+
+
+def wrong_checks(path: Any, **asked: Any) -> str:
+    """The names of the checks that fail."""
+    certificate = eomgen.statics(eomgen.load(path), **asked).certify()
+    return "; ".join(check.name for check in certificate.checks if check.ok is False)
+
+
+def test_a_beam_an_influence_line_and_places_of_rest_hold() -> None:
+    """Each with its own checks."""
+    body = next(iter(eomgen.load(BEAM).bodies))
+    for asked in (None, "reaction_y(E)", f"bending_moment({body}, 1)", f"shear_force({body}, 1)"):
+        assert eomgen.statics(eomgen.load(BEAM), influence=asked).certify()
+    assert eomgen.statics(eomgen.load(PENDULUM)).certify()
+
+
+def test_a_wrong_reaction_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By virtual work and by the balance of the bodies."""
+    right = two_ways.by_virtual_work
+
+    def planted(*given: Any) -> Any:
+        found = right(*given)
+        return None if found is None else replace(found, value=found.value * 2)
+
+    monkeypatch.setattr(two_ways, "by_virtual_work", planted)
+    assert "virtual work" in wrong_checks(BEAM)
+
+
+@pytest.mark.parametrize(("series", "what"), [("V", "other end"), ("M", "dM/dx")])
+def test_wrong_section_forces_are_seen(monkeypatch: pytest.MonkeyPatch, series: str, what: str) -> None:
+    """N, V, M of what acts behind; dM/dx = V."""
+    right = section_forces._piece
+
+    def planted(*given: Any) -> Any:
+        piece = right(*given)
+        c0, c1, *others = getattr(piece, series)
+        return replace(piece, **{series: (c0, 2 * c1, *others) if series == "M" else (2 * c0, c1, *others)})
+
+    monkeypatch.setattr(section_forces, "_piece", planted)
+    assert what in wrong_checks(BEAM)
+
+
+def test_a_wrong_influence_line_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """X(P) = -e . v(P)"""
+    right = influence._Travelling._value
+    monkeypatch.setattr(influence._Travelling, "_value", lambda *given: -right(*given))
+    assert "influence line" in wrong_checks(BEAM, influence="reaction_y(E)")
+
+
+def test_a_place_that_is_none_of_rest_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """a = 0, and Q = 0"""
+    found = eomgen.statics(eomgen.load(PENDULUM))
+    first, *others = found.places
+    q = first.statics.system.symbols.q[0]
+    moved = replace(first, exact={**first.exact, q: first.exact[q] + 1})
+    wrong = replace(found, found=replace(found.found, found=(moved, *others))).certify()
+    failing = [check.name for check in wrong.checks if check.ok is False]
+    assert "nothing is accelerated at the places of rest" in failing
+    assert "the forces balance and the ties close at every place of rest" in failing
+
+
+def test_a_wrong_word_of_stability_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """-w^2 are the eigenvalues of da/dq."""
+    right = search.stability_of
+    other = {"stable": "unstable", "unstable": "stable"}
+
+    def planted(*given: Any) -> Any:
+        found = right(*given)
+        return replace(found, kind=other.get(found.kind, found.kind))
+
+    monkeypatch.setattr(search, "stability_of", planted)
+    assert "what is said of stability" in wrong_checks(PENDULUM)
+
+
+def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`certificate` in JSON, null where none is asked; a contradiction is a failure."""
+    model = eomgen.load(BEAM)
+    assert verb(model).payload["certificate"]["ok"] is True
+    assert verb(model, certify=False).payload["certificate"] is None
+    monkeypatch.setattr(section_forces, "SIXTH", 1)
+    monkeypatch.setattr(section_forces, "HALF", 1)
+    assert "do not trust" in verb(model).failed
