@@ -411,8 +411,8 @@ def test_what_could_not_be_checked_is_a_warning_and_no_failure(monkeypatch):
 
 @pytest.mark.parametrize("words", [("--json",), ("--format", "json"), ("--format=json",)])
 def test_errors_are_json_where_json_is_asked_in_any_way(words):
-    """derive --format json of a model that does not move: one JSON object, as with --json."""
-    result = run("derive", TRUSS, *words)
+    """derive --format json of a file that is no model: one JSON object, as with --json."""
+    result = run("derive", "-", *words, text="nonsense = 1\n")
     assert json.loads(result.stdout)["error"]["exit_code"] == result.exit_code != 0
 
 
