@@ -147,13 +147,14 @@ def derive_command(
 @main.command("solve")
 @_common
 @FOLLOW
+@NO_CERTIFY
 def solve_command(
-    model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...]
+    model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...], no_certify: bool
 ) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve_outcome as solved
 
-    return _write(solved, model, wants_json, output, format_, follow)
+    return _write(solved, model, wants_json, output, format_, follow, certify=not no_certify)
 
 
 @main.command("reactions")

@@ -20,7 +20,7 @@ from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion
-from eomgen.proof.written_code import Judged, Written, start_of
+from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
 from eomgen.version import __version__
 
@@ -97,7 +97,7 @@ class Generated:
         Args:
             plain: the equations whose ties do not pull, in which inverse dynamics is written.
         """
-        start = start_of(0.0, self._start.x0, self._start.p0)
+        start = start_state_tried(0.0, self._start.x0, self._start.p0)
         values = {}
         if self.reactions is not None:
             values = self.equations.reaction_values

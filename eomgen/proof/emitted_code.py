@@ -28,11 +28,11 @@ WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; 
 HOW = "equations with 50 digits, the code's accelerations put in"
 
 
-Code = Callable[["Instant"], np.ndarray]
+Code = Callable[["TriedState"], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Instant:
+class TriedState:
     """A state at which code is tried.
 
     Args:
@@ -55,7 +55,7 @@ class PhaseMotion:
     system: System
     assembly: Assembly
 
-    def values(self, at: Instant) -> dict[Node, Any]:
+    def values(self, at: TriedState) -> dict[Node, Any]:
         """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
         symbols = self.assembly.symbols
         nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
@@ -73,7 +73,7 @@ class PhaseMotion:
         matrices = (x for row in (*assembly.M, *assembly.J) for x in row)
         return (*self.system.scope.rates, *matrices, *assembly.forcing, *assembly.gamma)
 
-    def numbers(self, at: Instant) -> RunNumbers:
+    def numbers(self, at: TriedState) -> RunNumbers:
         """The coefficients at a state.
 
         Raises:
@@ -141,10 +141,10 @@ class RunNumbers:
         return float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
 
 
-def right_hand_side(motion: PhaseMotion, code: Code, at: Iterable[Instant], name: str) -> Check:
+def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:
     """The code's accelerations fulfil the equations at states; one next to a singular position says nothing."""
 
-    def wrong(instant: Instant) -> str | None:
+    def wrong(instant: TriedState) -> str | None:
         numbers = motion.numbers(instant)
         left, where = numbers.left(code(instant))
         if left <= COMPUTED:
@@ -153,10 +153,10 @@ def right_hand_side(motion: PhaseMotion, code: Code, at: Iterable[Instant], name
             return None
         return f"{where} is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
 
-    return along(name, HOW, at, wrong, cost=len(order(motion.scalars)))
+    return at_states(name, HOW, at, wrong, cost=len(order(motion.scalars)))
 
 
-def _sure(code: Code, instant: Instant) -> bool:
+def _sure(code: Code, instant: TriedState) -> bool:
     """Whether the code's numbers hardly change where the state does by a part in 1e12, or are nowhere there."""
     here, *beside = (code(each) for each in (instant, *_beside(instant)))
     if not np.all(np.isfinite(here)):
@@ -165,19 +165,19 @@ def _sure(code: Code, instant: Instant) -> bool:
     return bool(change <= COMPUTED * (1 + np.max(np.abs(here), initial=0.0)))
 
 
-def _beside(instant: Instant) -> tuple[Instant, ...]:
+def _beside(instant: TriedState) -> tuple[TriedState, ...]:
     """The state, each of its numbers a part in 1e12 larger or smaller by turns."""
     turns = np.where(np.arange(len(instant.x)) % 2, -SOLVED, SOLVED)
     return tuple(replace(instant, x=instant.x * (1 + sign * turns)) for sign in (1, -1))
 
 
-def values(
+def values_agree(
     name: str,
     motion: PhaseMotion,
     scalars: Mapping[str, Scalar],
     code: Code,
-    at: Iterable[Instant],
-    further: Callable[[Instant], Mapping[Node, float]] = lambda _: {},
+    at: Iterable[TriedState],
+    further: Callable[[TriedState], Mapping[Node, float]] = lambda _: {},
 ) -> Check:
     """Code against the symbols with 50 digits, entry by entry, relative to the largest.
 
@@ -186,7 +186,7 @@ def values(
         further: values of symbols that the states do not have: accelerations.
     """
 
-    def wrong(instant: Instant) -> str | None:
+    def wrong(instant: TriedState) -> str | None:
         known = motion.values(instant) | {node: precise(float(x)) for node, x in further(instant).items()}
         right = np.array([float(x) for x in evaluate(tuple(scalars.values()), known, fifty_digits())])
         found = np.asarray(code(instant), dtype=float)
@@ -198,10 +198,12 @@ def values(
         k = int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))
         return f"{list(scalars)[k]} is {found[k]:.12g} for {right[k]:.12g} at t = {instant.t:.6g} s"
 
-    return along(name, "symbols with 50 digits", at, wrong, cost=len(order(tuple(scalars.values()))))
+    return at_states(name, "symbols with 50 digits", at, wrong, cost=len(order(tuple(scalars.values()))))
 
 
-def along(name: str, how: str, at: Iterable[Instant], wrong: Callable[[Instant], str | None], *, cost: int) -> Check:
+def at_states(
+    name: str, how: str, at: Iterable[TriedState], wrong: Callable[[TriedState], str | None], *, cost: int
+) -> Check:
     """A check at states, as many as the work allows.
 
     Args:

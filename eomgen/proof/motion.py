@@ -15,7 +15,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.proof.emitted_code import Instant, PhaseMotion
+from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.power import Energies, followed
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
@@ -87,12 +87,12 @@ class Promise:
         return PER_STEP * (self.rtol * size + self.atol) * max(self.steps, 1)
 
 
-def checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
+def run_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
     """Everything that a run promises."""
     moving = [leg for leg in legs if len(leg.t) and len(leg.assembly.symbols.u)]
     if not moving:
         return ()
-    found = [_code(moving), _steps(moving, promise), energy(moving, promise), _impacts(moving, promise)]
+    found = [_code(moving), _steps(moving, promise), energy_kept(moving, promise), _impacts(moving, promise)]
     found += [_ties(moving, promise), _norms(moving, promise)]
     return tuple(check for check in found if check is not None)
 
@@ -110,9 +110,9 @@ def _code(legs: Sequence[Leg]) -> Check:
 
 def _code_of(leg: Leg, name: str) -> Check:
     places = dict.fromkeys([0, *np.linspace(0, len(leg.t) - 1, VISITED)[1:].astype(int).tolist()])
-    at = [Instant(float(leg.t[i]), leg.x[i], leg.p) for i in places]
+    at = [TriedState(float(leg.t[i]), leg.x[i], leg.p) for i in places]
     motion = PhaseMotion(leg.system, leg.assembly)
-    return emitted_code.right_hand_side(motion, lambda instant: leg.code(instant.t, instant.x, instant.p), at, name)
+    return emitted_code.equations_hold(motion, lambda instant: leg.code(instant.t, instant.x, instant.p), at, name)
 
 
 # -- the steps -------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ def _nothing(t: np.ndarray, x: np.ndarray) -> np.ndarray:
 # -- energy ----------------------------------------------------------------------------------------
 
 
-def energy(legs: Sequence[Leg], promise: Promise) -> Check:
+def energy_kept(legs: Sequence[Leg], promise: Promise) -> Check:
     """|E - E(0) - integral of the power| <= 10 (rtol E_max + atol) steps, in every phase from its start.
 
     E_max: the largest |T| + |V - V(0)| on the way. Where motions are given E is H = u . dT/du - T + V.

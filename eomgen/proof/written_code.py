@@ -15,7 +15,7 @@ from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code, trials
 from eomgen.proof.check import Check, unchecked
-from eomgen.proof.emitted_code import Code, Instant, PhaseMotion
+from eomgen.proof.emitted_code import Code, PhaseMotion, TriedState
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -45,11 +45,11 @@ class Written:
         return f"{self.role.main(self.stem)} in {self.target}"
 
     @property
-    def instants(self) -> tuple[Instant, ...]:
+    def instants(self) -> tuple[TriedState, ...]:
         """The states of the vectors."""
         inputs = tuple(self.program.symbols.inputs)
         return tuple(
-            Instant(
+            TriedState(
                 v.t, np.array(v.x), v.p, dict(zip(inputs, v.inputs, strict=True)) if v.inputs else {}, np.array(v.a)
             )
             for v in self.vectors
@@ -66,7 +66,7 @@ class Written:
             return None
         called, inputs = run(self.texts, self.program, self.stem, self.role), tuple(self.program.symbols.inputs)
 
-        def at(instant: Instant) -> np.ndarray:
+        def at(instant: TriedState) -> np.ndarray:
             given = [instant.inputs[name] for name in inputs] if inputs and instant.inputs else None
             return np.array(called(instant.t, instant.x.tolist(), instant.a.tolist(), list(instant.p), given))
 
@@ -87,7 +87,7 @@ class Judged:
     values: Mapping[str, Scalar]
     actuators: Sequence[str] = ()
 
-    def check(self, written: Written, start: Sequence[Instant]) -> Check:
+    def check(self, written: Written, start: Sequence[TriedState]) -> Check:
         """The written function at the start and at the states of its test vectors."""
         name = f"{written.name} gives the symbols' numbers"
         try:
@@ -97,24 +97,24 @@ class Judged:
         if code is None:
             return unchecked(name, f"nothing here runs {written.target}", "run")
         if written.role is RHS:
-            return emitted_code.right_hand_side(self.motion, code, (*start, *written.instants), name)
+            return emitted_code.equations_hold(self.motion, code, (*start, *written.instants), name)
         if self.actuators:
             return self._inverse(code, written.instants, name)
-        return emitted_code.values(
+        return emitted_code.values_agree(
             name, self.motion, self.values, code, (*start, *written.instants), self._accelerations
         )
 
-    def _accelerations(self, at: Instant) -> Mapping[Node, float]:
+    def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
         """a by dense linear algebra."""
         found = trials.accelerations_at(self.motion.assembly, self.motion.values(at))
         return dict(zip(self.motion.assembly.symbols.a, found.tolist(), strict=True))
 
-    def _inverse(self, code: Code, at: Iterable[Instant], name: str) -> Check:
+    def _inverse(self, code: Code, at: Iterable[TriedState], name: str) -> Check:
         """tau put back as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""
         system = self.motion.system
         columns = {actuator: acting(system, actuator) for actuator in self.actuators if actuator not in system.inputs}
 
-        def wrong(instant: Instant) -> str | None:
+        def wrong(instant: TriedState) -> str | None:
             free = self.motion.numbers(instant)
             a = instant.a
             if len(free.J):
@@ -133,7 +133,7 @@ class Judged:
             )
 
         how = "its forces put into the equations with 50 digits"
-        return emitted_code.along(name, how, at, wrong, cost=len(order(self.motion.scalars)))
+        return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
 
 
 def acting(system: System, name: str) -> tuple[Scalar, ...]:
@@ -147,6 +147,6 @@ def acting(system: System, name: str) -> tuple[Scalar, ...]:
     return tuple(row.get(k, 0) for k in range(len(symbols.u)))
 
 
-def start_of(t: float, x0: np.ndarray | None, p0: np.ndarray | None) -> tuple[Instant, ...]:
+def start_state_tried(t: float, x0: np.ndarray | None, p0: np.ndarray | None) -> tuple[TriedState, ...]:
     """The model's own start; () where a value is missing."""
-    return () if x0 is None or p0 is None else (Instant(t, x0, p0),)
+    return () if x0 is None or p0 is None else (TriedState(t, x0, p0),)

@@ -8,6 +8,7 @@ instant it is exact where the motion can be followed in closed form, else a numb
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,14 +28,16 @@ from eomgen.mechanics.instant.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
+from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.quantity import Quantity
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -47,7 +50,23 @@ Answer = Quantity  # of an output
 NO_VALUE = "it has no finite value {}"
 
 
-def solve(model: Model) -> dict[str, Answer]:
+class Answers(dict[str, Answer]):
+    """{name: answer}, in the order of the model's outputs.
+
+    Args:
+        solver: where they come from.
+    """
+
+    def __init__(self, found: Mapping[str, Answer], solver: Solver) -> None:
+        super().__init__(found)
+        self._solver = solver
+
+    def certify(self) -> Certificate:
+        """Every number against the motion in numbers, every text against its number; the equations first."""
+        return certificate_of(self._solver, self)
+
+
+def solve(model: Model) -> Answers:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
     Raises:
@@ -62,7 +81,7 @@ def solve(model: Model) -> dict[str, Answer]:
             found[name] = _unanswered(output, error)
     if wrong and not any(answer.answered for answer in found.values()):
         raise wrong[0]
-    return found
+    return Answers(found, solver)
 
 
 @dataclass(frozen=True)
@@ -95,7 +114,7 @@ class _Solver:
             return self._at(output)
         if output.from_ is not None:
             return self._of_configuration(output)
-        if self._is_of_the_instant(output.value):
+        if self.is_of_the_instant(output):
             return self._of_the_instant(output)
         return self._of_state(output)
 
@@ -104,9 +123,9 @@ class _Solver:
 
     # -- at the one instant that [given] speaks of -----------------------------------------------
 
-    def _is_of_the_instant(self, formula: Expression) -> bool:
+    def is_of_the_instant(self, output: Output) -> bool:
         """Whether a formula asks velocities where no time runs: with [given], or of bodies and ties alone."""
-        given = self.model.given
+        given, formula = self.model.given, output.value
         if given is None:
             return not self.model.coordinates and asks_motion(formula)
         texts = [
@@ -272,7 +291,7 @@ class _Solver:
         if isinstance(output.at, AtRest):
             if output.from_ or output.side:
                 raise DerivationError("a place of rest has no way that leads there", mend="leave out `from` and `side`")
-            moment = self._resting
+            moment = self.at_rest
         else:
             moment = self.motions[output.from_ == "rest"].until(output.at, output.side)
         phase, method = moment.phase, moment.method
@@ -318,7 +337,7 @@ class _Solver:
         return substituted((asked,), motion.start)[0]
 
     @cached_property
-    def _resting(self) -> StateAtInstant:
+    def at_rest(self) -> StateAtInstant:
         """Where all forces balance, or the start held by unknowns."""
         return resting(self.phase.system)
 

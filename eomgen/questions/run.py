@@ -49,7 +49,7 @@ class RunProof:
         """The proof of the equations, then that of the run."""
         certificate = certify(self.equations.system, self.equations.graph)
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        return certificate + motion.checks(legs, motion.Promise(self.how.rtol, self.how.atol, found.steps))
+        return certificate + motion.run_checks(legs, motion.Promise(self.how.rtol, self.how.atol, found.steps))
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
         """The states that a phase went through, none of them after the run was cut."""

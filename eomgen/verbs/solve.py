@@ -6,10 +6,10 @@ from eomgen.model.parts import Model
 from eomgen.questions import answers
 from eomgen.report.document import plain_document
 from eomgen.report.statements import Found, Listing
-from eomgen.verbs.outcome import Outcome, listed
+from eomgen.verbs.outcome import Outcome, listed, proven
 
 
-def solve_outcome(model: Model) -> Outcome:
+def solve_outcome(model: Model, *, certify: bool = True) -> Outcome:
     """Every entry of [outputs]."""
     found = answers.solve(model)
     unanswered = [name for name, answer in found.items() if not answer.answered]
@@ -19,4 +19,5 @@ def solve_outcome(model: Model) -> Outcome:
         Listing(tuple(Found(name, answer) for name, answer in found.items())),
         failed=f"not answered: {listed(unanswered)}" if unanswered else "",
     )
-    return Outcome(document, () if found else ("the model asks nothing: it has no [outputs]",))
+    outcome = Outcome(document, () if found else ("the model asks nothing: it has no [outputs]",))
+    return proven(outcome, found.certify() if certify and found else None)

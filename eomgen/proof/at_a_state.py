@@ -1,0 +1,140 @@
+"""A system, a state in numbers -> what formulas are worth there, by another way than they are made readable on.
+
+Accelerations come from dense linear algebra with more than 20 digits, reactions from the bodies' equations solved in
+doubles; every other function is evaluated as it is defined, with 50 digits. Nothing was simplified before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import right_hand_side
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.errors import DerivationError, EomgenError
+from eomgen.mechanics.constraints.closure import of_50_digits as precise
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
+from eomgen.proof.trials import exact_accelerations
+from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+
+@dataclass(frozen=True)
+class NumericState:
+    """A system in one phase, at a state.
+
+    Args:
+        assembly: its equations of motion.
+        parameters: their values, exact constants.
+        numbers: t, q and u.
+    """
+
+    system: System
+    assembly: Assembly
+    parameters: Mapping[Node, Scalar]
+    numbers: Mapping[Node, float]
+
+    @cached_property
+    def values(self) -> dict[Node, Any]:
+        """t, q, u, parameters and inputs with 50 digits."""
+        digits, inputs = fifty_digits(), self.system.symbols.inputs
+        known = dict(zip(self.parameters, evaluate(tuple(self.parameters.values()), {}, digits), strict=True))
+        known |= {node: precise(float(x)) for node, x in self.numbers.items()}
+        own = evaluate(tuple(self.system.inputs[name] for name in inputs), known, digits)
+        return known | dict(zip(inputs.values(), own, strict=True))
+
+    @cached_property
+    def unknowns(self) -> dict[Node, Any]:
+        """Accelerations, and the multipliers of least size.
+
+        Raises:
+            NoValue: they are not determined there.
+        """
+        symbols, assembly = self.assembly.symbols, self.assembly
+        a = exact_accelerations(assembly, self.values)
+        found = dict(zip(symbols.a, a, strict=True))
+        if not assembly.J:
+            return found
+        n = len(a)
+        entries = (*(x for row in (*assembly.M, *assembly.J) for x in row), *assembly.forcing)
+        wide = np.array(evaluate(entries, self.values, fifty_digits()), dtype=object)
+        M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
+        needed = (M @ np.array(a, dtype=object) - wide[-n:]).astype(float)
+        sizes = np.linalg.norm(J, axis=1)
+        scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
+        lam = scaled / np.where(sizes > 0, sizes, 1.0)
+        return found | {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}
+
+    def worth(self, formula: Expression) -> float:
+        """The formula there.
+
+        Raises:
+            NoValue: it has none.
+            MissingValues, DerivationError: it holds what is not known of the state.
+        """
+        quantities = Quantities(self.system)
+
+        def value(call: Call) -> Scalar:
+            found = self.reactions.get(str(call)) if call.name in ASKING_REACTIONS else None
+            return quantities.value(call) if found is None else Fraction(found)
+
+        return self.number(formula.evaluate(self.system.scope.names, value))
+
+    def number(self, scalar: Scalar) -> float:
+        """A function of the state, of accelerations and multipliers."""
+        symbols, known = self.assembly.symbols, self.values
+        if depends_on(scalar, (*symbols.a, *symbols.lam)):
+            known = known | self.unknowns
+        return float(evaluate((scalar,), known, fifty_digits())[0])
+
+    @cached_property
+    def reactions(self) -> dict[str, float]:
+        """Every reaction that has a single value, by the name by which outputs ask for it."""
+        try:
+            columns = ReactionColumns(reactions_of(self.system), self._rhs)
+            found = columns.along(np.array([self.t]), self.x[None, :], self.p)[0]
+        except (DerivationError, EomgenError):
+            return {}
+        return {name: float(x) for name, x in zip(columns.names, found, strict=True) if np.isfinite(x)}
+
+    @property
+    def t(self) -> float:
+        return float(self.numbers[self.assembly.symbols.t])
+
+    @property
+    def x(self) -> np.ndarray:
+        """(q, u)"""
+        symbols = self.assembly.symbols
+        return np.array([self.numbers[node] for node in (*symbols.q, *symbols.u)], dtype=float)
+
+    @property
+    def p(self) -> np.ndarray:
+        values = evaluate(tuple(self.parameters.values()), {}, fifty_digits())
+        known = dict(zip(self.parameters, values, strict=True))
+        return np.array([float(known.get(node, np.nan)) for node in self.assembly.symbols.parameters.values()])
+
+    @cached_property
+    def _rhs(self) -> RightHandSide:
+        return compiled(right_hand_side(with_accelerations(self.system, self.assembly), self.system.inputs), "numpy")
+
+    def beside(self) -> tuple[NumericState, NumericState]:
+        """Two states so near that doubles of several steps might mistake them for it."""
+        turns = {node: (-1) ** k * COMPUTED * (1 + abs(x)) for k, (node, x) in enumerate(self.numbers.items())}
+        moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
+        first, last = (replace(self, numbers=numbers) for numbers in moved)
+        return first, last

@@ -1,0 +1,354 @@
+"""Answers -> Certificate: each number against the motion in numbers, each text against its number.
+
+The exact way (closed laws, energy theorem, balance made readable) and the way in numbers share the poses, the
+equations of motion, which are proven first, and the definitions of the functions that outputs ask.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from eomgen.certificate import certify
+from eomgen.codegen.program import program_of, right_hand_side
+from eomgen.codegen.rhs import compiled
+from eomgen.errors import DerivationError, EomgenError, RunFailed
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.mechanics.instant.outputs import LINEARIZED
+from eomgen.model.fields import AtRest
+from eomgen.model.parts import Model, Output
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.tally import Tally
+from eomgen.questions.at_instant import StateAtInstant
+from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.report.quantity import Quantity
+from eomgen.simulation.integrate import integrate
+from eomgen.simulation.measures import nearness_of
+from eomgen.simulation.projection import projection_of
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.derivative import depends_on, symbols_of
+from eomgen.symbolic.expression.expressions import Call, parse
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE, SOLVED
+
+STEPS = 2000  # of a run in time that one instant is compared with
+AWAY = 10  # times what nearby states make of it, by which a number may be off
+WAY = 1.0  # s, of the motion along which functions of the configuration are tried
+ROWS = 21  # of it
+
+
+class Solver(Protocol):
+    """Where answers came from."""
+
+    @property
+    def model(self) -> Model: ...
+
+    @property
+    def motions(self) -> Mapping[bool, MotionFromStart]: ...
+
+    def is_of_the_instant(self, output: Output) -> bool: ...
+
+    @property
+    def at_rest(self) -> StateAtInstant: ...
+
+
+def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
+    """The proof of the equations where a motion is asked, then of every answer."""
+    proof = _Proof(solver, answers)
+    return Certificate((*proof.equations(), *proof.texts(), *proof.numbers(), *proof.instants(), *proof.ways()))
+
+
+@dataclass(frozen=True)
+class _Proof:
+    solver: Solver
+    answers: Mapping[str, Quantity]
+
+    @cached_property
+    def asked(self) -> dict[str, tuple[Output, Quantity]]:
+        """The outputs that were answered."""
+        outputs = self.solver.model.outputs
+        return {name: (outputs[name], found) for name, found in self.answers.items() if found.answered}
+
+    def equations(self) -> tuple[Check, ...]:
+        """Of the first phase; () where nothing moves."""
+        phase = self.solver.motions[False].phase
+        if not phase.system.symbols.u or not self.asked:
+            return ()
+        try:
+            return certify(phase.system, phase.assembly).checks
+        except EomgenError:
+            return ()
+
+    # -- what is printed ---------------------------------------------------------------------------
+
+    def texts(self) -> Iterator[Check]:
+        """The exact text, read back by our grammar, has the number beside it."""
+        tally = Tally("exact texts, read back, give the numbers", "our grammar, the text alone, sure digits")
+        for name, (_, found) in self.asked.items():
+            if found.exact is not None and found.value is not None:
+                tally.add(name, partial(self._read_back, found))
+        return tally.checks()
+
+    def _read_back(self, found: Quantity) -> str:
+        phase = self.solver.motions[False].phase
+        number = number_of(read(phase, found.exact or ""), self._start_values)
+        if math.isnan(number):
+            raise NoValue("the text holds what has no value at the start")
+        return _differing(found.value or 0.0, number)
+
+    @cached_property
+    def _start_values(self) -> dict[Node, Scalar | float]:
+        """What the symbols of a text are worth: parameters, the start, inputs there."""
+        motion = self.solver.motions[False]
+        system = motion.phase.system
+        known: dict[Node, Scalar | float] = {**known_exactly(system.scope), system.symbols.t: 0.0, **_start(motion)}
+        for name, node in system.symbols.inputs.items():
+            if set(symbols_of((system.inputs[name],))) <= known.keys():
+                known[node] = number_of(system.inputs[name], known)
+        return known
+
+    # -- what it is worth --------------------------------------------------------------------------
+
+    def numbers(self) -> Iterator[Check]:
+        """The number of an answer is what its formula is worth at the state in numbers."""
+        tally = Tally("numbers are those of the formulas at the state", "50 digits, reactions in doubles")
+        for name, (output, found) in self.asked.items():
+            if (found.value is not None and output.from_ is None) or output.at is not None:
+                tally.add(name, partial(self._against_state, output, found))
+        return tally.checks()
+
+    def _against_state(self, output: Output, found: Quantity) -> str:
+        if found.value is None:
+            raise DerivationError("it has no number")
+        self._refuse_other(output)
+        moment = self._moment(output)
+        if moment is None:
+            phase, numbers = self.solver.motions[False].phase, _start(self.solver.motions[False])
+        else:
+            phase, numbers = moment.phase, dict(moment.numbers)
+        if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
+            raise RunFailed("the state is not known in numbers")
+        state = self._state(phase, numbers)
+        right = _in_unit(state.worth(output.value), output)
+        if not _differing(found.value, right):
+            return ""
+        return _beyond(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
+
+    def _refuse_other(self, output: Output) -> None:
+        """Raises DerivationError for what is of no state of the motion."""
+        if any(call.name in LINEARIZED for call in output.value.calls):
+            raise DerivationError("it is of the linearized system: `eomgen linearize` proves it")
+        if output.at is None and self.solver.is_of_the_instant(output):
+            raise DerivationError("it is of one instant that no motion leads to: `eomgen kinematics` proves it")
+
+    def _moment(self, output: Output) -> StateAtInstant | None:
+        """The instant that is asked; None: the start."""
+        if output.at is None:
+            return None
+        if isinstance(output.at, AtRest):
+            return self.solver.at_rest
+        return self.solver.motions[output.from_ == "rest"].until(output.at, output.side)
+
+    def _state(self, phase: PhaseEquations, numbers: Mapping[Node, float]) -> NumericState:
+        key = id(phase), tuple(numbers.values())
+        if key not in self._states:
+            state = {phase.system.symbols.t: 0.0, **numbers}
+            self._states[key] = NumericState(phase.system, phase.assembly, known_exactly(phase.system.scope), state)
+        return self._states[key]
+
+    @cached_property
+    def _states(self) -> dict[Any, NumericState]:
+        return {}
+
+    # -- when ----------------------------------------------------------------------------------------
+
+    def instants(self) -> Iterator[Check]:
+        """A run in time from the start leads to the state at the instant, and the condition does not hold before."""
+        tally = Tally("a run in time leads to the instants asked for", "integrated from the start, order 8")
+        rest = Tally("at rest all forces balance", "equations of motion with u = 0, a = 0, 50 digits")
+        asked = {
+            (output.at.text, output.from_): output
+            for output, _ in self.asked.values()
+            if output.at is not None and not isinstance(output.at, AtRest)
+        }
+        for (text, _), output in asked.items():
+            tally.add(text, partial(self._on_the_way, output))
+        resting = [name for name, (output, _) in self.asked.items() if isinstance(output.at, AtRest)]
+        if resting:
+            rest.add("the place of rest", self._balanced)
+        return iter((*tally.checks(), *rest.checks()))
+
+    def _on_the_way(self, output: Output) -> str:
+        motion = self.solver.motions[output.from_ == "rest"]
+        moment = self._moment(output)
+        assert moment is not None
+        if motion.course is not None:
+            raise DerivationError("the motion has phases, and its instants are those of the run in time itself")
+        t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
+        if not (math.isfinite(t) and motion.numbers):
+            raise RunFailed("the instant is not known in numbers")
+        if t == 0:
+            return ""
+        run = _run(motion, t)
+        symbols = motion.phase.system.symbols
+        there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
+        apart = np.abs(run.x[-1] - there) / (1 + np.max(np.abs(run.x), axis=0, initial=0.0))
+        k = int(np.argmax(apart)) if len(apart) else 0
+        if len(apart) and not apart[k] <= RUNS_AGREE:
+            name = (*symbols.q, *symbols.u)[k].name
+            return f"{name} = {there[k]:.10g} for {run.x[-1][k]:.10g} at t = {t:.10g} s"
+        return self._too_late(motion, output, run, t)
+
+    def _too_late(self, motion: MotionFromStart, output: Output, run: Trajectory, t: float) -> str:
+        """Whether the condition changes its sign before the instant."""
+        phase, condition = motion.phase, output.at
+        assert condition is not None and not isinstance(condition, AtRest)
+        left, right = phase.of_state(condition.left), phase.of_state(condition.right)
+        system = phase.system
+        function = compiled(program_of((left - right,), system.symbols, inputs=system.inputs), "numpy")
+        with np.errstate(all="ignore"):
+            values = function.many(run.t, run.x, _parameters(motion))[:, 0]
+        size = float(np.max(np.abs(values), initial=0.0))
+        before = [float(v) for v, when in zip(values, run.t, strict=True) if when < t * (1 - SAME_PLACE)]
+        signs = {v > 0 for v in before if abs(v) > CARRIED * size}
+        smooth = np.max(np.abs(np.diff(values)), initial=0.0) < size
+        return f"'{condition.text}' holds before t = {t:.10g} s" if len(signs) > 1 and smooth else ""
+
+    def _balanced(self) -> str:
+        moment = self.solver.at_rest
+        if not moment.numbers:
+            raise RunFailed("the place is not known in numbers")
+        phase = moment.phase
+        state = self._state(phase, moment.numbers)
+        numbers = PhaseMotion(phase.system, phase.assembly).numbers(TriedState(0.0, state.x, state.p))
+        left, where = numbers.left(np.zeros(len(state.x)))
+        return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
+
+    # -- on the way --------------------------------------------------------------------------------
+
+    def ways(self) -> Iterator[Check]:
+        """A function of the configuration has along the motion the number of the formula at the same instants."""
+        tally = Tally("functions of the configuration hold along the motion", "integrated from the start, order 8")
+        for name, (output, found) in self.asked.items():
+            if output.from_ is not None and output.at is None and found.exact is not None:
+                tally.add(name, partial(self._along, output, found))
+        return tally.checks()
+
+    def _along(self, output: Output, found: Quantity) -> str:
+        motion = self.solver.motions[output.from_ == "rest"]
+        phase, run = motion.phase, _run(motion, WAY, ROWS)
+        scalar, symbols = read(phase, found.exact or ""), phase.system.symbols
+        if depends_on(scalar, symbols.u):
+            return ""  # a function of the state: its number is compared
+        nodes, parameters = (*symbols.q, *symbols.u), known_exactly(phase.system.scope)
+        one_way = _before_a_turn(run, len(symbols.q))
+        for t, x in list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way:4]:
+            state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
+            right = _in_unit(state.worth(output.value), output)
+            here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
+            wrong = _differing(number_of(scalar, here), right, CARRIED) and _beyond(
+                number_of(scalar, here), right, [_in_unit(near.worth(output.value), output) for near in state.beside()]
+            )
+            if wrong:
+                return f"{wrong} at t = {t:.6g} s"
+        return ""
+
+
+def read(phase: PhaseEquations, text: str) -> Scalar:
+    """A printed formula as a scalar of the phase.
+
+    Raises:
+        ExpressionError: our grammar does not read it.
+        DerivationError: a function of the motion stands in it.
+    """
+
+    def none(call: Call) -> Scalar:
+        raise DerivationError(f"'{call}' stands in the text")
+
+    found: Scalar = parse(text).evaluate(phase.system.scope.names, none)
+    return found
+
+
+def _in_unit(value: float, output: Output) -> float:
+    return value if output.unit is None else float(output.unit.from_si(value, math.pi))
+
+
+def _differing(found: float, right: float, share: float = COMPUTED) -> str:
+    """That two numbers differ by more than a share of the larger, in words; ""."""
+    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
+        return ""
+    return f"{found:.10g} for {right:.10g}"
+
+
+def _beyond(found: float, right: float, near: list[float]) -> str:
+    """That a number is off by more than nearby states make of it.
+
+    Raises:
+        NoValue: next to a singular position nearby states are far apart.
+    """
+    change = max(abs(x - right) for x in near)
+    off = abs(found - right)
+    if off <= AWAY * change <= SAME_PLACE * (1 + abs(right)):
+        return ""
+    if off <= AWAY * change:
+        raise NoValue("the state is next to a singular position, and doubles say too little of it")
+    return _differing(found, right)
+
+
+def _start(motion: MotionFromStart) -> dict[Node, float]:
+    """t, q and u at the start; {} where they are not known."""
+    try:
+        return motion.numbers
+    except EomgenError:
+        return {}
+
+
+def _parameters(motion: MotionFromStart) -> np.ndarray:
+    known = known_exactly(motion.phase.system.scope)
+    symbols = motion.phase.system.symbols
+    return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
+
+
+def _run(motion: MotionFromStart, time: float, samples: int | None = None) -> Trajectory:
+    """The motion from the start, in one phase, by emitted code.
+
+    Raises:
+        RunFailed: it does not get there.
+    """
+    phase, p = motion.phase, _parameters(motion)
+    system, assembly, symbols = phase.system, phase.assembly, phase.system.symbols
+    x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
+    rhs = compiled(right_hand_side(with_accelerations(system, assembly), system.inputs), "numpy")
+    run = integrate(
+        rhs,
+        time=time,
+        x0=x0,
+        p=p,
+        rtol=FINE_RUN,
+        atol=FINE_RUN,
+        samples=samples,
+        projection=projection_of(system, p, "numpy"),
+        nearness=nearness_of(system, assembly, p),
+        most_steps=STEPS,
+    )
+    if not run.ok:
+        raise RunFailed(f"the run does not get there: {run.message}")
+    return run
+
+
+def _before_a_turn(run: Trajectory, coordinates: int) -> int:
+    """How many rows there are before a speed changes its sign."""
+    signs = np.sign(run.x[1:, coordinates:])
+    turned = np.any(signs * signs[:1] < 0, axis=1) if len(signs) else np.zeros(0, dtype=bool)
+    return int(np.argmax(turned)) + 1 if turned.any() else len(run.t)

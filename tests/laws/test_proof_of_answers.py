@@ -1,0 +1,189 @@
+"""Answers carry their proof: an error in a value, a text, an instant, a law or a definition is seen."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.questions import answers
+from eomgen.questions.at_instant import StateAtInstant
+
+MODELS = Path(__file__).parent.parent.parent / "models"
+TEXTS = "exact texts, read back, give the numbers"
+NUMBERS = "numbers are those of the formulas at the state"
+INSTANTS = "a run in time leads to the instants asked for"
+WAYS = "functions of the configuration hold along the motion"
+REST = "at rest all forces balance"
+
+
+def solved(text: str):
+    return eomgen.solve(eomgen.loads(text))
+
+
+def failing(found) -> dict[str, str]:
+    return {check.name: check.detail for check in found.certify().checks if check.status == "fails"}
+
+
+def holding(found) -> set[str]:
+    return {check.name for check in found.certify().checks if check.status == "holds"}
+
+
+PENDULUM = """
+eomgen = 1
+space = "plane"
+[parameters]
+g = 9.81
+l = 0.5
+m = 2
+[coordinates]
+phi = { start = "pi/3" }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "phi - pi/2" }
+[forces]
+weight = { kind = "gravity", acceleration = [0, "-g"] }
+[outputs]
+force = { value = "reaction_y(rod)" }
+speed_of_end = { value = "vx(rod.end)", at = "phi = 0" }
+kinetic = { value = "kinetic_energy()", from = "start" }
+rest = { value = "x(rod.end)", at = "equilibrium" }
+"""
+
+SLIDER_CRANK = """
+eomgen = 1
+space = "plane"
+[parameters]
+r = 0.24
+L = 0.35
+w = 110
+m = 0.9
+[coordinates]
+a = { rate = "w" }
+phi = { dependent = true }
+s = { dependent = true, near = "r + L" }
+[bodies.crank]
+points = { A = ["r", 0] }
+joint = { kind = "revolute", angle = "a" }
+[bodies.rod]
+points = { B = ["L", 0] }
+joint = { kind = "revolute", on = "crank.A", angle = "phi" }
+[bodies.piston]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "s" }
+[constraints.B]
+kind = "pin"
+points = ["rod.B", "piston.center"]
+[outputs]
+B30 = { value = "reaction_x(B)", at = "a = pi/6" }
+"""
+
+
+def test_every_way_to_an_answer_is_proven():
+    """At the start, at an instant, along the motion, at rest."""
+    found = solved(PENDULUM)
+    assert not failing(found)
+    assert {TEXTS, NUMBERS, INSTANTS, WAYS, REST} <= holding(found)
+    assert isinstance(found, dict) and list(found) == ["force", "speed_of_end", "kinetic", "rest"]
+
+
+def test_a_number_that_lost_its_digits_is_seen():
+    """A driven slider-crank at 30 degrees: 3829276.778 N was said for 3407.9598222043 N."""
+    found = solved(SLIDER_CRANK)
+    assert found["B30"].value == pytest.approx(3407.9598222043, rel=1e-12)
+    assert NUMBERS in holding(found) and not failing(found)
+    found["B30"] = replace(found["B30"], value=3829276.778)
+    assert NUMBERS in failing(found)
+    found["B30"] = replace(found["B30"], value=3407.9598222043 * (1 + 1e-7))
+    assert NUMBERS in failing(found)
+
+
+@pytest.mark.parametrize("name", ["force", "speed_of_end", "rest"])
+def test_a_text_that_says_something_else_is_seen(name):
+    """The number is right, the formula beside it is twice as large."""
+    found = solved(PENDULUM)
+    exact = found[name].exact if found[name].exact != "0" else "l"
+    found[name] = replace(found[name], exact=f"2*({exact})" if exact != "l" else "l")
+    assert failing(found) == {TEXTS: failing(found)[TEXTS]} and name in failing(found)[TEXTS]
+
+
+def test_a_wrong_sense_of_the_speed_is_seen():
+    """sqrt(...) with the other sign: text and number agree, the motion does not."""
+    found = solved(PENDULUM)
+    answer = found["speed_of_end"]
+    found["speed_of_end"] = replace(answer, exact=f"-({answer.exact})", value=-answer.value)
+    assert set(failing(found)) == {NUMBERS}
+
+
+def test_a_wrong_law_of_the_configuration_is_seen():
+    """T = m g l (cos phi - cos phi_0)/2 with another factor: right at the start, wrong on the way."""
+    found = solved(PENDULUM)
+    found["kinetic"] = replace(found["kinetic"], exact=f"3/2*({found['kinetic'].exact})")
+    assert set(failing(found)) == {WAYS}
+
+
+def test_an_instant_that_is_not_the_first_is_seen(monkeypatch):
+    """phi = 0 after a quarter of the period: with a time a tenth later the state is none of the motion."""
+    until = answers.MotionFromStart.until
+
+    def late(self, condition, side=None):
+        found = until(self, condition, side)
+        t = found.phase.system.symbols.t
+        return StateAtInstant(found.phase, found.exact, {**found.numbers, t: 1.1 * found.numbers[t]}, found.method)
+
+    monkeypatch.setattr(answers.MotionFromStart, "until", late)
+    assert INSTANTS in failing(solved(PENDULUM))
+
+
+def test_a_place_that_is_no_rest_is_seen(monkeypatch):
+    """phi = 0.01 in place of 0."""
+    resting = answers.resting
+
+    def aside(system, guess=None):
+        found = resting(system, guess)
+        (phi,) = found.phase.system.symbols.q
+        return StateAtInstant(found.phase, found.exact, {**found.numbers, phi: 0.01}, found.method)
+
+    monkeypatch.setattr(answers, "resting", aside)
+    assert REST in failing(solved(PENDULUM))
+
+
+def test_units_are_part_of_what_is_read_back():
+    """A value in km/h beside a formula in m/s."""
+    text = PENDULUM.replace('vx(rod.end)", at', 'vx(rod.end)", unit = "km/h", at')
+    found = solved(text)
+    assert not failing(found)
+    found["speed_of_end"] = replace(found["speed_of_end"], value=found["speed_of_end"].value / 3.6)
+    assert set(failing(found)) == {NUMBERS, TEXTS}
+
+
+def test_what_is_of_no_motion_is_unchecked_and_says_so():
+    """Frequencies are proven by the verb that finds them."""
+    text = PENDULUM.replace('rest = { value = "x(rod.end)", at = "equilibrium" }', 'w = { value = "frequency(1)" }')
+    left = [c.detail for c in solved(text).certify().checks if c.status == "unchecked"]
+    assert any("eomgen linearize" in detail for detail in left)
+
+
+def test_a_failing_proof_ends_in_exit_3(monkeypatch, tmp_path):
+    """The result is shown and marked; --no-certify shows it as it is."""
+    path = tmp_path / "pendulum.toml"
+    path.write_text(PENDULUM)
+    answer = answers._Solver.answer
+
+    def doubled(self, output):
+        found = answer(self, output)
+        return replace(found, value=2 * found.value)
+
+    monkeypatch.setattr(answers._Solver, "answer", doubled)
+    found = CliRunner().invoke(main, ["solve", str(path), "--json"])
+    certificate = json.loads(found.stdout)["certificate"]
+    assert found.exit_code == 3 and certificate["ok"] is False
+    text = CliRunner().invoke(main, ["solve", str(path)])
+    assert text.stdout.startswith("the certificate FAILS") and "certificate: FAILS" in text.stdout
+    free = CliRunner().invoke(main, ["solve", str(path), "--no-certify", "--json"])
+    assert free.exit_code == 0 and json.loads(free.stdout)["certificate"] is None
