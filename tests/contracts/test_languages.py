@@ -1,0 +1,128 @@
+"""The seam of languages: a table of words, written nowhere but here, runs every program and passes the same vectors."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+
+import eomgen
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program, program_of, right_hand_side
+from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.vectors import vectors
+
+MODELS = Path(__file__).parents[2] / "models"
+NODE = shutil.which("node")
+JAVASCRIPT = Language(
+    reserved=frozenset(
+        "await class const debugger delete enum export function import in instanceof let new super var".split()
+    ),
+    functions={
+        **{op: f"Math.{op}({{0}})" for op in "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()},
+        **{op: f"Math.{op}({{0}}, {{1}})" for op in "atan2 pow min max".split()},
+    },
+    defined={
+        "less": "const less = (a, b) => a < b ? 1 : a >= b ? 0 : NaN;",
+        "less_equal": "const less_equal = (a, b) => a <= b ? 1 : a > b ? 0 : NaN;",
+        "select": "const select = (given, a, b) => given === 0 ? b : given === given ? a : given;",
+    },
+    words={"not": "!", "nan": "NaN", "given": "inputs !== null"},
+    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
+    at="{array}[{index}]",
+    let="const {declared} = {value};",
+    put="{place} = {value};",
+    call="{function}({arguments});",
+    back="return {value};",
+    arrays=dict.fromkeys((CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"),
+    tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
+    listed=("[", "]"),
+    loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),
+    down=("for (let {name} = {last} - 1; {name} >= {first}; {name}--) {{", "}"),
+    branch=("if ({condition}) {{", "} else {", "}"),
+    function=("function {declared}({arguments}) {{", "}"),
+    out=("function {name}({arguments}) {{\n    const {out} = new Array({size}).fill(0);", "    return {out};\n}"),
+    remark="// {text}",
+    longest=30,
+)
+
+
+def javascript(program: Program) -> str:
+    """A module that reads states from its input and writes the outputs, one line of JSON a state."""
+    made = lowered(program, JAVASCRIPT, "dx")
+    lines = [JAVASCRIPT.defined[op] for op in sorted(made.ops & JAVASCRIPT.defined.keys())]
+    lines += map(JAVASCRIPT.holds, made.tables)
+    for function in (*made.kernels, *made.bodies):
+        lines += JAVASCRIPT.defines(function)
+    given = "v.t, v.x, v.p, constants(v.p), v.inputs"
+    lines.append(f"for (const v of {{states}}) console.log(JSON.stringify(Array.from(evaluate({given}))));")
+    return "\n".join(lines)
+
+
+def every_operation() -> Program:
+    """Every function and choice that the graph has, at arguments of all signs: some of them have no value there."""
+    s = symbols("x y")
+    g, (x, y) = s.graph, s.q
+    ops = "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()
+    made = [g.call(op, x * y) for op in ops] + [g.call(op, x, y) for op in "atan2 min max less less_equal".split()]
+    made += [(2 + x * x) ** y, g.select(g.call("less", x, y), x, 1 / y), g.call("min", g.sqrt(x), y)]
+    return program_of(made, s)
+
+
+PUSHED = """
+eomgen = 1
+name = "pushed"
+space = "plane"
+parameters = { m = 2.0 }
+coordinates = { x = 0.5 }
+inputs.F.value = { samples = [[0, 1], [0.5, 3], [1, -2], [2, 0.5]] }
+bodies.b = { mass = "m", joint = { kind = "prismatic", axis = [1, 0], displacement = "x" } }
+forces.f = { kind = "force", point = "b.origin", force = ["F", 0] }
+"""
+PROGRAMS = {
+    "every operation": every_operation,
+    "pendulum": lambda: right_hand_side(pendulum()),
+    "inputs": lambda: right_hand_side(cart_pole(), {"F": 0}),
+    "a loop": lambda: right_hand_side(spring_row(20)),
+    "a tie": lambda: right_hand_side(tied_pendulum()),
+    "a tie said three times": lambda: right_hand_side(tied_pendulum(3)),
+    "closed loops": lambda: eomgen.derive(eomgen.load(MODELS / "four_bar.toml")).program,
+    "samples": lambda: eomgen.derive(eomgen.loads(PUSHED)).program,
+}
+
+
+@pytest.mark.skipif(NODE is None, reason="no node")
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_language_is_a_table_of_words(name, tmp_path):
+    """|emitted(x) - vector| <= tolerance in a language that only this file knows; nan where there is no value."""
+    program = PROGRAMS[name]()
+    found = vectors(program)
+    states = [{"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs} for v in found]
+    path = tmp_path / "program.js"
+    path.write_text(javascript(program).replace("{states}", json.dumps(states)))
+    ran = subprocess.run([str(NODE), str(path)], capture_output=True, text=True, check=True)
+    for v, line in zip(found, ran.stdout.splitlines(), strict=True):
+        row = [math.nan if value is None else value for value in json.loads(line)]
+        largest = max([1.0, *(abs(value) for value in v.result if value == value)])
+        assert row == pytest.approx(v.result, rel=0, abs=v.tolerance * largest, nan_ok=True)
+
+
+@pytest.mark.parametrize("language", [C, PYTHON, JAVASCRIPT], ids=["c", "numpy", "javascript"])
+@pytest.mark.parametrize("longest", [None, 30])
+def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, longest):
+    """Functions stand before those that call them, and every table is read, in parts or whole."""
+    program = right_hand_side(tied_pendulum(3))
+    made = lowered(program, replace(language, longest=longest), "dx")
+    texts = ["\n".join(language.defines(f)) for f in (*made.kernels, *made.bodies)]
+    names = [f.name for f in (*made.kernels, *made.bodies)]
+    for k, text in enumerate(texts):
+        assert not [later for later in names[k + 1 :] if f"{later}(" in text]
+    assert all(any(table.name in text for text in texts) for table in made.tables)
