@@ -12,7 +12,7 @@ from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.numeric.intervals import INTERVALS
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
-from eomgen.symbolic.numeric.newton import Descent
+from eomgen.symbolic.numeric.roots_nearby import Descent
 
 graph = Graph()
 x, y = graph.symbol("x"), graph.symbol("y")

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.simulation.arrival import Arrival, NeverReached, first_arrival
-from eomgen.symbolic.numeric.tolerances import BEST, COMPUTED, DIFFERENCE_STEP, GAP_CLOSED, RANK_NEARBY, WIDE_STEP
+from eomgen.symbolic.numeric.newton import least_left
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, GAP_CLOSED, RANK_NEARBY, WIDE_STEP
 
 STEP = 1e-3  # from a singular start, of the leading coordinate
 AROUND = 12.0  # steps: how far other coordinates may move in this one
@@ -134,8 +135,6 @@ class Configurations:
 
     def _closed(self, q: np.ndarray) -> np.ndarray | None:
         """The nearest configuration with all gaps 0, moved by the sought coordinates."""
-        from scipy.optimize import least_squares
-
         sought = list(self.sought)
 
         def gaps(x: np.ndarray) -> np.ndarray:
@@ -143,9 +142,9 @@ class Configurations:
             moved[sought] = x
             return self.gaps(moved)
 
-        run = least_squares(gaps, q[sought], xtol=BEST, ftol=BEST, gtol=BEST)
-        if np.max(np.abs(run.fun), initial=0.0) > GAP_CLOSED:
+        found = least_left(gaps, q[sought])
+        if found.left > GAP_CLOSED:
             return None
         closed = q.copy()
-        closed[sought] = run.x
+        closed[sought] = found.x
         return closed

@@ -22,10 +22,11 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import CARRIED, RANK, SHARE, SOLVED, TINIEST
 
 TRIES = 12  # places from which they are sought
-STEPS = 50
+ALONG_A_BRANCH = Newton(enough=SOLVED, steps=50, smallest=RANK)
 
 
 @dataclass(frozen=True)
@@ -112,23 +113,28 @@ class _Search:
         reach = max([1.0, *(abs(float(self.state[u])) for u in self.ties.motion.scope.symbols.u)])
         starts = [np.zeros(len(self.free))]
         starts += [reach * np.array([rng.uniform(-1, 1) for _ in self.free]) for _ in range(TRIES)]
-        found = [d for start in starts if (d := self._arrived(start)) is not None]
+        roots = [ALONG_A_BRANCH.root(self, start) for start in starts]
+        found = [root.x for root in roots if root.met]
         return min(found, key=lambda d: float(np.linalg.norm(d)), default=None)
 
     def size(self, d: np.ndarray) -> float:
         """What is left of both equations, against the size of the terms."""
-        return self._left(d)[1]
+        return float(np.max(np.abs(self.left(d)), initial=0.0))
 
-    def _arrived(self, d: np.ndarray) -> np.ndarray | None:
-        for _ in range(STEPS):
-            f, size = self._left(d)
-            if size < SOLVED:
-                return d
-            d = d - np.linalg.lstsq(self._slope(d), f, rcond=RANK)[0]
-        return None
+    def left(self, d: np.ndarray) -> np.ndarray:
+        """Both equations, each against the size of its terms."""
+        f, sizes = self._left(d)
+        return f / sizes
 
-    def _left(self, d: np.ndarray) -> tuple[np.ndarray, float]:
-        """(J u + sigma above n^T gamma, the largest of them against the terms of both)."""
+    def slopes(self, d: np.ndarray) -> np.ndarray:
+        """Their derivatives by the free speeds."""
+        return self._slope(d) / self._left(d)[1][:, None]
+
+    def moved(self, d: np.ndarray, step: Sequence[Any]) -> np.ndarray:
+        return d + np.array(step, dtype=float)
+
+    def _left(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(J u + sigma above n^T gamma, the size of the terms of each)."""
         k = len(self.ties.closing)
         values = self._at(d, (*(row.velocity for row in self.ties.closing), *self.ties.gamma))
         u = np.array([float(self._moved(d)[x]) for x in self.ties.motion.scope.symbols.u])
@@ -136,8 +142,7 @@ class _Search:
         of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), TINIEST)
         own = np.abs(self.fork.left) @ (np.abs(values[k:]) + np.max(J, initial=0.0) * fastest**2)
         f = np.append(values[:k], self.fork.left @ values[k:])
-        sizes = np.append(np.full(k, of_speed), np.maximum(own, TINIEST))
-        return f, float(np.max(np.abs(f) / sizes, initial=0.0))
+        return f, np.append(np.full(k, of_speed), np.maximum(own, TINIEST))
 
     def _slope(self, d: np.ndarray) -> np.ndarray:
         k = len(self.ties.closing)

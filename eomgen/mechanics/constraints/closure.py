@@ -7,6 +7,7 @@ makes redundant rows differ by d. So positions are sought to 1e-28.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -19,10 +20,11 @@ from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
-STEPS = 60  # of the search
+CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
@@ -120,31 +122,32 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
     Args:
         sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
 
-    Levenberg-Marquardt with damping |phi|: (J^T J + |phi|^2 1) dq = - J^T phi converges as fast as Newton's method
-    also where rows are redundant, and does not leap along directions that only an open loop resists.
-    Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
+    The way is damped: see `symbolic.numeric.newton`.
     """
     gaps, scale = (*gaps_of(ties), *norms_of(ties)), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
-    before, left = state, np.inf
-    try:
-        for _ in range(STEPS):
-            phi = evaluate(gaps, state, fifty_digits())
-            size = max((abs(x) for x in phi), default=0)
-            if size < CLOSED_AT_50:
-                return state
-            if left < SUMMED and size > left / 2:
-                return before
-            before, left = state, size
-            slope = np.array([float(x) for x in evaluate(slopes, state, fifty_digits())]).reshape(len(gaps), len(free))
-            slope = slope * scale
-            damped = np.vstack([slope, min(float(size), 1.0) * np.eye(len(free))])
-            right = np.array([-float(x / size) for x in phi] + [0.0] * len(free))  # phi may be below what floats add
-            step = scale * np.linalg.lstsq(damped, right, rcond=None)[0]
-            state = state | {q: state[q] + size * float(d) for q, d in zip(free, step, strict=True)}
-    except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
-        return None
-    return None
+    found = CLOSING.root(_Gaps(gaps, slopes, tuple(free), scale), state)
+    return found.x if found.met else None
+
+
+@dataclass(frozen=True)
+class _Gaps:
+    """What is open in a state, and its slopes by the free coordinates, measured in sizes of these."""
+
+    gaps: tuple[Scalar, ...]
+    derivatives: tuple[Scalar, ...]
+    free: tuple[Node, ...]
+    sizes: np.ndarray
+
+    def left(self, state: State) -> Sequence[Any]:
+        return evaluate(self.gaps, state, fifty_digits())
+
+    def slopes(self, state: State) -> np.ndarray:
+        values = [float(x) for x in evaluate(self.derivatives, state, fifty_digits())]
+        return np.array(values).reshape(len(self.gaps), len(self.free)) * self.sizes
+
+    def moved(self, state: State, step: Sequence[Any]) -> State:
+        return state | {q: state[q] + float(s) * d for q, s, d in zip(self.free, self.sizes, step, strict=True)}
 
 
 def _moving(ties: Ties, state: State) -> State:

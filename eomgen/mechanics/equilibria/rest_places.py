@@ -18,7 +18,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
-from eomgen.symbolic.numeric.newton import Descent
+from eomgen.symbolic.numeric.roots_nearby import Descent
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer

@@ -8,10 +8,12 @@ of them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from random import Random
+from typing import Any
 
 import numpy as np
 
@@ -23,9 +25,10 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, ZERO_AT_50
+from eomgen.symbolic.numeric.newton import Newton
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
-CORRECTIONS = 4  # each adds about 15 digits
+CORRECTED = Newton(steps=4)  # each step adds about 15 digits
 SEEDS = (1, 2)
 
 
@@ -95,11 +98,25 @@ def _closed(J: Sequence[Scalar], rows: Sequence[Scalar], unknowns: Sequence[Node
     if not rows or not unknowns:
         return state
     slopes = np.array([float(x) for x in evaluate(J, state, fifty_digits())]).reshape(len(rows), len(unknowns))
-    for _ in range(CORRECTIONS):
-        left = evaluate(rows, state, fifty_digits())
-        size = max(map(abs, left))
-        if not size:
-            break
-        step = np.linalg.lstsq(slopes, np.array([-float(x / size) for x in left]), rcond=LEAST_CHANGE)[0]
-        state = state | {node: state[node] + size * float(d) for node, d in zip(unknowns, step, strict=True)}
-    return state
+    found = CORRECTED.root(_LinearRows(tuple(rows), slopes, tuple(unknowns)), state)
+    if math.isnan(found.left):
+        raise DerivationError("the motion is singular near the start")
+    return found.x
+
+
+@dataclass(frozen=True)
+class _LinearRows:
+    """Rows that are linear in the unknowns."""
+
+    rows: tuple[Scalar, ...]
+    matrix: np.ndarray
+    unknowns: tuple[Node, ...]
+
+    def left(self, state: State) -> Sequence[Any]:
+        return evaluate(self.rows, state, fifty_digits())
+
+    def slopes(self, state: State) -> np.ndarray:
+        return self.matrix
+
+    def moved(self, state: State, step: Sequence[Any]) -> State:
+        return state | {node: state[node] + d for node, d in zip(self.unknowns, step, strict=True)}

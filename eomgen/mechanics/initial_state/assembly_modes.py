@@ -28,11 +28,11 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import (
     BRANCHES_MEET,
     COMPUTED,
     GAP_CLOSED,
-    LEAST_CHANGE,
     RANK_NEARBY,
     SAME_PLACE,
     SOLVED,
@@ -40,7 +40,7 @@ from eomgen.symbolic.numeric.tolerances import (
 
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these
-STEPS = 40
+CLOSING_IN_FLOATS = Newton(enough=GAP_CLOSED, steps=40, again=True)
 
 
 @dataclass(frozen=True)
@@ -101,11 +101,11 @@ def branches_of_loops(system: System, start: Mapping[str, float]) -> Branches | 
 
 @dataclass(frozen=True)
 class _Search:
-    """Newton's method in floats.
+    """What is open where loops are put together otherwise.
 
     Args:
         system: whose loops close.
-        gaps, slopes: phi, and its derivatives by what is sought.
+        gaps, derivatives: phi, and its derivatives by what is sought.
         rows: those that are independent.
         agreeing: what is positive where hinges and welds are not turned over.
         here: the place of the start.
@@ -115,7 +115,7 @@ class _Search:
 
     system: System
     gaps: tuple[Any, ...]
-    slopes: tuple[Any, ...]
+    derivatives: tuple[Any, ...]
     rows: tuple[int, ...]
     known: State
     sought: tuple[Node, ...]
@@ -131,15 +131,21 @@ class _Search:
 
     def closed(self, place: np.ndarray) -> np.ndarray | None:
         """The regular place to which Newton's method leads, angles as near to the start's as they can be."""
-        for _ in range(STEPS):
-            phi, J = self._at(place)
-            if not np.all(np.isfinite(J)):
-                return None
-            place = place - np.linalg.lstsq(J, phi, rcond=LEAST_CHANGE)[0]
-            if np.max(np.abs(phi)) < GAP_CLOSED:
-                fits = self.is_regular(J) and self._is_upright(place)
-                return self.here + self.apart(place, self.here) if fits else None
-        return None
+        found = CLOSING_IN_FLOATS.root(self, place)
+        if not found.met or not self.is_regular(self.slopes(found.x)) or not self._is_upright(found.x):
+            return None
+        return self.here + self.apart(found.x, self.here)
+
+    def left(self, place: np.ndarray) -> Sequence[float]:
+        """The gaps."""
+        return evaluate(self.gaps, self._state(place), FLOAT)
+
+    def slopes(self, place: np.ndarray) -> np.ndarray:
+        """Their derivatives by what is sought."""
+        return self._at(place)[1]
+
+    def moved(self, place: np.ndarray, step: Sequence[float]) -> np.ndarray:
+        return place + np.array(step)
 
     def is_regular(self, J: np.ndarray) -> bool:
         """Whether no other branch meets this one there: slopes against those at the start."""
@@ -154,7 +160,7 @@ class _Search:
         return self.known | dict(zip(self.sought, place.tolist(), strict=True))
 
     def _at(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        values = np.array(evaluate((*self.gaps, *self.slopes), self._state(place), FLOAT), dtype=float)
+        values = np.array(evaluate((*self.gaps, *self.derivatives), self._state(place), FLOAT), dtype=float)
         k = len(self.gaps)
         return values[:k], values[k:].reshape(k, -1)
 

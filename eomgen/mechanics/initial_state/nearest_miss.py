@@ -18,7 +18,8 @@ from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import BEST, COMPUTED, OPEN_GAP, SAME_PLACE
+from eomgen.symbolic.numeric.newton import least_left
+from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP, SAME_PLACE
 
 TRIES = 12
 REACH = 1.5  # how far from the place others are tried [rad, m]
@@ -85,10 +86,7 @@ class _Search:
         return float(np.max(np.abs(self.at(place)), initial=0.0))
 
     def least(self, start: np.ndarray) -> np.ndarray:
-        from scipy.optimize import least_squares
-
-        found: np.ndarray = least_squares(self.at, start, self._slopes_at, xtol=BEST, ftol=BEST, gtol=BEST).x
-        return found
+        return least_left(self.at, start, self._slopes_at).x
 
     def _slopes_at(self, place: np.ndarray) -> np.ndarray:
         return self._numbers(self.slopes, place).reshape(len(self.gaps), -1)

@@ -27,11 +27,10 @@ from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, ITERATED, RANK, SUMMED
 
-STEPS = 40
-LONGEST = 0.3  # of one step, against what has moved or 1
-DOUBLE = 0.02  # of a step, to within which the next is half of it: so Newton's method goes to a double root
+STEADILY = Newton(still=SUMMED, steps=40, smallest=RANK, double=0.02, longest=0.3)
 STATED, GUESSED, OPEN = 0, 1, 2  # by the model: held, marked by `near`, not said
 
 
@@ -107,28 +106,31 @@ def _needed(here: Here, free: np.ndarray) -> np.ndarray:
     return needed
 
 
-def _sought(
-    first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: np.ndarray
-) -> Mapping[Node, Any] | None:
+def _sought(first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: np.ndarray) -> State | None:
     """The state with all residuals zero, by steps of least size in what the mask frees; None where none is near."""
-    state, before = start, np.zeros(len(mask))
-    for _ in range(STEPS):
-        try:
-            here = Here.at(first, choice, state)
-            step = np.zeros(len(mask))
-            step[mask] = here.step(mask)
-            size = float(np.max(abs(step) / here.sizes))
-            if size <= SUMMED:
-                return (here.moved(step) or state) if here.is_balanced else None
-            halved = bool(np.any(step)) and np.linalg.norm(2 * step - before) <= DOUBLE * np.linalg.norm(before)
-            before = step
-            moved = here.moved(2 * step if halved else step * min(1.0, LONGEST / size))
-        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
-            return None
-        if moved is None:
-            return None
-        state = moved
-    return None
+    try:
+        found = STEADILY.root(_Residuals(mask), Here.at(first, choice, start))
+        return dict(found.x.state) if found.met and found.x.is_balanced else None
+    except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        return None
+
+
+@dataclass(frozen=True)
+class _Residuals:
+    """What is to vanish, rows and columns free of units, by what the mask frees."""
+
+    mask: np.ndarray
+
+    def left(self, here: Here) -> np.ndarray:
+        return here.residuals / here.row_sizes
+
+    def slopes(self, here: Here) -> np.ndarray:
+        return here.slopes[:, self.mask] * here.sizes[self.mask] / here.row_sizes[:, None]
+
+    def moved(self, here: Here, step: Sequence[float]) -> Here:
+        whole = np.zeros(len(self.mask))
+        whole[self.mask] = here.sizes[self.mask] * np.array(step)
+        return here.moved(whole)
 
 
 @dataclass(frozen=True)
@@ -190,12 +192,6 @@ class Here:
         upper = np.hstack([floats(e.K), floats(e.C)])
         return np.vstack([upper, np.hstack([floats(e.F), floats(e.E)])[self.still]])
 
-    def step(self, mask: np.ndarray) -> np.ndarray:
-        """The least change of what the mask frees that takes the residuals away; rows and columns free of units."""
-        sizes, rows = self.sizes[mask], self.row_sizes
-        scaled = self.slopes[:, mask] * sizes / rows[:, None]
-        return sizes * np.linalg.lstsq(scaled, -self.residuals / rows, rcond=RANK)[0]
-
     @property
     def row_sizes(self) -> np.ndarray:
         """The largest of each row of the slopes; of one in which nothing but rounding is, what inertia makes."""
@@ -217,8 +213,12 @@ class Here:
         moving = abs(self.rates[self.still])
         return not unsettled(self.reducing, ITERATED) and bool(np.all(moving <= ITERATED * max(1.0, *abs(self.rates))))
 
-    def moved(self, step: np.ndarray) -> State | None:
-        """The state after a step of the independent ones, the others following; None where the ties do not close."""
+    def moved(self, step: np.ndarray) -> Here:
+        """After a step of the independent ones, the others following.
+
+        Raises:
+            NoValue: the ties do not close there.
+        """
         symbols, number = self.first.system.symbols, fifty_digits().number(1)
         n = len(self.choice.q)
         dq = floats(self.equations.P) @ step[:n]
@@ -226,7 +226,9 @@ class Here:
         state |= {symbols.u[k]: state[symbols.u[k]] + number * d for k, d in zip(self.choice.u, step[n:], strict=True)}
         following = [symbols.q[k] for k in self.choice.dq]
         found = closed(self.first.system.ties, state, following) if following else state
-        return None if found is None else self._with_speeds(found)
+        if found is None:
+            raise NoValue("the ties do not close")
+        return self.at(self.first, self.choice, self._with_speeds(found))
 
     def _with_speeds(self, state: State) -> State:
         """The dependent speeds by J u + sigma = 0."""
