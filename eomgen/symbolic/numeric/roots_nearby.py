@@ -6,7 +6,7 @@ scaled first, for equations have units of their own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,9 +15,11 @@ import numpy as np
 
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import balanced
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import (
     BEST,
     CERTAIN_AT_50,
@@ -30,9 +32,8 @@ from eomgen.symbolic.numeric.tolerances import (
 
 STEPS = 80
 UNDAMPED = 8
-POLISHINGS = 200  # at a multiple root the error shrinks by a factor only
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
-FALLS = 1e-3  # by which what is left falls in a step with the slopes of an earlier place, or they are taken anew
+POLISHED = Newton(enough=MET_AT_50, still=CERTAIN_AT_50, steps=200, keeps=1e-3)  # steps: at a multiple root
 
 
 @dataclass(frozen=True)
@@ -74,34 +75,30 @@ class Descent:
 
     def polished(self, x: np.ndarray) -> np.ndarray | None:
         """The root near x to all digits of a float; None where there is none."""
-        state = dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
-        inverse, before = self._inverse(self.at_one(x)), np.inf
-        try:
-            for _ in range(POLISHINGS):
-                f = evaluate(self.equations, state, fifty_digits())
-                size = max(abs(y) for y in f)
-                if max(abs(y) * r for y, r in zip(f, self._rows, strict=True)) < MET_AT_50:
-                    break
-                if inverse is None or size > FALLS * before:
-                    inverse = self._inverse(self._at_digits(state))
-                step = self._columns * (inverse @ (-self._rows * np.array([float(y / size) for y in f])))
-                before, moved = size, [size * float(d) for d in step]
-                state |= {node: state[node] + d for node, d in zip(self.unknowns, moved, strict=True)}
-                if max(abs(d) / (1 + abs(state[n])) for n, d in zip(self.unknowns, moved, strict=True)) < CERTAIN_AT_50:
-                    break
-        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        start = dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
+        root = POLISHED.root(self, start)
+        if np.isnan(root.left):
             return None
-        found = np.array([float(state[node]) for node in self.unknowns])
-        return found if self._holds(state) and np.all(abs(found - x) <= WANDERS * (1 + abs(x))) else None
+        found = np.array([float(root.x[node]) for node in self.unknowns])
+        return found if self._holds(root.x) and np.all(abs(found - x) <= WANDERS * (1 + abs(x))) else None
 
-    def _inverse(self, A: np.ndarray) -> np.ndarray | None:
-        """The pseudo-inverse of df/dx, scaled; None where it has none."""
-        A = self._rows[:, None] * A * self._columns
-        return np.linalg.pinv(A, rcond=LEAST_CHANGE) if np.all(np.isfinite(A)) else None
+    def left(self, state: State) -> list[Any]:
+        """The equations with 50 digits, rows scaled."""
+        values = evaluate(self.equations, state, fifty_digits())
+        return [y * float(r) for y, r in zip(values, self._rows, strict=True)]
+
+    def slopes(self, state: State) -> np.ndarray:
+        """Their derivatives, rows and columns scaled."""
+        return np.asarray(self._rows[:, None] * self._at_digits(state) * self._columns)
+
+    def moved(self, state: State, step: Sequence[Any]) -> State:
+        """The state after a step of the scaled unknowns."""
+        moves = zip(self.unknowns, self._columns, step, strict=True)
+        return state | {node: state[node] + float(size) * d for node, size, d in moves}
 
     def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
         """df/dx with 50 digits, rounded."""
-        return np.reshape([float(y) for y in evaluate(self._slopes, state, fifty_digits())], self._shape)
+        return np.reshape([float(y) for y in evaluate(self._derivatives, state, fifty_digits())], self._shape)
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""
@@ -119,13 +116,13 @@ class Descent:
         return len(self.equations), len(self.unknowns)
 
     @cached_property
-    def _slopes(self) -> tuple[Scalar, ...]:
+    def _derivatives(self) -> tuple[Scalar, ...]:
         return tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
 
     @cached_property
     def _layers(self) -> Layers:
         floats = {node: float(x) for node, x in self.values.items()}
-        return Layers((*self.equations, *self._slopes), self.unknowns, floats)
+        return Layers((*self.equations, *self._derivatives), self.unknowns, floats)
 
     def _at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(f, df/dx) at each place."""
