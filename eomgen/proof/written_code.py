@@ -12,8 +12,9 @@ from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import RHS, Role, TestVector
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.mechanics.bodies.armature import joint_row
+from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.system import System
-from eomgen.proof import emitted_code, trials
+from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, unchecked
 from eomgen.proof.emitted_code import Code, PhaseMotion, TriedState
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -106,7 +107,7 @@ class Judged:
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
         """a by dense linear algebra."""
-        found = trials.accelerations_at(self.motion.assembly, self.motion.values(at))
+        found = accelerations_at(self.motion.assembly, self.motion.values(at))
         return dict(zip(self.motion.assembly.symbols.a, found.tolist(), strict=True))
 
     def _inverse(self, code: Code, at: Iterable[TriedState], name: str) -> Check:
