@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
 
-from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import EomgenError, RunFailed
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.bodies.sign import positive_parameters
@@ -17,7 +16,7 @@ from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.closed_instant import ClosedInstant
 from eomgen.model.values import exact_parameters
-from eomgen.simulation.locating import Locating, values_of
+from eomgen.simulation.first_time import FirstTime, values_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
@@ -49,7 +48,6 @@ def reached(
     condition: Scalar,
     start_exact: Mapping[Node, Scalar],
     start_numbers: Mapping[Node, float],
-    rhs: RightHandSide | None = None,
 ) -> Instant:
     """The first instant after the start at which the condition is 0; one at the start itself is none.
 
@@ -59,7 +57,6 @@ def reached(
         start_exact: q and u at the start as scalars of the parameters, t where it is not 0; {} where they have no
             closed form.
         start_numbers: the same as numbers; {} where parameters have no values.
-        rhs: the right-hand side of the equations of motion.
     Raises:
         RunFailed: the condition is not met.
     """
@@ -67,7 +64,7 @@ def reached(
     *accelerations, condition = substituted((*accelerations, condition), own)
     search = _Search(system, assembly, tuple(accelerations), condition, dict(start_exact))
     values = values_of(assembly.symbols.parameters, exact_parameters(system.scope.model))
-    return search.at(dict(start_numbers), values, rhs) if start_numbers else search.with_trial_values(values)
+    return search.at(dict(start_numbers), values) if start_numbers else search.with_trial_values(values)
 
 
 @dataclass(frozen=True)
@@ -80,10 +77,10 @@ class _Search:
     condition: Scalar
     start: State
 
-    def at(self, start: State, values: State, rhs: RightHandSide | None) -> Instant:
+    def at(self, start: State, values: State) -> Instant:
         """The instant at the parameters' values."""
         equations = (self.system, self.assembly, self.accelerations)
-        numbers, method = Locating(*equations, self.condition, self.start, start, values, rhs).located()
+        numbers, method = FirstTime(*equations, self.condition, self.start, start, values).located()
         exact, way = self._exact(numbers, values)
         return Instant(exact, numbers, way or method)
 
@@ -100,7 +97,7 @@ class _Search:
             try:
                 numbers = evaluate(tuple(self.start.values()), values, FLOAT)
                 start = {self.system.symbols.t: 0.0, **dict(zip(self.start, map(float, numbers), strict=True))}
-                return replace(self.at(start, values, None), numbers={})
+                return replace(self.at(start, values), numbers={})
             except EomgenError as error:
                 reason = error
         tried = "at the values tried for parameters without one"

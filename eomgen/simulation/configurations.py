@@ -10,13 +10,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.simulation.arrival import Arrival, NeverReached, first_arrival
+from eomgen.errors import RunFailed
+from eomgen.simulation.event_location import Events
+from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.symbolic.numeric.newton import least_left
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, GAP_CLOSED, RANK_NEARBY, WIDE_STEP
+from eomgen.symbolic.numeric.tolerances import (
+    CARRIED,
+    COMPUTED,
+    DIFFERENCE_STEP,
+    FINE_RUN,
+    GAP_CLOSED,
+    RANK_NEARBY,
+    SUMMED,
+    WIDE_STEP,
+)
 
 STEP = 1e-3  # from a singular start, of the leading coordinate
 AROUND = 12.0  # steps: how far other coordinates may move in this one
 GUESSES = 60
+SEARCH = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=4000)
 REACHES = (1.0, 10.0, 100.0)  # how far the leading coordinate is followed, in sizes of its start and 1
 NEARER = 1 - COMPUTED  # what the second sense must undercut: of two mirror images the first one is taken
 ASIDE = 0.1
@@ -25,6 +37,18 @@ VectorFunction = Callable[[np.ndarray], np.ndarray]
 NumberFunction = Callable[[np.ndarray], float]
 SensedCondition = Callable[[np.ndarray, int], float]
 """(q, sense of motion) -> a number."""
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """Where a condition holds: the way to it, of the leading coordinate, and the state there."""
+
+    s: float
+    x: np.ndarray
+
+
+class NeverReached(RunFailed):
+    """The condition stays away from 0 as far as the way was followed."""
 
 
 @dataclass(frozen=True)
@@ -82,15 +106,8 @@ class Configurations:
             q = self._beside(q, s, near)
         if y(q + (0 if not regular else WIDE_STEP * sense * self.direction(q))) < 0:
             raise NeverReached("the motion does not go this way from the start")
-        return first_arrival(
-            lambda s, q: self.direction(q),
-            lambda s, q: g(q, sense),
-            s,
-            q,
-            sense=sense,
-            valid=lambda s, q: y(q),
-            within=within,
-        )
+        sensed = _Sensed(self, g, y, sense)
+        return sensed.arrival(march(sensed.rate, (abs(s), within), q, how=SEARCH, events=sensed.events))
 
     def is_regular(self, q: np.ndarray) -> bool:
         """Whether the gaps fix the sought coordinates' rates: no branch point, as its rounded place may seem finite."""
@@ -148,3 +165,45 @@ class Configurations:
         closed = q.copy()
         closed[sought] = found.x
         return closed
+
+
+@dataclass(frozen=True)
+class _Sensed:
+    """The way in one sense, s growing: the condition, and how far u_s^2 allows the motion to go.
+
+    Args:
+        along: the configurations.
+        g, y: as of `Configurations.first`.
+    """
+
+    along: Configurations
+    g: SensedCondition
+    y: NumberFunction
+    sense: int
+
+    def rate(self, s: float, q: np.ndarray) -> np.ndarray:
+        return self.sense * self.along.direction(q)
+
+    @property
+    def events(self) -> Events:
+        """The condition, from either side; u_s^2, which may not fall below 0."""
+
+        def values(s: np.ndarray, q: np.ndarray) -> np.ndarray:
+            return np.array([(self.g(each, self.sense), self.y(each)) for each in q])
+
+        return Events(values, np.array([COMPUTED, SUMMED]), (0,))
+
+    def arrival(self, run: Run) -> Arrival:
+        """Where the condition holds; it may do so just where the motion turns back.
+
+        Raises:
+            NeverReached: the way ends before.
+        """
+        if run.crossing is None:
+            raise NeverReached(f"the condition is not met as far as the motion was followed, up to {run.end:.6g}")
+        if run.crossing.index == 1 and abs(self.g(run.last, self.sense)) > CARRIED * self._largest(run):
+            raise NeverReached(f"the motion turns back before, at {run.end:.6g}")
+        return Arrival(self.sense * run.end, run.last)
+
+    def _largest(self, run: Run) -> float:
+        return max(abs(self.g(q, self.sense)) for q in run.x)

@@ -34,7 +34,7 @@ class Events:
 
     Args:
         values: (t n, x n x states) -> n x k.
-        floors: what is rounding, of each function, k.
+        floors: what is rounding, of each function, k; of those of either side at the most.
         either: the indices of those that count from either side.
         touch: how near to zero these touch it, against their largest value.
     """
@@ -75,25 +75,32 @@ class EventSearch:
         g = self.events.values(np.array([self.t]), self.x[None, :])[0]
         self.signs = np.ones(len(g))
         self.signs[list(self.events.either)] = 0.0
-        self._direct(g)
         self.armed = self.signs * g > self.events.floors
         self.largest = np.abs(g)
 
-    def _direct(self, g: np.ndarray) -> None:
+    def _direct(self, g: np.ndarray, floors: np.ndarray) -> None:
         """Functions that count from either side fall from the side on which they first are."""
-        new = (self.signs == 0) & (np.abs(g) > self.events.floors)
+        new = (self.signs == 0) & (np.abs(g) > floors)
         self.signs[new] = np.sign(g[new])
+
+    def _floors(self) -> np.ndarray:
+        """What is rounding: of functions that count from either side a share of the largest value so far."""
+        floors, either = self.events.floors.copy(), list(self.events.either)
+        floors[either] = np.minimum(floors[either], ITERATED * self.largest[either])
+        return floors
 
     def step(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> Crossing | None:
         """The first crossing in the step from t_old to t_new; `dense` gives the state at instants in it."""
         times, g = self._looked(t_old, t_new, dense)
-        for row in g:
-            self._direct(row)
         self.largest = np.maximum(self.largest, np.nan_to_num(np.abs(g)).max(axis=0))
+        floors = self._floors()
+        for row in g:
+            self._direct(row, floors)
+        self.armed |= (self.signs * g[0] > floors) & (np.abs(self.signs) > 0)
         found = [
             root
             for k in range(g.shape[1])
-            if (root := self._first(k, times, self.signs[k] * g[:, k], dense)) is not None
+            if (root := self._first(k, floors[k], times, self.signs[k] * g[:, k], dense)) is not None
         ]
         if not found:
             return None
@@ -111,9 +118,11 @@ class EventSearch:
             g = self.events.values(times, dense(times).T)
         return times, g
 
-    def _first(self, k: int, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]) -> tuple[float, int] | None:
+    def _first(
+        self, k: int, floor: float, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]
+    ) -> tuple[float, int] | None:
         """The first time at which function k crosses, and k."""
-        floor, sign = self.events.floors[k], self.signs[k]
+        sign = self.signs[k]
         touch = self.events.touch * self.largest[k] if k in self.events.either else None
 
         def value(t: float, level: float = 0.0) -> float:

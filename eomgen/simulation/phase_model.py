@@ -124,11 +124,14 @@ class PhaseModel:
             DerivationError: the ties do not hold at the start.
         """
         begun = start_of_motion(self.declared, parameters, start)
-        x = self.state(begun.values)
+        return begun, self.with_rates(t, begun.values)
+
+    def with_rates(self, t: float, values: Values) -> dict[str, float]:
+        """Coordinates and declared speeds by name, with the rates of all coordinates."""
+        x = self.state(values)
         found = self._kinematic(self.declared.scope.rates).many(np.array([t]), x[None, :], self.p)[0]
         rates = {f"{q}'": float(rate) for q, rate in zip(self.coordinates, found, strict=True)}
-        slacks = {name: 0.0 for name in map(slack_name, self.loose)}
-        return begun, rates | begun.values | slacks
+        return rates | dict.fromkeys(map(slack_name, self.loose), 0.0) | dict(values)
 
     def state(self, values: Values) -> np.ndarray:
         """x of the phase; a displacement that did not exist before is 0."""

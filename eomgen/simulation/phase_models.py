@@ -42,6 +42,14 @@ def integrated_system(system: System) -> System:
     return system.free if singular_blocks(system.elimination, system.scope) else system
 
 
+def one_phase(declared: System, assembly: Assembly, p: np.ndarray, target: str | None = None) -> PhaseModel:
+    """Equations of motion as the one phase of a motion in which no contact changes."""
+    system = integrated_system(declared)
+    if system is not declared:
+        assembly = with_friction(system, recursive.assembled_by_recursion(system))
+    return PhaseModel(ContactEvents(Configuration(), (), {}, system), declared, assembly, p, target)
+
+
 @dataclass(frozen=True)
 class Slides:
     """The contacts of a system that rub by Coulomb's law, as they slide.

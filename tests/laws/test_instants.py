@@ -21,7 +21,8 @@ from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.first_instant import Instant, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
-from eomgen.simulation.arrival import NeverReached, first_arrival
+from eomgen.simulation.event_location import Events
+from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
@@ -400,32 +401,40 @@ def test_two_freedoms_at_rest_are_refused():
         reached(each.system, each.assembly, each.accelerations, symbols.q[0], start, numbers)
 
 
-# -- arrivals --------------------------------------------------------------------------------------
+# -- conditions along an even motion ---------------------------------------------------------------
+
+
+def met(*conditions, end: float = 100.0) -> Run:
+    """x = t until the first condition is 0, from either side, or the second falls to 0."""
+    events = Events(lambda t, x: np.hstack([each(x) for each in conditions]), np.full(len(conditions), 1e-9), (0,))
+    return march(lambda t, x: np.ones(1), (0.0, end), np.zeros(1), how=Stepping(), events=events)
 
 
 def test_a_zero_at_the_start_is_not_the_first():
     """sin(t) = 0 at pi, not at 0."""
-    arrival = first_arrival(lambda t, x: np.array([1.0]), lambda t, x: math.sin(x[0]), 0.0, [0.0])
-    assert arrival.s == pytest.approx(math.pi, abs=1e-12)
+    assert met(np.sin).end == pytest.approx(math.pi, abs=1e-14)
 
 
 def test_an_extremum_at_zero_is_a_zero():
     """1 - cos(t) touches 0 at 2 pi."""
-    arrival = first_arrival(lambda t, x: np.array([1.0]), lambda t, x: 1 - math.cos(x[0]), 0.0, [0.0])
-    assert arrival.s == pytest.approx(2 * math.pi, abs=1e-7)
+    assert met(lambda x: 1 - np.cos(x)).end == pytest.approx(2 * math.pi, abs=1e-12)
 
 
 def test_no_step_is_too_long_for_the_condition():
     """x grows evenly, and the integrator could leap; cos(40 x) = 0 first at pi/80."""
-    arrival = first_arrival(lambda t, x: np.array([1.0]), lambda t, x: math.cos(40 * x[0]), 0.0, [0.0])
-    assert arrival.s == pytest.approx(math.pi / 80, abs=1e-12)
+    assert met(lambda x: np.cos(40 * x)).end == pytest.approx(math.pi / 80, abs=1e-14)
 
 
-@pytest.mark.parametrize("ends", [{"within": 5.0}, {"valid": lambda t, x: 2 - x[0]}])
+def test_small_conditions_are_as_good_as_large_ones():
+    """1e-12 (x - 3) is 0 at 3."""
+    assert met(lambda x: 1e-12 * (x - 3)).end == pytest.approx(3, abs=1e-13)
+
+
+@pytest.mark.parametrize("ends", [{"end": 5.0}, {"second": lambda x: 2.0 - x}])
 def test_a_path_that_ends_before_is_refused(ends):
     """x = 10 is not met within 5, nor where the path ends at 2."""
-    with pytest.raises(NeverReached):
-        first_arrival(lambda t, x: np.array([1.0]), lambda t, x: x[0] - 10, 0.0, [0.0], **ends)
+    found = met(lambda x: x - 10, *([ends["second"]] if "second" in ends else []), end=ends.get("end", 100.0))
+    assert (found.status, found.end) == (("event", pytest.approx(2)) if "second" in ends else ("finished", 5))
 
 
 def test_a_motion_without_a_beginning_is_refused_at_once():
@@ -449,5 +458,5 @@ damping = 0.4
 s = { value = "s", at = "t = 1" }
 """)
     assert "no finite value" in (eomgen.solve(model)["s"].message or "")
-    with pytest.raises(NeverReached, match="no finite rates"):
-        first_arrival(lambda t, x: np.array([math.nan]), lambda t, x: x[0] - 1, 0.0, [0.0])
+    found = march(lambda t, x: np.full(1, math.nan), (0.0, 1.0), np.zeros(1), how=Stepping())
+    assert (found.status, found.steps) == ("not finite", 0)

@@ -13,7 +13,6 @@ ITERATED = 1e-10  # an eigenvalue problem, differences of near numbers, an extre
 COMPUTED = 1e-9  # several solutions one after another: forces from accelerations from coordinates
 CARRIED = 1e-8  # what a run in time carried along, or what was searched twice
 BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubles do
-ROOT = 8.9e-16  # the same relative to the root: four units in the last place, the least that brentq takes
 OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
 ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
 TINIEST = 1e-300  # instead of 0 in a divisor
@@ -60,7 +59,6 @@ FINE_RUN = 1e-12  # of a run whose end is printed as a number
 FINEST_RUN = 1e-13  # of a run that is continued across a singular place; the least that is worth asking
 LEAST_RTOL = 2.3e-14  # below which rounding is larger: 100 units in the last place
 RUNS_AGREE = 1e-7  # of the motion's size: two runs across a singular place differ by less
-ROUGH_RUN = 1e-5  # of a function along a run, which only has to be seen to change its sign
 
 # Steps of differences [of the coordinate's size and 1].
 DIFFERENCE_STEP = 1e-5  # of a first derivative in doubles, near the cube root of rounding

@@ -1,195 +1,92 @@
-"""System, condition, start -> the state at which the condition first holds after the start, in numbers.
+"""System, start -> where a motion goes from a rest or a dead centre: along the configurations, by the energy theorem.
 
-By integration in time, across singular positions of the ties; from an unstable rest or a dead centre, where time does
-not lead away or has no say which way, along the configurations by the energy theorem.
+Time does not lead away from an unstable rest, and at a dead centre it has no say which way.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of, right_hand_side
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
-from eomgen.mechanics.constraints.elimination import singular_blocks
-from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
-from eomgen.simulation.arrival import Arrival, first_arrival
 from eomgen.simulation.configurations import Configurations
-from eomgen.simulation.constraint_rank import PLACE
-from eomgen.simulation.measures import nearness_of
-from eomgen.simulation.projection import projection_of
-from eomgen.simulation.ways import Way
+from eomgen.simulation.phase_model import PhaseModel
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import DEGENERATE, GAP_CLOSED, SOLVED
-from eomgen.symbolic.solve.solving import roots, vanishes
+from eomgen.symbolic.numeric.tolerances import GAP_CLOSED
+from eomgen.symbolic.solve.solving import vanishes
 
 MEND = "give it a speed"
 
 
 @dataclass(frozen=True)
-class Locating:
-    """A motion in numbers, and what is sought on it.
+class RestDeparture:
+    """A start from which time may not lead away.
 
     Args:
         system, assembly, accelerations: the equations of motion.
-        condition: of q, u, t and parameters; it vanishes at the instant.
         exact: q and u at the start as scalars of the parameters, {} where they have no closed form.
         start: t, q and u at the start.
         values: of the parameters.
-        given_rhs: the right-hand side; None: made here.
+        phase: the same equations as functions of numbers.
+        names: coordinates, rates and speeds at the start, by name.
     """
 
     system: System
     assembly: Assembly
     accelerations: tuple[Scalar, ...]
-    condition: Scalar
     exact: State
     start: State
     values: State
-    given_rhs: RightHandSide | None = None
+    phase: PhaseModel
+    names: dict[str, float]
 
-    def located(self) -> tuple[State, str]:
-        """(t, q and u at the instant, how they were found); t is nan where it is not known.
-
-        Raises:
-            RunFailed: the condition is not met.
-        """
-        if not depends_on(self.condition, self._names):
-            return self._at_time(), "integration in time"
-        if self._is_singular() or self._rests():
-            return self._along_configurations(), "energy theorem"
-        arrival = self._first()
-        self._refuse_undetermined(arrival)
-        return self._state(arrival.s, arrival.x), "integration in time"
+    @property
+    def is_needed(self) -> bool:
+        """Whether the motion is not determined by the time that passes."""
+        return self._is_singular() or self._rests()
 
     @property
     def t0(self) -> float:
         return self.start.get(self.system.symbols.t, 0.0)
 
-    @property
-    def _names(self) -> tuple[Node, ...]:
-        return (*self.system.symbols.q, *self.system.symbols.u)
-
-    @property
+    @cached_property
     def _x0(self) -> np.ndarray:
-        return np.array([self.start[node] for node in self._names])
-
-    def _state(self, t: float, x: np.ndarray) -> State:
-        return {self.system.symbols.t: float(t), **dict(zip(self._names, map(float, x), strict=True))}
-
-    @cached_property
-    def _p(self) -> np.ndarray:
-        return np.array([self.values[node] for node in self.system.symbols.parameters.values()])
-
-    @cached_property
-    def _rhs(self) -> RightHandSide:
-        system = self.system
-        return self.given_rhs or compiled(right_hand_side(with_accelerations(system, self.assembly), system.inputs))
-
-    def _motion(self, t: float, x: np.ndarray) -> np.ndarray:
-        return self._rhs(t, x, self._p)
+        return np.array([self.start[node] for node in (*self.system.symbols.q, *self.system.symbols.u)])
 
     def _functions(self, scalars: tuple[Scalar, ...]) -> Callable[[float, np.ndarray], np.ndarray]:
         """Scalars as functions of t and x."""
         function = compiled(program_of(scalars, self.system.symbols), "numpy")
-        return lambda t, x: function(t, x, self._p)
+        return lambda t, x: function(t, x, self.phase.p)
 
     def _function(self, scalar: Scalar) -> Callable[[float, np.ndarray], float]:
         functions = self._functions((scalar,))
         return lambda t, x: float(functions(t, x)[0])
 
-    def _at_time(self) -> State:
-        """The state at a time that is given by itself.
-
-        Raises:
-            RunFailed: the motion does not go on until then.
-        """
-        end = self._given_time()
-        if end <= self.t0:
-            return self._state(end, self._x0)
-        run, _ = self._way_in_time.until(end)
-        if run.status != "finished" or not np.all(np.isfinite(run.last)):
-            raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
-        return self._state(end, run.last)
-
-    @property
-    def _way_in_time(self) -> Way:
-        return Way(
-            self._motion,
-            self.t0,
-            self._x0,
-            self._rhs.spheres,
-            lambda: nearness_of(self.system, self.assembly, self._p),
-            lambda: projection_of(self.system, self._p, "numpy"),
-        )
-
-    def _first(self) -> Arrival:
-        """Where the condition first holds; by itself where the motion comes by no singular position before.
-
-        Raises:
-            NeverReached: it is not met.
-        """
-        way = self._way_in_time
-        if way.nearness() is not None:
-            condition = compiled(program_of((self.condition,), self.system.symbols), "numpy")
-            arrival, passed = way.first(lambda t, x: condition.many(t, x, self._p))
-            if passed:
-                return arrival
-        return first_arrival(self._motion, self._function(self.condition), self.t0, self._x0)
-
-    def _refuse_undetermined(self, arrival: Arrival) -> None:
-        """Refuse an instant at which the rates of dependent coordinates are 0/0.
-
-        Raises:
-            RunFailed: they are named.
-        """
-        blocks = singular_blocks(self.system.elimination, self.system.scope)
-        for block in blocks:
-            determinant = self._function(block.determinant)
-            if abs(determinant(arrival.s, arrival.x)) < DEGENERATE * abs(determinant(self.t0, self._x0)):
-                raise RunFailed(
-                    f"{block} at that instant ({PLACE})",
-                    mend="leave out `dependent`: then their rates belong to the state",
-                )
-
-    def _given_time(self) -> float:
-        """The first t, from the start on, at which a condition on t alone holds."""
-        t = self.system.symbols.t
-        values = [float(evaluate((root,), self.values, FLOAT)[0]) for root in roots(self.condition, t)]
-        later = [value for value in values if value >= self.t0 - SOLVED]
-        if later:
-            return min(later)
-        if values:
-            raise DerivationError(f"the instant t = {max(values):g} s is before the start")
-        condition = self._function(self.condition)
-        return first_arrival(lambda s, x: np.ones(1), lambda s, x: condition(s, self._x0), self.t0, [0.0]).s
-
-    # -- from rest, from a dead centre ---------------------------------------------------------------
-
     def _rests(self) -> bool:
         """Whether time does not lead away from the start: an equilibrium, or rates without a value."""
         with np.errstate(all="ignore"):
-            dx = self._motion(self.t0, self._x0)
+            x = self.phase.state(self.names)
+            dx = self.phase.rate(self.t0, x)
             nq = len(self.system.symbols.q)
-            aside = self._x0.copy()
+            aside = x.copy()
             aside[:nq] += 0.05 * (1 + np.abs(aside[:nq]))
-            usual = self._motion(self.t0, aside)
+            usual = self.phase.rate(self.t0, aside)
         if not np.all(np.isfinite(dx)):
             return True
         if self._is_moved_by_time:
@@ -225,7 +122,9 @@ class Locating:
     @property
     def _exact_start(self) -> State:
         """The start in exact numbers where it has no closed form."""
-        return self.exact or {node: Fraction(self.start[node]) for node in self._names}
+        return self.exact or {
+            node: Fraction(self.start[node]) for node in (*self.system.symbols.q, *self.system.symbols.u)
+        }
 
     @property
     def _leading(self) -> int:
@@ -253,7 +152,7 @@ class Locating:
             sought,
         )
 
-    def _along_configurations(self) -> State:
+    def first(self, sought: Scalar) -> State:
         """The state where the condition holds on the way that one freedom leaves; the time is not known.
 
         Raises:
@@ -264,7 +163,7 @@ class Locating:
             raise RunFailed("the motion rests at the start", mend=MEND)
         symbols, speed = self.system.symbols, relations.speed
         square = self._function(self._square(speed))
-        condition = self._function(substituted((self.condition,), relations.speeds)[0])
+        condition = self._function(substituted((sought,), relations.speeds)[0])
         shares = self._functions(tuple(relations.shares.values()))
         still = np.zeros(len(symbols.u))
 
@@ -285,7 +184,8 @@ class Locating:
         )
         at = state(arrival.x, sense)
         speeds = shares(self.t0, at) * at[len(symbols.q) + symbols.u.index(speed)]
-        return self._state(math.nan, np.append(arrival.x, speeds))
+        names = (*symbols.q, *symbols.u)
+        return {symbols.t: math.nan} | dict(zip(names, map(float, (*arrival.x, *speeds)), strict=True))
 
     def _square(self, speed: Node) -> Scalar:
         """u_s^2 as a function of the coordinates.
@@ -310,8 +210,3 @@ class Locating:
             guess = None if near is None else evaluate((scope.value(near),), self.values, FLOAT)[0]
             found.append(self.start[q] if guess is None else float(guess))
         return np.array(found)
-
-
-def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> State:
-    """The parameters that have values, by node."""
-    return {node: float(known[name]) for name, node in parameters.items() if name in known}
