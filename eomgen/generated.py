@@ -18,6 +18,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_state_tried
@@ -139,7 +140,7 @@ class Generated:
 
 
 def generate(
-    model: Model,
+    model: ModelOrPath,
     targets: Sequence[str] = ("c",),
     *,
     name: str = "model",
@@ -157,6 +158,7 @@ def generate(
     Raises:
         UsageError: a language that there is none.
     """
+    model = model_at(model)
     for target in targets:
         target_named(target)  # refuses what is none before anything is derived
     equations = pipeline.derive(model)

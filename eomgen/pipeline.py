@@ -15,7 +15,7 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
-from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import with_inputs
 from eomgen.model.unknowns import refuse_motion
 from eomgen.questions.run import run
@@ -28,7 +28,7 @@ METHODS = ("lagrange", "projection", "kinetostatic")
 
 
 @growing()
-def derive(model: Model, method: str = "lagrange", contacts: ContactModes | None = None) -> Equations:
+def derive(model: ModelOrPath, method: str = "lagrange", contacts: ContactModes | None = None) -> Equations:
     """The equations of motion of a model; no certificate is made.
 
     Args:
@@ -41,6 +41,7 @@ def derive(model: Model, method: str = "lagrange", contacts: ContactModes | None
         DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
             held by nothing, or a force acts at no place.
     """
+    model = model_at(model)
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
@@ -52,13 +53,14 @@ def derive(model: Model, method: str = "lagrange", contacts: ContactModes | None
     return Equations(model, method, system, assembly, at_start.assumptions)
 
 
-def inverse_dynamics(model: Model, actuated: Sequence[str] = ()) -> InverseDynamics:
+def inverse_dynamics(model: ModelOrPath, actuated: Sequence[str] = ()) -> InverseDynamics:
     """The forces and torques that given accelerations take; see `Equations.inverse_dynamics`."""
+    model = model_at(model)
     return derive(model).inverse_dynamics(actuated)
 
 
 def simulate(
-    model: Model,
+    model: ModelOrPath,
     *,
     time: float,
     parameters: Mapping[str, float] | None = None,
@@ -88,6 +90,7 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
+    model = model_at(model)
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     equations = derive(with_inputs(model, inputs or {}))
     found = run(

@@ -14,6 +14,7 @@ from eomgen.model.positions import Index, Span, index_of
 LARGEST = 1_000_000  # bytes
 WIDEST = 100  # characters of a source line that an error shows
 VERSION = 1
+ModelOrPath = Model | str | FilePath
 
 
 def load(path: str | FilePath) -> Model:
@@ -28,6 +29,15 @@ def load(path: str | FilePath) -> Model:
     except OSError as error:
         raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
     return _loads(data, str(path), FilePath(path).stem)
+
+
+def model_at(model: ModelOrPath) -> Model:
+    """A model, or the one in the file at a path.
+
+    Raises:
+        ModelError: as `load`.
+    """
+    return model if isinstance(model, Model) else load(model)
 
 
 def loads(text: str | bytes, name: str = "<text>") -> Model:

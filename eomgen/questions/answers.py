@@ -28,6 +28,7 @@ from eomgen.mechanics.instant.outputs import LINEARIZED, asks_motion
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
@@ -66,12 +67,13 @@ class Answers(dict[str, Answer]):
         return certificate_of(self._solver, self)
 
 
-def solve(model: Model) -> Answers:
+def solve(model: ModelOrPath) -> Answers:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
     Raises:
         ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
     """
+    model = model_at(model)
     solver, found, wrong = _Solver(model), {}, []
     for name, output in model.outputs.items():
         try:

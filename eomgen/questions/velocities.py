@@ -20,6 +20,7 @@ from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Given, Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
@@ -174,7 +175,7 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
 
 
 def kinematics(
-    model: Model,
+    model: ModelOrPath,
     at: WrittenEquation | str | None = None,
     *,
     given: Sequence[WrittenEquation | str] = (),
@@ -191,6 +192,7 @@ def kinematics(
         ModelError: an equation with unknown names.
         DerivationError: nothing can move; too few or too many velocities are given.
     """
+    model = model_at(model)
     equations = tuple(map(_equation, given))
     state = state_of(_with_given(model, equations), None if at is None else _equation(at))
     moves = model.given is None and not equations and bool(model.coordinates)

@@ -20,7 +20,7 @@ from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.integrability import Integrability, integrability_of
 from eomgen.mechanics.constraints.ties import Ties, ties_of
-from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
@@ -83,7 +83,7 @@ class Freedom:
         return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
 
 
-def freedom_of(model: Model, modes: ContactModes | None = None) -> Freedom:
+def freedom_of(model: ModelOrPath, modes: ContactModes | None = None) -> Freedom:
     """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
 
     Args:
@@ -91,6 +91,7 @@ def freedom_of(model: Model, modes: ContactModes | None = None) -> Freedom:
     Raises:
         DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
     """
+    model = model_at(model)
     waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
     if waiting:
         return Freedom(not_counted=", ".join(waiting))

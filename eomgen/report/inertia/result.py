@@ -13,7 +13,7 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import numbers_in
 from eomgen.model.findings import nearest
-from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.proof.check import Certificate
 from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.report.document import Document, document_of
@@ -101,7 +101,9 @@ class Inertia(Result):
         return {"name": self.system.scope.model.name, "results": self.results, "principal_axes": self.axes}
 
 
-def inertia(model: Model, bodies: Sequence[str] = (), *, about: str | None = None, axis: str | None = None) -> Inertia:
+def inertia(
+    model: ModelOrPath, bodies: Sequence[str] = (), *, about: str | None = None, axis: str | None = None
+) -> Inertia:
     """Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes.
 
     Several bodies are taken together too, in ground axes where they stand.
@@ -114,6 +116,7 @@ def inertia(model: Model, bodies: Sequence[str] = (), *, about: str | None = Non
         UsageError: no such body, point or axis.
         DerivationError: a model without bodies.
     """
+    model = model_at(model)
     return _Report(system_of(model), tuple(bodies), about, axis).made()
 
 

@@ -23,6 +23,7 @@ from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.reaction_outputs import output_name
 from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.proof.check import Certificate
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.report.document import Document, document_of
@@ -293,7 +294,7 @@ def _polynomial(polynomial: Polynomial | None) -> list[str] | None:
     return [repr(c) if isinstance(c, float) else to_text(c) for c in polynomial.coefficients]
 
 
-def linearize(model: Model, about: str | None = None, coordinates: Sequence[str] = ()) -> Linearization:
+def linearize(model: ModelOrPath, about: str | None = None, coordinates: Sequence[str] = ()) -> Linearization:
     """The small motions of a model about a place of rest, or about its start, a steady motion.
 
     Args:
@@ -303,6 +304,7 @@ def linearize(model: Model, about: str | None = None, coordinates: Sequence[str]
         UsageError: a coordinate that the model does not have.
         DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
     """
+    model = model_at(model)
     part = model.linearize
     asked = coordinates or (part.coordinates if part is not None else None) or ()
     wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))

@@ -19,6 +19,7 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.proof.check import Certificate
 from eomgen.proof.structure import structure_checks
 from eomgen.report.document import Document
@@ -207,7 +208,7 @@ def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
     return {**moved, **{key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}}
 
 
-def statics(model: Model, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
+def statics(model: ModelOrPath, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
     """A structure at rest; of a system that is free to move, its places of rest.
 
     Args:
@@ -217,6 +218,7 @@ def statics(model: Model, *, reaction: str | None = None, influence: str | None 
         UsageError: no reaction of that name; one is asked by itself of a system that is free to move.
         DerivationError: bodies can move; a force acts at no place.
     """
+    model = model_at(model)
     system = system_of(model, modes_at_rest(model))
     if has_freedoms(system):
         _refuse_for_resting(reaction=reaction, influence=influence)
