@@ -14,7 +14,8 @@ from eomgen.version import __version__
 
 if TYPE_CHECKING:
     from eomgen.model.parts import Model
-    from eomgen.verbs.outcome import Outcome
+    from eomgen.report.document import Document
+    from eomgen.report.result import Result
 
 FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".json": "json"}
 """ending of a file -> the form of what is written into it"""
@@ -22,10 +23,14 @@ FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".jso
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
-
-
-NO_CERTIFY = click.option("--no-certify", is_flag=True, help="Make no certificate.")
-
+FORMAT = click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["text", "latex", "markdown", "json"]),
+    help="Form of the result.  [default: by the ending of -o, else text]",
+)
+PLOT = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
+CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
 FOLLOW = click.option(
     "--follow",
     multiple=True,
@@ -34,30 +39,21 @@ FOLLOW = click.option(
 )
 
 
-def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
-    """The model, coordinates and inputs through the samples of files."""
-    from eomgen.verbs.csv_inputs import following
-
-    return following(declared, follow) if follow else declared
-
-
-FORMAT = click.option(
-    "--format",
-    "format_",
-    type=click.Choice(["text", "latex", "markdown", "json"]),
-    help="Form of the result.  [default: by the ending of -o, else text]",
-)
-PLOT = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
-
-
 def _common(function: Callable[..., int]) -> Callable[..., int]:
     """Options of every result of a model."""
     return MODEL(JSON(OUTPUT(FORMAT(function))))
 
 
-def _written(function: Callable[..., int]) -> Callable[..., int]:
-    """Options of what is drawn, too."""
-    return _common(PLOT(function))
+def _drawn(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of what has a picture and a proof, too."""
+    return _common(PLOT(CERTIFY(function)))
+
+
+def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
+    """The model, coordinates and inputs through the samples of files."""
+    from eomgen.verbs.csv_inputs import following
+
+    return following(declared, follow) if follow else declared
 
 
 def _form(wants_json: bool, format_: str | None, output: str | None = None) -> str:
@@ -76,7 +72,8 @@ def _form(wants_json: bool, format_: str | None, output: str | None = None) -> s
 
 
 def _write(
-    found: Callable[..., Outcome],
+    made: Callable[..., Document],
+    *,
     model: str,
     wants_json: bool,
     output: str | None,
@@ -84,11 +81,21 @@ def _write(
     follow: tuple[str, ...] = (),
     **options: Any,
 ) -> int:
-    """What a verb finds, in the form that is asked."""
+    """The document of a verb, in the form that is asked."""
     form = _form(wants_json, format_, output)
     with reading(model) as declared:
-        outcome = found(_followed(declared, follow), **options)
-    return deliver(outcome, form, output)
+        document = made(_followed(declared, follow), **options)
+    return deliver(document, form, output)
+
+
+def _write_result(found: Callable[..., Result], *, plot: str | None, certify: bool, **options: Any) -> int:
+    """What a verb finds, drawn and proven where that is asked."""
+    from eomgen.verbs.outcome import shown
+
+    def made(declared: Model, **asked: Any) -> Document:
+        return shown(found(declared, **asked), plot=plot, certify=certify)
+
+    return _write(made, **options)
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -106,22 +113,22 @@ def main() -> None:
 @JSON
 def new_command(name: str, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
-    from eomgen.verbs.new import new_outcome as made
+    from eomgen.verbs.new import new_document as made
 
     return deliver(made(name), _form(wants_json, None))
 
 
 @main.command("check")
 @_common
-def check_command(model: str, wants_json: bool, output: str | None, format_: str | None) -> int:
+def check_command(**options: Any) -> int:
     """Validate a model; count its degrees of freedom.
 
     By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
     integrable; how the loops close at the start, and in which other ways they could.
     """
-    from eomgen.verbs.check import check_outcome as checked
+    from eomgen.verbs.check import check_document
 
-    return _write(checked, model, wants_json, output, format_)
+    return _write(check_document, **options)
 
 
 @main.command("derive")
@@ -134,27 +141,23 @@ def check_command(model: str, wants_json: bool, output: str | None, format_: str
     help="By energies, by projection, or body by body with every reaction.",
 )
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
-@NO_CERTIFY
-def derive_command(
-    model: str, wants_json: bool, output: str | None, method: str, format_: str | None, full: bool, no_certify: bool
-) -> int:
+@CERTIFY
+def derive_command(**options: Any) -> int:
     """Derive the equations of motion and certify them."""
-    from eomgen.verbs.derive import derive_outcome as derived
+    from eomgen.verbs.derive import derive_document
 
-    return _write(derived, model, wants_json, output, format_, method=method, certify=not no_certify, full=full)
+    return _write(derive_document, **options)
 
 
 @main.command("solve")
 @_common
 @FOLLOW
-@NO_CERTIFY
-def solve_command(
-    model: str, wants_json: bool, output: str | None, format_: str | None, follow: tuple[str, ...], no_certify: bool
-) -> int:
+@CERTIFY
+def solve_command(**options: Any) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
-    from eomgen.verbs.solve import solve_outcome as solved
+    from eomgen.verbs.solve import solve_document
 
-    return _write(solved, model, wants_json, output, format_, follow, certify=not no_certify)
+    return _write(solve_document, **options)
 
 
 @main.command("reactions")
@@ -164,38 +167,35 @@ def solve_command(
 )
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
-def reactions_command(model: str, wants_json: bool, output: str | None, format_: str | None, **options: Any) -> int:
+def reactions_command(**options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
     coordinates and rates with its number at the start; with --at, exactly and as a number at that instant.
     """
-    from eomgen.verbs.reactions import reactions_outcome as found
+    from eomgen.verbs.reactions import reactions_document
 
-    return _write(found, model, wants_json, output, format_, **options)
+    return _write(reactions_document, **options)
 
 
 @main.command("statics")
-@_written
+@_drawn
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
-@NO_CERTIFY
-def statics_command(
-    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
-) -> int:
+def statics_command(**options: Any) -> int:
     """Give reactions at rest by virtual work, or the places of rest.
 
     Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
     mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
     system that is free to move: where it is at rest, and whether that is stable.
     """
-    from eomgen.verbs.statics import statics_outcome as found
+    from eomgen.report.statics.result import statics
 
-    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
+    return _write_result(statics, **options)
 
 
 @main.command("kinematics")
-@_written
+@_drawn
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
 @click.option(
@@ -204,41 +204,35 @@ def statics_command(
     metavar='"POINT in BODY"',
     help="Motion of a point on a moving body: transport, relative, Coriolis.",
 )
-@NO_CERTIFY
-def kinematics(
-    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
-) -> int:
+def kinematics_command(**options: Any) -> int:
     """Give velocities and centres of rotation at one instant.
 
     Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
     rotation with the lines on which they are found, spins, velocities and accelerations of points, kinds of motion.
     """
-    from eomgen.verbs.kinematics import kinematics_outcome as found
+    from eomgen.verbs.kinematics import kinematics_asked
 
-    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
+    return _write_result(kinematics_asked, **options)
 
 
 @main.command("inertia")
-@_written
+@_drawn
 @click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
 @click.option("--about", metavar="POINT", help="About this point too.")
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
-@NO_CERTIFY
-def inertia_command(
-    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
-) -> int:
+def inertia_command(**options: Any) -> int:
     """Give masses, mass centres, moments of inertia, principal axes.
 
     Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
     tensor (minus) and of the textbook (plus).
     """
-    from eomgen.verbs.inertia import inertia_outcome as found
+    from eomgen.report.inertia.result import inertia
 
-    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
+    return _write_result(inertia, **options)
 
 
 @main.command("linearize")
-@_written
+@_drawn
 @click.option(
     "--about",
     type=click.Choice(["equilibrium", "start", "steady"]),
@@ -246,18 +240,15 @@ def inertia_command(
     "it.  [default: see [linearize]]",
 )
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
-@NO_CERTIFY
-def linearize_command(
-    model: str, wants_json: bool, output: str | None, format_: str | None, no_certify: bool, **options: Any
-) -> int:
+def linearize_command(**options: Any) -> int:
     """Give small motions about rest or a steady motion.
 
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
-    from eomgen.verbs.linearize import linearize_outcome as found
+    from eomgen.report.linearize.result import linearize
 
-    return _write(found, model, wants_json, output, format_, certify=not no_certify, **options)
+    return _write_result(linearize, **options)
 
 
 @main.command("simulate")
@@ -298,7 +289,7 @@ def linearize_command(
 @FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
-@NO_CERTIFY
+@CERTIFY
 def simulate_command(
     model: str,
     wants_json: bool,
@@ -311,7 +302,6 @@ def simulate_command(
     project_every: int | None,
     baumgarte: tuple[float, float] | None,
     follow: tuple[str, ...],
-    no_certify: bool,
     **options: Any,
 ) -> int:
     """Integrate the motion from the start values.
@@ -320,7 +310,7 @@ def simulate_command(
     kept closed, and how well, and how well energy is kept, is said.
     """
     from eomgen.simulation.integrator import RATES, Stepping
-    from eomgen.verbs.simulate import simulate_outcome as simulated
+    from eomgen.verbs.simulate import simulate_document as simulated
 
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
@@ -329,9 +319,9 @@ def simulate_command(
     rates = baumgarte or RATES
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as declared:
-        outcome = simulated(_followed(declared, follow), output=output, certify=not no_certify, **options)
+        document = simulated(_followed(declared, follow), output=output, **options)
     asked = wants_json or format_ is not None
-    return deliver(outcome, _form(wants_json, format_), on_stderr=output is not None and not asked)
+    return deliver(document, _form(wants_json, format_), on_stderr=output is not None and not asked)
 
 
 @main.command("codegen")
@@ -345,7 +335,7 @@ def simulate_command(
 @FOLLOW
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
-@NO_CERTIFY
+@CERTIFY
 @click.option(
     "--baumgarte",
     nargs=2,
@@ -363,10 +353,10 @@ def codegen_command(
     actuated: str | None,
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
-    no_certify: bool,
+    certify: bool,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
-    from eomgen.verbs.codegen import codegen_outcome as generated
+    from eomgen.verbs.codegen import codegen_document as generated
     from eomgen.verbs.codegen import languages
 
     if wants_list:
@@ -376,7 +366,7 @@ def codegen_command(
     stem = "model" if model == "-" else Path(model).stem
     names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
     with reading(model) as declared:
-        outcome = generated(
+        document = generated(
             _followed(declared, follow),
             stem=stem,
             origin=Path(model).name,
@@ -385,9 +375,9 @@ def codegen_command(
             inverse=inverse,
             actuated=names,
             baumgarte=baumgarte,
-            certify=not no_certify,
+            certify=certify,
         )
-    return deliver(outcome, _form(wants_json, None))
+    return deliver(document, _form(wants_json, None))
 
 
 @main.command("schema")
@@ -395,7 +385,7 @@ def codegen_command(
 @OUTPUT
 def schema_command(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
-    from eomgen.verbs.schema import schema_outcome as written
+    from eomgen.verbs.schema import schema_document as written
 
     return deliver(written(), _form(wants_json, None), output)
 
@@ -405,6 +395,6 @@ def schema_command(wants_json: bool, output: str | None) -> int:
 @OUTPUT
 def doctor_command(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
-    from eomgen.verbs.doctor import doctor_outcome as examined
+    from eomgen.verbs.doctor import doctor_document as examined
 
     return deliver(examined(), _form(wants_json, None), output)

@@ -21,7 +21,7 @@ from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     from eomgen.model.parts import Model
-    from eomgen.verbs.outcome import Outcome
+    from eomgen.report.document import Document
 
 INTERRUPTED = 130  # as a shell has it for Ctrl-C
 CLOSED_PIPE = 141  # as a shell has it for a reader that went away
@@ -120,22 +120,22 @@ def _say(text: str) -> None:
         sys.exit(CLOSED_PIPE)
 
 
-def deliver(outcome: Outcome, form: str, output: str | None = None, *, on_stderr: bool = False) -> int:
+def deliver(document: Document, form: str, output: str | None = None, *, on_stderr: bool = False) -> int:
     """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code."""
     from eomgen.report import rendered
     from eomgen.verbs.outcome import write_text
 
-    result = rendered(outcome.document, form)
+    result = rendered(document, form)
     if on_stderr:
         click.echo(result, err=True, nl=False)
     elif output is None:
         _say(result)
     else:
         write_text(output, result)
-    for line in (*outcome.notes, *(f"warning: {each}" for each in outcome.document.warnings), outcome.failed):
+    for line in (*document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong):
         if line:
             click.echo(line, err=True)
-    return 3 if outcome.failed else 0
+    return 3 if document.wrong else 0
 
 
 @contextmanager

@@ -36,6 +36,7 @@ class Document:
         definitions: sub-expressions with a name of their own, in the order of their use.
         entries: gives what machines get by name, with quantities as leaves; made when they are asked.
         failed: what is wrong with the result, or open in it; "" as it must be.
+        notes: what else is worth a line on stderr.
         certificate: the proof; None where none was made.
     """
 
@@ -49,6 +50,7 @@ class Document:
     definitions: tuple[tuple[Node, Scalar], ...] = ()
     entries: Callable[[], Mapping[str, Any]] = _nothing
     failed: str = ""
+    notes: tuple[str, ...] = ()
     certificate: Certificate | None = None
 
     @property
@@ -73,6 +75,11 @@ class Document:
         return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
 
     @property
+    def wrong(self) -> str:
+        """Why the exit code is 3, or ""."""
+        return "; ".join(filter(None, (self.distrust, self.failed)))
+
+    @property
     def warnings(self) -> tuple[Problem, ...]:
         """What a user should know before the result is used."""
         unchecked = self.certificate is not None and self.certificate.ok is None
@@ -91,10 +98,14 @@ def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
 
 
 def plain_document(
-    model: Model, entries: Callable[[], Mapping[str, Any]], *statements: Statement, failed: str = ""
+    model: Model,
+    entries: Callable[[], Mapping[str, Any]],
+    *statements: Statement,
+    failed: str = "",
+    notes: tuple[str, ...] = (),
 ) -> Document:
     """A document of one section without a head: what is no derivation."""
-    return Document(model.name, steps=(Step("", "", statements),), entries=entries, failed=failed)
+    return Document(model.name, steps=(Step("", "", statements),), entries=entries, failed=failed, notes=notes)
 
 
 def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:

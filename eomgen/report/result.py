@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from eomgen.proof.check import Certificate
 from eomgen.report import json_form, rendered
 from eomgen.report.document import Document
 from eomgen.report.figures import Picture
@@ -29,6 +30,10 @@ class Result:
     def failed(self) -> str:
         """What is wrong with it, or open in it, in words; "" as it must be."""
         return ""
+
+    def certify(self) -> Certificate:
+        """The proof of it, made when it is asked for."""
+        raise NotImplementedError
 
     def entries(self) -> Mapping[str, Any]:
         """What machines get, with quantities as leaves."""

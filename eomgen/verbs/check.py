@@ -7,19 +7,19 @@ from typing import Any
 from eomgen.mechanics.constraints.freedom import Freedom
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.parts import Model, Truss
-from eomgen.report.document import plain_document
+from eomgen.report.document import Document, plain_document
 from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
-from eomgen.verbs.outcome import Outcome, listed
+from eomgen.verbs.outcome import listed
 
 
-def check_outcome(model: Model) -> Outcome:
+def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    return Outcome(plain_document(model, lambda: _entries(found), Lines(tuple(lines))))
+    return plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
 
 
 def _entries(found: Checked) -> dict[str, Any]:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from eomgen.codegen.targets import ALL
 from eomgen.generated import Generated, generate
 from eomgen.model.parts import Model
-from eomgen.report.document import lines_document, plain_document
+from eomgen.report.document import Document, lines_document, plain_document
 from eomgen.report.statements import Lines
-from eomgen.verbs.outcome import Outcome, proven
 
 
-def codegen_outcome(
+def codegen_document(
     model: Model,
     *,
     stem: str,
@@ -21,7 +22,7 @@ def codegen_outcome(
     actuated: tuple[str, ...] = (),
     baumgarte: tuple[float, float] | None = None,
     certify: bool = True,
-) -> Outcome:
+) -> Document:
     """The right-hand side and the reactions as files that compile as they are; none where their proof fails.
 
     Args:
@@ -36,7 +37,7 @@ def codegen_outcome(
     paths = [] if refused else [str(path) for path in found.write(directory)]
     lines = ("no files were written",) if refused else tuple(paths)
     document = plain_document(model, lambda: _payload(found, paths), Lines(lines))
-    return proven(Outcome(document, (found.note,) if found.note else ()), certificate)
+    return replace(document, notes=(found.note,) if found.note else ()).proven(certificate)
 
 
 def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
@@ -60,7 +61,7 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
     return payload
 
 
-def languages() -> Outcome:
+def languages() -> Document:
     """The targets that there are, a line each."""
     found = [{"name": target.name, "about": target.about} for target in ALL]
-    return Outcome(lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in ALL)))
+    return lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in ALL))

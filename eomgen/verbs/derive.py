@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from eomgen import pipeline
 from eomgen.model.parts import Model
-from eomgen.verbs.outcome import Outcome, proven
+from eomgen.report.document import Document
 
 
-def derive_outcome(model: Model, *, method: str, certify: bool, full: bool = False) -> Outcome:
+def derive_document(model: Model, *, method: str, certify: bool, full: bool = False) -> Document:
     """The derivation, and its certificate.
 
     Args:
@@ -15,4 +15,4 @@ def derive_outcome(model: Model, *, method: str, certify: bool, full: bool = Fal
     """
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
-    return proven(Outcome(document), equations.certify() if certify else None)
+    return document.proven(equations.certify() if certify else None)

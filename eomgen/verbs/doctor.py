@@ -11,12 +11,11 @@ from pathlib import Path
 import platformdirs
 
 from eomgen.codegen.build import compiler
-from eomgen.report.document import lines_document
-from eomgen.verbs.outcome import Outcome
+from eomgen.report.document import Document, lines_document
 from eomgen.version import __version__
 
 
-def doctor_outcome() -> Outcome:
+def doctor_document() -> Document:
     """What this machine can do."""
     rows: list[tuple[str, str | None]] = [("eomgen", __version__), ("python", platform.python_version())]
     for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs"):
@@ -28,7 +27,7 @@ def doctor_outcome() -> Outcome:
     rows.append(("cache", _cache()))
     rows.append(("LaTeX", next(filter(None, map(shutil.which, ("pdflatex", "lualatex", "xelatex", "tectonic"))), None)))
     lines = [f"{what:<12}  {found or 'not found' + _without(what)}" for what, found in rows]
-    return Outcome(lines_document(lambda: {"found": dict(rows)}, *lines))
+    return lines_document(lambda: {"found": dict(rows)}, *lines)
 
 
 def _without(what: str) -> str:

@@ -7,40 +7,35 @@ from collections.abc import Sequence
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
+from eomgen.report.kinematics.result import Kinematics
 from eomgen.verbs.assignments import nearest_name
-from eomgen.verbs.outcome import Outcome, proven, told
 
 
-def kinematics_outcome(
+def kinematics_asked(
     model: Model,
     *,
-    plot: str | None = None,
     at: str | None = None,
     given: Sequence[str] = (),
     relative: Sequence[str] = (),
-    certify: bool = True,
-) -> Outcome:
+) -> Kinematics:
     """The motion at one instant.
 
     Args:
-        plot: a picture's file.
         at: the instant, an equation; None: the start, or the one configuration.
         given: velocities besides those of the model: "omega(crank) = 2".
         relative: points as they are seen from moving bodies: "P in disc".
-        certify: whether it is proven.
     Raises:
         UsageError: no equation; no such point or body.
     """
     pairs = tuple(_pair(model, text) for text in relative)
     try:
-        found = found_in(model, at, given=given, relative=pairs)
+        return found_in(model, at, given=given, relative=pairs)
     except ExpressionError as error:
         raise UsageError(f"{error.what} (in {_asked(at, given)})", mend=error.mend) from error
     except ModelError as error:
         if not given:
             raise
         raise UsageError(f"--given: {error.what}", mend=error.mend) from error
-    return proven(told(found, plot=plot), found.certify() if certify else None)
 
 
 def _asked(at: str | None, given: Sequence[str]) -> str:

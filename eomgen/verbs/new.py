@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 from eomgen.errors import RunFailed, UsageError
-from eomgen.report.document import lines_document
-from eomgen.verbs.outcome import Outcome
+from eomgen.report.document import Document, lines_document
 
 TEMPLATES = Path(__file__).parent.parent / "templates"
 
 
-def new_outcome(name: str) -> Outcome:
+def new_document(name: str) -> Document:
     """A commented starter model NAME.toml; never over a file that is there.
 
     Raises:
@@ -33,4 +33,4 @@ def new_outcome(name: str) -> Outcome:
     except OSError as error:
         raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
     document = lines_document(lambda: {"file": str(path)}, str(path))
-    return Outcome(document, (f"now try: eomgen derive {shlex.quote(str(path))}",))
+    return replace(document, notes=(f"now try: eomgen derive {shlex.quote(str(path))}",))

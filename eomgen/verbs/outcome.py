@@ -1,54 +1,22 @@
-"""What a verb gives, and how files are written: whole or not at all."""
+"""A result -> its document; how files are written: whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from eomgen.errors import RunFailed
-from eomgen.proof.check import Certificate
-from eomgen.report import json_form
 from eomgen.report.document import Document
 from eomgen.report.result import Result
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What a verb gives.
-
-    Args:
-        document: the result, for people and for machines.
-        notes: what else is worth a line on stderr.
-    """
-
-    document: Document
-    notes: tuple[str, ...] = ()
-
-    @property
-    def failed(self) -> str:
-        """Why the exit code is 3, or ""."""
-        return "; ".join(filter(None, (self.document.distrust, self.document.failed)))
-
-    @property
-    def payload(self) -> dict[str, Any]:
-        """The result for machines."""
-        return json_form.as_dict(self.document)
-
-
-def told(found: Result, *, plot: str | None) -> Outcome:
-    """A result, its picture in a file where one is asked for."""
+def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
+    """What is found, proven where that is asked for, its picture in a file where one is."""
     if plot is not None:
         found.plot(prepared(plot))
-    return Outcome(found.document)
-
-
-def proven(outcome: Outcome, certificate: Certificate | None) -> Outcome:
-    """A result with its certificate: a contradiction stands first and ends in exit 3; None: none was asked for."""
-    return Outcome(outcome.document.proven(certificate), outcome.notes)
+    return found.document.proven(found.certify() if certify else None)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -24,7 +24,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
 from eomgen.questions import answers
-from eomgen.report.document import plain_document
+from eomgen.report.document import Document, plain_document
 from eomgen.report.quantity import Quantity
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space, reaction_formulas
@@ -34,13 +34,13 @@ from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.verbs.assignments import assignments, nearest_name
-from eomgen.verbs.outcome import Outcome, listed
+from eomgen.verbs.outcome import listed
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
 
 
-def reactions_outcome(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Outcome:
+def reactions_document(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Document:
     """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
 
     Args:
@@ -62,14 +62,14 @@ def reactions_outcome(model: Model, *, at: str | None = None, from_rest: tuple[s
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     space = null_space(system, equations.graph) if open_ and equations is not None else []
-    document = plain_document(
+    return plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **({"null_space": space} if space else {})},
         _listing(system, asked, found, bool(space)),
         *_open_statements(space),
         failed=f"not answered: {listed(failed)}" if failed else broken,
+        notes=() if found else ("nothing reacts: no body is held by joints or ties",),
     )
-    return Outcome(document, () if found else ("nothing reacts: no body is held by joints or ties",))
 
 
 def _function(name: str) -> str:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 
 from eomgen.model.schema import json_schema
-from eomgen.report.document import lines_document
-from eomgen.verbs.outcome import Outcome
+from eomgen.report.document import Document, lines_document
 
 
-def schema_outcome() -> Outcome:
+def schema_document() -> Document:
     """The JSON Schema of a model file."""
     found = json_schema()
-    return Outcome(lines_document(lambda: found, json.dumps(found, ensure_ascii=False, indent=2)))
+    return lines_document(lambda: found, json.dumps(found, ensure_ascii=False, indent=2))

@@ -17,18 +17,18 @@ from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.questions.run import run as simulated
-from eomgen.report.document import plain_document
+from eomgen.report.document import Document, plain_document
 from eomgen.report.statements import Grid, Statement, prose
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.verbs.assignments import assignments, nearest_name
-from eomgen.verbs.outcome import Outcome, prepared, proven
+from eomgen.verbs.outcome import prepared
 
 MOST_TOLD = 20  # phases in the text
 
 
-def simulate_outcome(
+def simulate_document(
     model: Model,
     *,
     time: float,
@@ -41,7 +41,7 @@ def simulate_outcome(
     output: str | None,
     plot: str | None,
     certify: bool = True,
-) -> Outcome:
+) -> Document:
     """The motion from the start; trajectory and picture are written where they are asked for."""
     parameters = _parameters(model, given)
     _check_ending(output)
@@ -72,8 +72,9 @@ def simulate_outcome(
         lambda: _run_payload(model, run, files) | first,
         *_run_statements(model, run),
         failed="" if run.ok else run.message,
+        notes=notes,
     )
-    return proven(Outcome(document, notes), run.certify() if certify else None)
+    return document.proven(run.certify() if certify else None)
 
 
 def _first_instant(equations: Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:

@@ -14,9 +14,9 @@ from eomgen.mechanics.equilibria.loads_at_rest import holding_of
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.model.parts import Model
 from eomgen.report import rendered
+from eomgen.report.json_form import as_dict
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.reactions import reactions_outcome
-from eomgen.verbs.statics import statics_outcome
+from eomgen.verbs.reactions import reactions_document
 
 pytestmark = pytest.mark.slow
 
@@ -431,21 +431,21 @@ def test_outputs_and_reactions_at_rest():
     )
     answers = eomgen.solve(model)
     assert answers["a"].exact == "0" and answers["X"].exact == "-m*g"
-    found = reactions_outcome(model, at="equilibrium")
-    assert not found.failed and found.payload["reactions"]["reaction_x(bar)"]["exact"] == "-m*g"
+    found = reactions_document(model, at="equilibrium")
+    assert not found.wrong and as_dict(found)["reactions"]["reaction_x(bar)"]["exact"] == "-m*g"
 
 
 def test_the_verb_of_statics_gives_the_places_of_rest():
     model = eomgen.load("models/simple_pendulum.toml")
-    payload = statics_outcome(model).payload
+    payload = eomgen.statics(model).as_dict()
     assert [e["coordinates"]["theta"]["exact"] for e in payload["equilibria"]] == ["0", "pi"]
     assert payload["complete"] and payload["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
-    document = statics_outcome(model).document
+    document = eomgen.statics(model).document
     text = rendered(document)
     assert "There are 2 places of rest" in text and "stable" in text
     assert r"\frac{\partial^{2} V}{\partial q^{2}}" in rendered(document, "latex")
     with pytest.raises(UsageError, match="structures that stand"):
-        statics_outcome(model, reaction="reaction_x(rod)")
+        eomgen.statics(model, reaction="reaction_x(rod)")
 
 
 # -- what has no places ------------------------------------------------------------------------------

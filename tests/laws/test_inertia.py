@@ -13,6 +13,7 @@ import eomgen
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
 from eomgen.mechanics.masses.principal import numbers_in, principal_of
+from eomgen.report.json_form import as_dict
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow
@@ -529,15 +530,15 @@ def test_what_is_not_known_of_a_body_of_the_plane_is_not_answered():
 
 def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     """--plot makes a picture of the plane; JSON has every result by name; in space nothing is drawn."""
-    from eomgen.verbs.inertia import inertia_outcome
+    from eomgen.verbs.outcome import shown
 
     picture = tmp_path / "plate.png"
-    outcome = inertia_outcome(eomgen.Model(**CH13), plot=str(picture), about="O")
+    found = as_dict(shown(eomgen.inertia(eomgen.Model(**CH13), about="O"), plot=str(picture)))
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert outcome.payload["results"]["m(plate)"] == {"exact": "87", "value": 87.0, "unit": "kg"}
-    assert outcome.payload["principal_axes"].keys() == {"plate", "O"}
+    assert found["results"]["m(plate)"] == {"exact": "87", "value": 87.0, "unit": "kg"}
+    assert found["principal_axes"].keys() == {"plate", "O"}
     with pytest.raises(eomgen.RunFailed):
-        inertia_outcome(eomgen.Model(**CUBE), plot=str(picture))
+        shown(eomgen.inertia(eomgen.Model(**CUBE)), plot=str(picture))
 
 
 # -- the report of what moves, and of what says nothing of its inertia ------------------------------

@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.verbs.check import check_outcome
+from eomgen.verbs.check import check_document
 
 pytestmark = pytest.mark.slow
 
@@ -164,7 +164,7 @@ def test_check_counts_the_declared_speeds_too():
     """Two speeds for three rates are an error of `check`, not only of the verbs that need them."""
     text = "\n".join(line for line in TRICYCLE.splitlines() if not line.startswith("u3 ="))
     with pytest.raises(ModelError, match=r"2 speeds are declared for 3 rates \(Y', Z', q1'\)"):
-        check_outcome(eomgen.loads(text))
+        check_document(eomgen.loads(text))
 
 
 SNAKEBOARD = """eomgen = 1

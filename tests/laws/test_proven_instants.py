@@ -12,8 +12,10 @@ import eomgen
 from eomgen.mechanics.fields import relative_motion
 from eomgen.mechanics.instant import body_motion, kinematic_state, mechanism
 from eomgen.questions import velocities
+from eomgen.report.json_form import as_dict
 from eomgen.symbolic.expression.spatial import times
-from eomgen.verbs.kinematics import kinematics_outcome as verb
+from eomgen.verbs.kinematics import kinematics_asked as verb
+from eomgen.verbs.outcome import shown
 
 CRANK = MODELS / "slider_crank.toml"
 HOOP = MODELS / "bead_on_turning_hoop.toml"
@@ -88,8 +90,8 @@ def test_wrong_accelerations_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     """`certificate` in JSON, null where none is asked; a contradiction is a failure."""
     model = eomgen.load(CRANK)
-    assert verb(model).payload["certificate"]["ok"] is True
-    assert verb(model, certify=False).payload["certificate"] is None
+    assert as_dict(shown(verb(model)))["certificate"]["ok"] is True
+    assert as_dict(shown(verb(model), certify=False))["certificate"] is None
     right = kinematic_state.field_of
     monkeypatch.setattr(kinematic_state, "field_of", lambda *given: replace(f := right(*given), v=times(2, f.v)))
-    assert "do not trust" in verb(model).failed
+    assert "do not trust" in shown(verb(model)).wrong

@@ -13,7 +13,9 @@ import eomgen
 from eomgen.mechanics.bodies import composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.report.inertia import result, rows, steps
-from eomgen.verbs.inertia import inertia_outcome as verb
+from eomgen.report.inertia.result import inertia as verb
+from eomgen.report.json_form import as_dict
+from eomgen.verbs.outcome import shown
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"
 FRAME = MODELS / "seeds" / "ch18_p2.toml"
@@ -87,7 +89,7 @@ def test_sizes_that_no_body_has_are_not_called_wrong(monkeypatch: pytest.MonkeyP
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     """`certificate` in JSON, null where none is asked; a contradiction is a failure."""
     model = eomgen.load(FRAME)
-    assert verb(model).payload["certificate"]["ok"] is True
-    assert verb(model, certify=False).payload["certificate"] is None
+    assert as_dict(shown(verb(model)))["certificate"]["ok"] is True
+    assert as_dict(shown(verb(model), certify=False))["certificate"] is None
     monkeypatch.setattr(result, "polar_results", lambda section: [section.named("J", "P", 1, "kg*m^2")])
-    assert "do not trust" in verb(model, about="AB.end").failed
+    assert "do not trust" in shown(verb(model, about="AB.end")).wrong

@@ -11,7 +11,9 @@ from known_answers import MODELS
 import eomgen
 from eomgen.mechanics.equilibria import search
 from eomgen.mechanics.statics import influence, section_forces, two_ways
-from eomgen.verbs.statics import statics_outcome as verb
+from eomgen.report.json_form import as_dict
+from eomgen.report.statics.result import statics as verb
+from eomgen.verbs.outcome import shown
 
 BEAM = MODELS / "gerber_beam.toml"
 PENDULUM = MODELS / "simple_pendulum.toml"
@@ -92,8 +94,8 @@ def test_a_wrong_word_of_stability_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     """`certificate` in JSON, null where none is asked; a contradiction is a failure."""
     model = eomgen.load(BEAM)
-    assert verb(model).payload["certificate"]["ok"] is True
-    assert verb(model, certify=False).payload["certificate"] is None
+    assert as_dict(shown(verb(model)))["certificate"]["ok"] is True
+    assert as_dict(shown(verb(model), certify=False))["certificate"] is None
     monkeypatch.setattr(section_forces, "SIXTH", 1)
     monkeypatch.setattr(section_forces, "HALF", 1)
-    assert "do not trust" in verb(model).failed
+    assert "do not trust" in shown(verb(model)).wrong

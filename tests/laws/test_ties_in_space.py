@@ -619,15 +619,15 @@ def test_frobenius_and_chow_tell_what_a_row_of_velocities_is(name):
 
 def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
     """x' = R theta': x - R theta - (0.1 - 0.4 R) = 0, from `check` in both forms."""
-    from eomgen.verbs.check import check_outcome
+    from eomgen.verbs.check import check_document
 
-    found = check_outcome(model_of(rates("x' - R*theta'"), "plane"))
-    (row,) = found.payload["velocity_rows"]
+    found = check_document(model_of(rates("x' - R*theta'"), "plane")).entries()
+    (row,) = found["velocity_rows"]
     expression = eomgen.symbolic.expression.expressions.parse(row["integral"])
     for x, theta, R in ((0.1, 0.4, 0.3), (1.7, 0.4 + 1.6 / 0.5, 0.5)):
         assert expression.evaluate({"x": x, "theta": theta, "R": R}) == pytest.approx(0, abs=1e-12)
     assert abs(expression.evaluate({"x": 1, "theta": 0, "R": 1})) > 0.1
-    assert json.dumps(found.payload["position_freedoms"]) == "3"
+    assert json.dumps(found["position_freedoms"]) == "3"
 
 
 def test_a_ball_that_rolls_reaches_all_five_freedoms():
