@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import pytest
 from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
@@ -11,6 +9,7 @@ from random_expressions import POINT, on_graph, smooth, trigonometric, values_at
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Graph, Node, collected, linear_terms
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 

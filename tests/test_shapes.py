@@ -1,7 +1,5 @@
 """Shapes: mass, mass centre and inertia against independent integrals and against one another."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from scipy.integrate import dblquad, tplquad
@@ -23,6 +21,7 @@ from eomgen.model.shapes import (
 )
 from eomgen.proof.masses import filled
 from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.rational import Fraction
 
 EXAMPLES = {
     "particle": {"mass": 3},

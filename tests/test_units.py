@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 
 import pytest
 
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.units import UNITS, parse_unit
 
 

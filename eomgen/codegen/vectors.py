@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 from eomgen.codegen.kernel_reader import solve_bordered
@@ -15,6 +14,7 @@ from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 

@@ -1,10 +1,10 @@
 """Expressions of parameters -> numbers: in which order parameters follow from one another, what one is worth."""
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.rational import Fraction
 
 AnyNumber = int | Fraction | float
 

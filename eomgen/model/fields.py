@@ -7,13 +7,13 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression, parse_equation
+from eomgen.symbolic.expression.rational import EXACT
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
@@ -107,7 +107,7 @@ def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Finding:
 
 
 def _expression(raw: Any, path: DocumentPath, found: list[Finding], references: bool = False) -> Expression | None:
-    if isinstance(raw, bool) or not isinstance(raw, (int, float, str, Fraction, Expression)):
+    if isinstance(raw, bool) or not isinstance(raw, (float, str, *EXACT, Expression)):
         found.append(Finding(path, f"a number or an expression is needed here, not {shown(raw)}"))
         return None
     try:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
@@ -10,6 +9,7 @@ from eomgen.model.fields import FormulaRule, TextRule
 from eomgen.model.findings import Finding, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import is_exact
 from eomgen.symbolic.expression.splines import ENDS, WAYS, Sampled, spline_of
 

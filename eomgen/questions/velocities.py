@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, UsageError
@@ -29,6 +28,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse_equation
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place

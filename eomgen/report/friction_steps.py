@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.mechanics.balance.friction import Rub
 from eomgen.mechanics.equations.assembly import Assembly
@@ -21,6 +20,7 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size

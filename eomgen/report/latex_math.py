@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import pairwise
 
 from eomgen.report.latex_names import symbol_latex
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import TypeGuard
 
 from eomgen.report.reading import LONGEST, NAMED_PART, free_names
@@ -15,6 +14,7 @@ from eomgen.report.statements import Equation, Formula, Side, Statement, Step
 from eomgen.symbolic.exact.roots import is_root_of_sum
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.text import named_parts, text_size
 

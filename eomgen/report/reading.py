@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import count
 
 from eomgen.report.statements import Omitted
@@ -14,6 +13,7 @@ from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import SUMS, factors

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import Any, Literal
 
@@ -26,6 +25,7 @@ from eomgen.model.contacts import Contact
 from eomgen.simulation.configuration import Configuration
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 
 STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
 

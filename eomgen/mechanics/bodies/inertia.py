@@ -8,7 +8,6 @@ recursive forms derive, and their agreement proves something.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.errors import ModelError
 from eomgen.mechanics.bodies.composition import made_of
@@ -16,6 +15,7 @@ from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, spin_between
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
 
 HALF = Fraction(1, 2)

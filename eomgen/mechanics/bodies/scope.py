@@ -8,7 +8,6 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -20,6 +19,7 @@ from eomgen.model.trusses import in_parts
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import through_samples
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.splines import Sampled

@@ -9,12 +9,12 @@ second moments of mass m, h = int r dm, J = int r r^T dm, about that origin.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.symbolic.expression.derivative import symbols_of, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from fractions import Fraction
 
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.model.constraints.row import Edge
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -27,6 +26,7 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
 from eomgen.symbolic.numeric.tolerances import SOLVED
 from eomgen.symbolic.print.text import text_size, to_text

@@ -11,11 +11,11 @@ Applied Mechanics and Engineering 1 (1972).
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
+from eomgen.symbolic.expression.rational import Fraction
 
 PullBack = tuple[float, float]
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.fields.possible import Possible
@@ -16,6 +15,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, plus, times, vector_of
 from eomgen.symbolic.numeric.work import Work
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.solve.solving import vanishes
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
@@ -40,6 +39,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.composition import made_of
@@ -26,6 +25,7 @@ from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,

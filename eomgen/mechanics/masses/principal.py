@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property, cmp_to_key
 
 from eomgen.mechanics.bodies.scope import Scope
@@ -24,6 +23,7 @@ from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.functions import cos, function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, cross, dot, matrix_of, times, vector_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of

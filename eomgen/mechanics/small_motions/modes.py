@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from random import Random
@@ -24,6 +23,7 @@ from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
@@ -23,6 +22,7 @@ from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of
 from eomgen.mechanics.statics.member_loads import MemberLoad, MemberLoads
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, minus, plus, times, vector_of
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes

@@ -1,7 +1,6 @@
 """Link: a massless rod or wire of constant length."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -10,6 +9,7 @@ from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Flag, Length, TwoPoints
 from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
 
 

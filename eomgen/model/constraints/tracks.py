@@ -1,7 +1,6 @@
 """What a round body rolls on: a plane (in the plane a line), a ball or pipe (in the plane a circle)."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -13,6 +12,7 @@ from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
 from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, apply, cross, dot, minus, plus, times
 
 

@@ -1,7 +1,6 @@
 """Distributed: a line load between two points of a body."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -10,6 +9,7 @@ from eomgen.model.forces.load import Load, PointForce, Scene, SpreadLoad
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, plus, times
 
 

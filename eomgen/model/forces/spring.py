@@ -1,13 +1,13 @@
 """Spring: between two points."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 

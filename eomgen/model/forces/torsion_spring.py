@@ -1,13 +1,13 @@
 """Torsion spring: between two bodies, or a body and the ground."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 

@@ -7,7 +7,6 @@ e = (e0, e1, e2, e3), scalar first, child to parent, moves with the child's angu
 """
 
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 from itertools import product as combinations
 from typing import Annotated, Any
 
@@ -19,6 +18,7 @@ from eomgen.model.joints.base import Column, X, Y, Z, angular
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Vector, apply, product, rotation, transposed
 
 HALF = Fraction(1, 2)

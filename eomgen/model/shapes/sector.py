@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, Opening, ValueOf
@@ -18,6 +17,7 @@ from eomgen.model.shapes.base import (
     part_of_turn,
 )
 from eomgen.symbolic.expression.functions import over, sin
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
 
 

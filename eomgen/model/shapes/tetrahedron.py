@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
@@ -11,6 +10,7 @@ from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import MassProperties, Shape, tensor
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
 
 Corners = Annotated[

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 
 from eomgen.mechanics.instant.construction import POINT, FoundPoint, LineOf, PointPair
 from eomgen.mechanics.instant.kinematic_state import KinematicState
@@ -13,6 +12,7 @@ from eomgen.report.latex_names import letter_law
 from eomgen.report.setting_steps import count
 from eomgen.report.statements import Cell, Formula, Grid, Law, Omitted, Piece, Side, Statement, Step, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50

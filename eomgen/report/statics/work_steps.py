@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from fractions import Fraction
 
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.statics.two_ways import StaticReaction
@@ -15,6 +14,7 @@ from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
 from eomgen.report.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid, prose
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, plus, times, vector_of
 
 TURN, SHIFT = "δθ", "δs"

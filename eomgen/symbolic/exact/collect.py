@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from fractions import Fraction
 
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import powers_in, reduced
@@ -25,6 +24,7 @@ from eomgen.symbolic.exact.terms import (
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import accumulate
 from math import lcm
 from random import Random
@@ -17,6 +16,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node, Number, Scalar, linear_terms
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import (
     PRIME,

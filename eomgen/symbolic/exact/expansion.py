@@ -7,7 +7,6 @@ sum f, an atom with negative powers. The work is bounded: `TooLarge` rather than
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from fractions import Fraction
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.atoms import RADIAN, Atoms, Opaque
@@ -33,6 +32,7 @@ from eomgen.symbolic.exact.terms import (
 )
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50

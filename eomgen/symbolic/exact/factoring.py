@@ -7,7 +7,6 @@ finds fewer factors than there are, and none that is wrong.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
@@ -15,6 +14,7 @@ from eomgen.symbolic.exact.squares import holds_no_square
 from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, inverse, terms_scaled, terms_times
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_DEGREE = 24
 MOST_TERMS = 400

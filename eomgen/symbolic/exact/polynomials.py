@@ -9,7 +9,6 @@ look at, but s^2 + m^2 s^2 + 2 m s c is s^2 (1 + m^2) + 2 m s c.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion
@@ -17,6 +16,7 @@ from eomgen.symbolic.exact.powers import axes_of, power_form
 from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, terms_plus
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 MOST_AXES = 4  # angles, for other forms than that in cosines
 

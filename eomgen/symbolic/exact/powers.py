@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from fractions import Fraction
 from functools import lru_cache
 from math import comb
 
 from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 CirclePowers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
 CirclePolynomial = dict[CirclePowers, Number]

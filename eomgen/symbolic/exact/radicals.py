@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import irreducible
@@ -19,6 +18,7 @@ from eomgen.symbolic.exact.quotient import fraction_of
 from eomgen.symbolic.exact.terms import Terms, TooLarge
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_DEGREE = 24
 MOST_TERMS = 60  # of what is factored

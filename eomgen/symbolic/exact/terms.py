@@ -12,13 +12,13 @@ so a function that is polynomial in sines, cosines and atoms has exactly one suc
 from __future__ import annotations
 
 from collections.abc import Iterable
-from fractions import Fraction
 from functools import lru_cache
 from math import gcd, lcm
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
 AngleSum = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian

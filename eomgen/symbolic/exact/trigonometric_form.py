@@ -9,7 +9,6 @@ minus signs.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 from math import gcd
@@ -18,6 +17,7 @@ from eomgen.symbolic.exact.powers import CirclePolynomial, axes_of, eliminated, 
 from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, vector_sum, wave
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 Waves = dict[Wave, Number]
 Factors = tuple[tuple[str, AngleSum, int], ...]  # (function, angle, exponent)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from fractions import Fraction
 from functools import reduce
 from operator import and_
 
@@ -27,6 +26,7 @@ from eomgen.symbolic.exact.terms import (
 from eomgen.symbolic.exact.trigonometric_form import Factors, shortest
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import text_size
 
 

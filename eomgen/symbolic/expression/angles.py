@@ -7,11 +7,11 @@ sin(atan2(3, 4)) = 3/5.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.expression.exact_numbers import Number, tidy
 from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.rational import Fraction
 
 _AFTER_QUARTERS = {  # name -> what it is after 0, 1, 2, 3 quarter turns
     "sin": (("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)),

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import isqrt
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.expression.rational import EXACT, Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 
 Number = int | Fraction
@@ -17,8 +17,8 @@ def exact(a: object) -> Number:
     """a as an exact number, a whole one as int."""
     if type(a) is int:
         return a
-    if isinstance(a, (int, Fraction)):
-        return a.numerator if a.denominator == 1 else a
+    if isinstance(a, EXACT):
+        return a.numerator if a.denominator == 1 else a if type(a) is Fraction else Fraction(a)
     raise TypeError(f"a derivation holds exact numbers only, not {a!r} of type {type(a).__name__}")
 
 

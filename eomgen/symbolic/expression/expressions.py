@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from decimal import Decimal
-from fractions import Fraction
 from numbers import Rational
 from typing import Any
 
@@ -23,6 +22,7 @@ from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression import scalar_operations
 from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference, apply_operation, unknown
 from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.tokens import Token, is_name, number_in, reference_at, skip_space, token_at
 
 __all__ = ["Call", "Expression", "Reference", "as_expression", "is_name", "parse", "parse_equation", "unknown"]

@@ -9,11 +9,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.symbolic.expression import scalar_operations
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled
 

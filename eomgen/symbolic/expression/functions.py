@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from typing import Any
 
 from eomgen.symbolic.expression.graph import CONSTANTS, Node, is_zero
+from eomgen.symbolic.expression.rational import EXACT, Fraction, known_to_sympy
 
 NAMES = {
     "sin": 1,
@@ -42,9 +42,9 @@ def function(name: str, *args):
     for a in args:
         if type(a) is Node:
             return a.graph.call(name, *args)
-    if all(isinstance(a, (int, Fraction)) for a in args):
+    if all(isinstance(a, EXACT) for a in args):
         return CONSTANTS.call(name, *args)
-    if all(isinstance(a, (float, int, Fraction)) for a in args):
+    if all(isinstance(a, (float, *EXACT)) for a in args):
         return _at_floats(name, *map(float, args))
     own = getattr(type(args[0]), f"scalar_{name}", None)
     if own is not None:
@@ -64,6 +64,8 @@ def _at_floats(name: str, *args: float) -> float:
 
 def _sympy_function(name: str, *args):
     import sympy
+
+    known_to_sympy()
 
     names = {"abs": "Abs", "min": "Min", "max": "Max"}
     return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
@@ -111,8 +113,10 @@ def selected(a, bound, if_below, if_above):
     for x in (a, bound):
         if type(x) is Node:
             return x.graph.select(x.graph.call("less_equal", a, bound), if_below, if_above)
-    if all(isinstance(x, (int, float, Fraction)) for x in (a, bound)):
+    if all(isinstance(x, (float, *EXACT)) for x in (a, bound)):
         return if_below if a <= bound else if_above
     import sympy
+
+    known_to_sympy()
 
     return sympy.Piecewise((if_below, a <= bound), (if_above, True))

@@ -14,7 +14,6 @@ There is no expansion and no simplification.
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -31,6 +30,7 @@ from eomgen.symbolic.expression.exact_numbers import (
 from eomgen.symbolic.expression.exponentials import exponential
 from eomgen.symbolic.expression.factors import coefficient, common_of_squares, same_number
 from eomgen.symbolic.expression.node import Node, Scalar, collected, is_zero, linear_terms
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 
 __all__ = [

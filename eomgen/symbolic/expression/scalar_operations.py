@@ -8,11 +8,11 @@ expression or a float. What has no value (1/0, sqrt(-1), a power beyond all size
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 from math import isqrt
 
 from eomgen.symbolic.expression import functions
 from eomgen.symbolic.expression.graph import Node, Number
+from eomgen.symbolic.expression.rational import EXACT, Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
 
@@ -26,7 +26,7 @@ class Undefined(ArithmeticError):
 
 def is_exact(a: AnyScalar) -> bool:
     """True for whole numbers and fractions."""
-    return type(a) is int or type(a) is Fraction
+    return isinstance(a, EXACT)
 
 
 def bounded(a: AnyScalar) -> AnyScalar:

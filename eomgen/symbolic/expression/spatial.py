@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
+
+from eomgen.symbolic.expression.rational import Fraction
 
 AnyScalar = Any
 Vector = tuple[AnyScalar, AnyScalar, AnyScalar]

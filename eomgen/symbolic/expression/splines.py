@@ -13,11 +13,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cache
 from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
+
+from eomgen.symbolic.expression.rational import Fraction
 
 WAYS = ("cubic", "linear", "steps")
 ENDS = ("not-a-knot", "natural", "rest")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from fractions import Fraction
 
 from eomgen.errors import ExpressionError
+from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
 MOST_DIGITS = 320

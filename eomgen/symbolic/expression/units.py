@@ -8,12 +8,12 @@ from __future__ import annotations
 import difflib
 import re
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.tokens import skip_space
 
 LONGEST = 80  # characters

@@ -6,12 +6,12 @@ import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache, lru_cache
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import LARGEST_POWER, Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
 

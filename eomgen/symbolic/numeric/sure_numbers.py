@@ -8,11 +8,11 @@ digits is 0 where it is tiny beyond all measure, and has no number otherwise.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
 from math import isfinite, nan
 from typing import Any
 
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.balls import Ball, balls
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from fractions import Fraction
 from math import gcd
 
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import Factor, Product, plus_first, products_of
 

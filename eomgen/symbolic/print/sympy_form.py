@@ -6,7 +6,6 @@ Sums and products are handed to sympy flat, so that it sorts them once. Loops in
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from fractions import Fraction
 from functools import reduce
 from typing import Any
 
@@ -17,8 +16,11 @@ from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import selected
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
+
+known_to_sympy()
 
 TRUTHS = (Relational, BooleanFunction, BooleanAtom)
 SUMS = frozenset(("add", "sub", "neg"))

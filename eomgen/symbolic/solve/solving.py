@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from math import gcd
 from random import Random
 
@@ -25,6 +24,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted, symbo
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import NEAR_ROOT

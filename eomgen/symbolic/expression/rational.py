@@ -1,0 +1,34 @@
+"""Exact rationals: compiled where quicktions is installed, else Python's own. Same values, texts and hashes either way.
+
+Every module takes its Fraction from here, and nowhere else is a choice made.
+"""
+
+from __future__ import annotations
+
+import fractions
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+else:
+    try:
+        from quicktions import Fraction
+    except ImportError:
+        from fractions import Fraction
+
+__all__ = ["EXACT", "Fraction", "known_to_sympy"]
+
+EXACT = (int, Fraction, fractions.Fraction)  # what is taken as an exact number; what is made is an int or a Fraction
+
+
+def known_to_sympy() -> None:
+    """Has sympy take the compiled rationals as the exact numbers that they are: it would make floats of them."""
+    from sympy import Rational
+    from sympy.core.sympify import converter
+
+    converter[Fraction] = lambda x: Rational(int(x.numerator), int(x.denominator))
+
+
+if "sympy" in sys.modules:  # else where this package imports it
+    known_to_sympy()

@@ -1,0 +1,65 @@
+"""Exact numbers are compiled ones where quicktions is installed, Python's own elsewhere: nothing else differs."""
+
+from __future__ import annotations
+
+import fractions
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sympy
+
+from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.rational import Fraction
+
+MODELS = Path(__file__).parent.parent / "models"
+VERBS = (
+    ("derive", "double_pendulum.toml"),
+    ("derive", "four_bar.toml", "--format", "json"),
+    ("solve", "seeds/ch22_p1.toml"),
+    ("linearize", "double_pendulum.toml"),
+)
+BLOCKED = """
+import sys
+if sys.argv.pop(1) == "without":
+    sys.modules["quicktions"] = None
+from eomgen.symbolic.expression.rational import Fraction
+print(Fraction.__module__, file=sys.stderr)
+from eomgen.cli import main
+main()
+"""
+
+
+def printed(how, verb, model, *more):
+    """(what a verb prints, the module of its rationals) in a process with or without quicktions."""
+    command = [sys.executable, "-c", BLOCKED, how, verb, str(MODELS / model), *more]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return done.stdout, done.stderr.splitlines()[0]
+
+
+@pytest.mark.parametrize("words", VERBS, ids=" ".join)
+def test_the_same_bytes_come_out_with_and_without_compiled_rationals(words):
+    """Every verb prints the same text, whatever its rationals are made of."""
+    pytest.importorskip("quicktions")
+    (compiled, ours), (plain, theirs) = printed("with", *words), printed("without", *words)
+    assert (ours, theirs) == ("quicktions", "fractions")
+    assert compiled == plain
+
+
+def test_a_fraction_of_the_standard_library_is_taken_as_the_exact_number_that_it_is():
+    """x Fraction(1, 3) is x/3, by whichever class a user writes it; hashes and texts agree."""
+    x, third = Graph().symbol("x"), fractions.Fraction(1, 3)
+    assert third * x is Fraction(1, 3) * x
+    assert (x + third) - Fraction(1, 3) is x
+    assert hash(third) == hash(Fraction(1, 3)) and str(third) == str(Fraction(1, 3))
+    assert sqrt(fractions.Fraction(4, 9)) == over(2, 3) == Fraction(2, 3)
+    assert pickle.loads(pickle.dumps(Fraction(1, 3))) == third
+
+
+def test_sympy_takes_our_rationals_as_exact_numbers():
+    """x/3 with sympy's x holds the rational 1/3, not a float."""
+    form = sympy.Symbol("x") * Fraction(1, 3) + Fraction(1, 7)
+    assert not form.atoms(sympy.Float) and form.atoms(sympy.Rational) == {sympy.Rational(1, 3), sympy.Rational(1, 7)}
