@@ -127,7 +127,8 @@ class Language:
     Args:
         reserved: words that cannot be names.
         functions: of an op that has another name: its text, with {0}, {1} for the arguments.
-        defined: of an op that the language lacks, or where it drops a NaN: its definition.
+        defined: of an op that the language lacks, or where it drops a NaN: its definition; of "solve" and "solve_plain"
+            where loops with pivots are not its way.
         words: of "and or not nan", and "given": the condition that the caller gives inputs.
         kinds: how a value that stays, an argument and a result of each kind are declared, with {name}.
         at: a place of an {array} at an {index}.

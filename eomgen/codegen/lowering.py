@@ -48,7 +48,8 @@ class Lowered:
     Args:
         constants: how many numbers the first function gives.
         ops: the operations that the text takes.
-        tables, kernels: what the bodies call: functions with loops, and the numbers that these read.
+        tables, kernels: what the bodies need: functions with loops, and the numbers that these read.
+        called: the functions among them that the bodies themselves call.
         bodies: constants, parts, evaluate.
     """
 
@@ -57,12 +58,8 @@ class Lowered:
     ops: frozenset[str]
     tables: tuple[Table, ...]
     kernels: tuple[Function, ...]
+    called: tuple[str, ...]
     bodies: tuple[Function, ...]
-
-    @property
-    def called(self) -> list[str]:
-        """The kernels that the bodies call by name."""
-        return [f.name for f in self.kernels if f.name in ("solve", "solve_plain") or f.name.startswith("samples")]
 
 
 def lowered(
@@ -78,7 +75,7 @@ def lowered(
     layout = Layout(program, language, result, prefix, remarks or {})
     tables, kernels = _kernels(layout)
     constants = len(layout.kept) + len(layout.inverted)
-    return Lowered(program, constants, layout.ops, tables, kernels, tuple(layout.functions()))
+    return Lowered(program, constants, layout.ops, tables, kernels, layout.kernels, tuple(layout.functions()))
 
 
 @dataclass(frozen=True)
@@ -157,7 +154,11 @@ class Layout:
 
     @cached_property
     def ops(self) -> frozenset[str]:
-        return frozenset(x.op for x in (*self.hoisted, *self.preamble, *self.moving))
+        return frozenset((*(x.op for x in (*self.hoisted, *self.preamble, *self.moving)), *self.kernels))
+
+    @cached_property
+    def kernels(self) -> tuple[str, ...]:
+        return (*((_entry(self.solve),) if self.solve else ()), *self.sampled.values())
 
     @cached_property
     def sampled(self) -> dict[int, str]:
@@ -351,7 +352,7 @@ def _kernels(layout: Layout) -> tuple[tuple[Table, ...], tuple[Function, ...]]:
     """The kernels that a program calls, and the numbers that these read."""
     tables: dict[str, Table] = {}
     functions: dict[str, Function] = {}
-    if layout.solve:
+    if layout.solve and _entry(layout.solve) not in layout.language.defined:
         read, called = kernel(_entry(layout.solve), layout.solve.tables, layout.language)
         tables |= {t.name: t for t in read}
         functions |= {f.name: f for f in called}

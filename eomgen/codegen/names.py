@@ -16,7 +16,7 @@ OWN_WORDS = frozenset("between acting t x p c inputs dx out given n constants ev
 RESERVED = MATH_WORDS | OWN_WORDS
 # our own variables, functions and macros, and what C keeps for itself
 LOCAL = re.compile(
-    r"[vi][0-9]+|samples[0-9]+|solve.*|.*_(rhs|reactions|inverse).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
+    r"[vi][0-9]+|samples[0-9]+|.*part[0-9]+|solve.*|.*_(rhs|reactions|inverse).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
 )
 
 

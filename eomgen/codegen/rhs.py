@@ -92,10 +92,10 @@ class RightHandSide:
         return self._functions.constants(self._checked(p))
 
     def _checked(self, p: Any) -> np.ndarray:
-        p = np.ascontiguousarray(p, dtype=float)
-        if p.shape != (len(self.parameters),):
-            raise _wrong_length("p", self.parameters, p.size)
-        return p
+        values: np.ndarray = np.ascontiguousarray(p, dtype=float)
+        if values.shape != (len(self.parameters),):
+            raise _wrong_length("p", self.parameters, values.size)
+        return values
 
 
 class RateFunction:

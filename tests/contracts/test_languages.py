@@ -9,6 +9,7 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
@@ -126,3 +127,26 @@ def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, 
     for k, text in enumerate(texts):
         assert not [later for later in names[k + 1 :] if f"{later}(" in text]
     assert all(any(table.name in text for text in texts) for table in made.tables)
+
+
+OWN_SOLVE = """
+def solve(M, J, f, g):
+    n, k = len(f), len(g)
+    M, J = np.triu(np.reshape(M, (n, n))), np.reshape(J, (k, n))
+    whole = np.block([[M + np.triu(M, 1).T, -J.T], [J, np.zeros((k, k))]])
+    found = np.linalg.lstsq(whole, [*f, *g], rcond=None)[0]
+    f[:], g[:] = found[:n], found[n:]
+"""
+
+
+def test_a_language_may_solve_in_its_own_way():
+    """Where loops with pivots are not a language's way its own solve is called, and no kernel is written."""
+    program = right_hand_side(tied_pendulum(3))
+    language = replace(PYTHON, defined={"solve": OWN_SOLVE})
+    made = lowered(program, language, "dx")
+    assert made.kernels == made.tables == () and "solve" in made.ops
+    space = {"np": np}
+    exec("\n".join([OWN_SOLVE, *(line for f in made.bodies for line in language.defines(f))]), space)
+    for v in vectors(program):
+        found = space["evaluate"](v.t, v.x, v.p, space["constants"](v.p), None)
+        assert found == pytest.approx(v.result, rel=1e-11, abs=1e-11)

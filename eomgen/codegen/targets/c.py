@@ -29,16 +29,17 @@ C = Language(
     reserved=frozenset(
         "auto break case char const continue default do double else enum extern float for goto if inline int long "
         "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
-        "asm main near far huge linux unix errno complex imaginary I bool true false NULL NAN INFINITY HUGE_VAL".split()
+        "asm main near far huge linux unix errno complex imaginary I bool true false NULL NAN INFINITY HUGE_VAL "
+        "pick".split()
     ),
-    functions={"abs": "fabs({0})"},
+    functions={"abs": "fabs({0})", "select": "pick({0}, {1}, {2})"},  # POSIX has another select
     defined={  # C has none of these, or drops a NaN
         "sign": "static double sign(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }",
         "min": "static double min(double a, double b) { return a < b || a != a ? a : b; }",
         "max": "static double max(double a, double b) { return a > b || a != a ? a : b; }",
         "less": "static double less(double a, double b) { return a < b ? 1 : a >= b ? 0 : NAN; }",
         "less_equal": "static double less_equal(double a, double b) { return a <= b ? 1 : a > b ? 0 : NAN; }",
-        "select": "static double select(double given, double a, double b) "
+        "select": "static double pick(double given, double a, double b) "
         "{ return given == 0 ? b : given == given ? a : given; }",
     },
     words={"not": "!", "nan": "NAN", "given": "inputs != NULL"},
