@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +24,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.first_instant import Instant, reached
+from eomgen.questions.first_instant import closed_form, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.simulation.configuration import by_the_law, has_phases
 from eomgen.simulation.history import PassedPhase, history
@@ -178,8 +178,8 @@ class MotionFromStart:
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """In one phase."""
-        instant = _reached(phase, _difference(phase, condition), start, numbers)
-        moment = StateAtInstant(phase, placed(phase, instant.exact, instant.numbers), instant.numbers, instant.method)
+        moment = reached(phase, _difference(phase, condition), start, numbers)
+        moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
         if self.course is not None:
             self._refuse_ended(moment)
         return moment
@@ -259,14 +259,13 @@ def _end_of(phase: PhaseEquations, passage: PassedPhase, start: Mapping[Node, Sc
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
     if not start or passage.value is None:
         return by_time
-    begin = _numbers(phase, passage.t_0, passage.start)
     try:
-        instant = _reached(phase, phase.eliminated(passage.value), start, begin)
+        exact, way = closed_form(phase, phase.eliminated(passage.value), start, numbers)
     except EomgenError:
         return by_time
     located = Located({**parameters_of(phase), **numbers}, phase.positive)
-    exact = {node: x for node, x in instant.exact.items() if located.agrees(x, node)}
-    return StateAtInstant(phase, placed(phase, exact, numbers), numbers, instant.method)
+    exact = {node: x for node, x in exact.items() if located.agrees(x, node)}
+    return replace(by_time, exact=placed(phase, exact, numbers), method=way or by_time.method)
 
 
 def _numbers(phase: PhaseEquations, t: float, values: Mapping[str, float]) -> dict[Node, float]:
@@ -292,9 +291,3 @@ def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
 def _difference(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
     return phase.of_state(condition.left) - phase.of_state(condition.right)
-
-
-def _reached(
-    phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
-) -> Instant:
-    return reached(phase.system, phase.assembly, phase.accelerations, condition, start, numbers)

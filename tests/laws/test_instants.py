@@ -19,7 +19,8 @@ from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import numeric_parameters
-from eomgen.questions.first_instant import Instant, reached
+from eomgen.questions.at_instant import StateAtInstant
+from eomgen.questions.first_instant import reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -166,7 +167,7 @@ def bar(start: str, speed: str = "0") -> str:
     return HEAD + BAR.replace("START", start).replace("SPEED", speed)
 
 
-def asked(text: str, condition: str) -> tuple[PhaseEquations, Instant]:
+def asked(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant]:
     """The instant at which the condition (= 0) holds."""
     each = phase_equations_of(eomgen.loads(text))
     symbols = each.system.symbols
@@ -177,7 +178,7 @@ def asked(text: str, condition: str) -> tuple[PhaseEquations, Instant]:
         numbers = {node: values[node.name] for node in (*symbols.q, *symbols.u)}
         start |= exact_places(each, start, numbers)
     scalar = each.of_state(parse(condition, references=True))
-    return each, reached(each.system, each.assembly, each.accelerations, scalar, start, numbers)
+    return each, reached(each, scalar, start, numbers)
 
 
 def exact_places(each: PhaseEquations, start: dict, numbers: dict) -> dict:
@@ -398,7 +399,7 @@ def test_two_freedoms_at_rest_are_refused():
     start = {**dict.fromkeys(symbols.q, symbols.graph.pi), **dict.fromkeys(symbols.u, 0)}
     numbers = {**dict.fromkeys(symbols.q, math.pi), **dict.fromkeys(symbols.u, 0.0)}
     with pytest.raises(RunFailed, match="rests at the start"):
-        reached(each.system, each.assembly, each.accelerations, symbols.q[0], start, numbers)
+        reached(each, symbols.q[0], start, numbers)
 
 
 # -- conditions along an even motion ---------------------------------------------------------------
