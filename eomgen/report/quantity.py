@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 
@@ -16,6 +17,7 @@ class Quantity:
         unit: of the number; "" for SI, None where nobody names one.
         method: the way on which it was found.
         message: what is missing, or None.
+        beside: what else machines get of it, by name: the way of its proof, its work.
     """
 
     exact: str | None = None
@@ -23,6 +25,7 @@ class Quantity:
     unit: str | None = ""
     method: str = ""
     message: str | None = None
+    beside: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def answered(self) -> bool:
@@ -44,9 +47,10 @@ class Quantity:
 
     def as_dict(self) -> dict[str, Any]:
         """For `--json`; without what nobody says: unit, method and message."""
-        told = {"exact", "value"} | ({"unit"} if self.unit is not None else set())
-        told |= {"method", "message"} if self.method or self.message else set()
-        return {name: x for name, x in asdict(self).items() if name in told}
+        told: dict[str, Any] = {"exact": self.exact, "value": self.value}
+        told |= {} if self.unit is None else {"unit": self.unit}
+        told |= {"method": self.method, "message": self.message} if self.method or self.message else {}
+        return told | dict(self.beside)
 
     def _repr_markdown_(self) -> str:
         parts = [f"`{self.exact}`" if self.exact is not None else "", self.number]

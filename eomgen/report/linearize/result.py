@@ -29,6 +29,7 @@ from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.linearize.picture import modes_picture
 from eomgen.report.linearize.steps import linearization_steps
+from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
 from eomgen.symbolic.expression.expressions import Call, Expression
@@ -275,7 +276,7 @@ class Linearization(Result):
         exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
         return {
             "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-            "frequency": {"exact": None if exact is None else to_text(exact), "value": mode.frequency},
+            "frequency": Quantity(None if exact is None else to_text(exact), mode.frequency, unit=None),
             "hertz": mode.hertz,
             "damping_ratio": mode.damping_ratio,
             "kind": mode.kind,
@@ -283,8 +284,8 @@ class Linearization(Result):
         }
 
 
-def _state(exact: Scalar | None, number: float, *, valued: bool) -> dict[str, Any]:
-    return {"exact": None if exact is None else to_text(exact), "value": number if valued else None}
+def _state(exact: Scalar | None, number: float, *, valued: bool) -> Quantity:
+    return Quantity(None if exact is None else to_text(exact), number if valued else None, unit=None)
 
 
 def _polynomial(polynomial: Polynomial | None) -> list[str] | None:

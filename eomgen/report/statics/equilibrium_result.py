@@ -24,6 +24,7 @@ from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, 
 from eomgen.report.document import Document, document_of
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
+from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.setting_steps import data_step
 from eomgen.report.statics.equilibrium_steps import equilibrium_steps
@@ -130,20 +131,22 @@ def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
     numbers = shown_numbers([each.value for each in reactions], known_exactly(place.statics.system.scope))
     return {
         "reactions": {
-            each.named.name: {
-                "exact": to_text(each.value) if place.is_exact and each.value is not None else None,
-                "value": number,
-                "unit": each.named.unit,
-                "message": None if each.value is not None else "statically indeterminate",
-            }
+            each.named.name: Quantity(
+                to_text(each.value) if place.is_exact and each.value is not None else None,
+                number,
+                each.named.unit,
+                "balance of the bodies at rest",
+                None if each.value is not None else "statically indeterminate",
+            )
             for each, number in zip(reactions, numbers, strict=True)
         },
         "message": why or None,
     }
 
 
-def _of(place: Equilibrium, node: Node) -> dict[str, Any]:
-    return {"exact": to_text(place.exact[node]) if node in place.exact else None, "value": place.numbers.get(node)}
+def _of(place: Equilibrium, node: Node) -> Quantity:
+    exact = to_text(place.exact[node]) if node in place.exact else None
+    return Quantity(exact, place.numbers.get(node), unit=None)
 
 
 def _stability(stability: Stability) -> dict[str, Any]:

@@ -24,6 +24,7 @@ from eomgen.proof.check import Certificate
 from eomgen.proof.structure import structure_checks
 from eomgen.report.document import Document
 from eomgen.report.figures import Picture
+from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.statics.equilibrium_result import Resting, has_freedoms, resting_places
 from eomgen.report.statics.picture import statics_picture
@@ -148,16 +149,16 @@ class Statics(Result):
             "agree": self.ok,
         }
 
-    def _reaction(self, reaction: StaticReaction) -> dict[str, Any]:
-        return {
-            "exact": self.exact[reaction.name],
-            "value": self.values.get(reaction.name),
-            "unit": reaction.unit,
+    def _reaction(self, reaction: StaticReaction) -> Quantity:
+        beside = {
             "by_equilibrium": _text(reaction.balanced),
             "work": None if reaction.work is None else _work(reaction.work),
             "agree": reaction.agree,
-            "message": None if reaction.value is not None else "statically indeterminate",
         }
+        method = "equilibrium" if reaction.work is None else "virtual work"
+        message = None if reaction.value is not None else "statically indeterminate"
+        exact, value = self.exact[reaction.name], self.values.get(reaction.name)
+        return Quantity(exact, value, reaction.unit, method, message, beside)
 
     @property
     def picture(self) -> Picture:

@@ -1,0 +1,63 @@
+"""One document carries every verb's result: what it shows and what machines get are the same quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import eomgen
+from eomgen.model.values import exact_parameters
+from eomgen.report.document import Document
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.verbs.reactions import reactions_document
+from eomgen.verbs.solve import solve_document
+
+MODELS = Path(__file__).parent.parent / "models"
+
+
+def document(verb: str, name: str) -> Document:
+    """What a verb gives of a model."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    if verb in ("solve", "reactions"):
+        return {"solve": solve_document, "reactions": reactions_document}[verb](model)
+    return getattr(eomgen, verb)(model).document
+
+
+def number_of(exact: str, values: Mapping[str, Fraction]) -> float | None:
+    """A printed text in numbers, read by the grammar of the model file; None: it moves, or a value is missing."""
+    graph = Graph()
+    expression = parse(exact, longest=len(exact))
+    if not expression.names <= values.keys() | {"pi"}:
+        return None
+    names = {name: graph.symbol(name) for name in expression.names - {"pi"}}
+    scalar = expression.evaluate({**names, "pi": graph.pi})
+    return evaluate((scalar,), {symbol: float(values[name]) for name, symbol in names.items()}, FLOAT)[0]
+
+
+CASES = [
+    ("solve", "seeds/ch10_p1"),
+    ("reactions", "three_hinged_arch"),
+    ("statics", "gerber_beam"),
+    ("statics", "simple_pendulum"),
+    ("kinematics", "slider_crank"),
+    ("inertia", "double_pendulum"),
+    ("linearize", "double_pendulum"),
+]
+
+
+@pytest.mark.parametrize(("verb", "name"), CASES)
+def test_the_exact_text_of_every_quantity_gives_its_number(verb, name):
+    """value = exact, read back by the grammar with the parameters put in; a unit of an output scales it."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    values, compared = exact_parameters(model), 0
+    for key, quantity in document(verb, name).quantities.items():
+        found = None if quantity.exact is None else number_of(quantity.exact, values)
+        if found is not None and quantity.value is not None:
+            assert quantity.value == pytest.approx(found, rel=1e-12, abs=1e-300), key
+            compared += 1
+    assert compared
