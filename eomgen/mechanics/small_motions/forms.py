@@ -83,7 +83,9 @@ def equations_without_rounding(e: LinearEquations) -> LinearEquations:
     """
     M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
     usual = np.sqrt(abs(M).max(initial=0) * abs(K).max(initial=0))
-    return replace(e, M=_rounded(M), C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
+    masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M is none beside those of its own two speeds, however light
+    M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
+    return replace(e, M=[[*row] for row in M.tolist()], C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
 
 
 def _rounded(A: np.ndarray, usual: float = 0) -> Entries:
