@@ -24,11 +24,13 @@ from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spin_axes import NAME
+from eomgen.model.joints.orientation import rotation_of
 from eomgen.model.quaternions import quaternions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.modes import mode_checks
 from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, DIFFERENCE_AT_50, SLOW, TINIEST
 
@@ -58,6 +60,23 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class SmallTurn:
+    """What a label of a small turn stands for.
+
+    Args:
+        four: the quaternion.
+        speeds: its angular velocity, body axes.
+        axis: 0, 1 or 2.
+        standing: whether of axes that stand still; else of the body's own.
+    """
+
+    four: tuple[Node, ...]
+    speeds: tuple[Node, ...]
+    axis: int
+    standing: bool
+
+
+@dataclass(frozen=True)
 class Differences:
     """Motions beside the reference of small motions.
 
@@ -70,10 +89,12 @@ class Differences:
     @cached_property
     def nearby(self) -> Nearby:
         small, symbols = self.small, self.small.reference.system.symbols
-        turned = {e for four, _ in self._turns.values() for e in four}
+        turned = {e for turn in self._turns.values() for e in turn.four}
         q = tuple(x for x in symbols.q if x in small.whole.coordinates or x in turned)
         first, numbers = small.first, small.reference.numbers
-        return Nearby(first.system, first.assembly, first.relations, numbers, q, small.whole.speeds)
+        named = {label: turn.speeds[turn.axis] for label, turn in self._spins.items()}
+        u = tuple(named.get(x, x) for x in small.whole.speeds)
+        return Nearby(first.system, first.assembly, first.relations, numbers, q, u)
 
     @cached_property
     def origin(self) -> Going:
@@ -81,14 +102,25 @@ class Differences:
         return self.nearby.going(self.nearby.state({}))
 
     @cached_property
-    def _turns(self) -> dict[Node, tuple[tuple[Node, ...], int]]:
-        """(quaternion, axis) of every label of a small turn about an axis of the body."""
-        system, found = self.small.reference.system, {}
+    def _turns(self) -> dict[Node, SmallTurn]:
+        """What each label of a small turn among the coordinates stands for."""
+        return self._named(self.small.whole.coordinates, "")
+
+    @cached_property
+    def _spins(self) -> dict[Node, SmallTurn]:
+        """The same of the speeds: rates of turns about axes that stand still."""
+        return self._named(self.small.whole.speeds, "'")
+
+    def _named(self, labels: Sequence[Node], prime: str) -> dict[Node, SmallTurn]:
+        system, known = self.small.reference.system, dict[str, SmallTurn]()
+        speeds = {u.name: u for u in system.symbols.u}
         for four, part in zip(system.scope.quaternions, quaternions_of(system.scope.model), strict=True):
-            for label in self.small.whole.coordinates:
-                if label not in system.symbols.q and label.name.removeprefix(NAME) in part.speeds:
-                    found[label] = (four, part.speeds.index(label.name.removeprefix(NAME)))
-        return found
+            own = tuple(speeds[name] for name in part.speeds if name in speeds)
+            for axis, name in enumerate(part.speeds):
+                known[f"{NAME}{name}{prime}"] = SmallTurn(four, own, axis, standing=False)
+                known[f"{NAME}{'xyz'[axis]}_{part.body}{prime}"] = SmallTurn(four, own, axis, standing=True)
+        own_names = {*system.symbols.q, *system.symbols.u}
+        return {label: known[label.name] for label in labels if label not in own_names}
 
     @cached_property
     def moved(self) -> tuple[Node, ...]:
@@ -105,20 +137,37 @@ class Differences:
         late, early = (self.nearby.going(self.nearby.state(self._moved(step, sign * h))) for sign in (1, -1))
         e = self.small.numbers
         q, q1, q2 = ([(x - y) / (2 * h) for x, y in zip(*each, strict=True)] for each in self._read(late, early))
-        u, a = (
-            [(x[node] - y[node]) / (2 * h) for node in e.speeds]
-            for x, y in ((late.state, early.state), (late.a, early.a))
-        )
+        both = [[self._speed(going, node) for node in e.speeds] for going in (late, early)]
+        u, a = ([(x[k] - y[k]) / (2 * h) for x, y in zip(*both, strict=True)] for k in (0, 1))
         return Beside(q, q1, q2, u, a, [step.get(w, 0) for w in e.inputs])
 
     def _moved(self, step: Mapping[Node, Any], h: Any) -> dict[Node, Any]:
         """Independent coordinates, speeds and inputs h further along the step."""
         here = self.origin.state
-        given = {x: here[x] + h * d for x, d in step.items() if x not in self._turns}
-        for four in {four for four, _ in self._turns.values()}:
-            arm = [step.get(label, 0) * h / 2 for label, (own, _) in self._turns.items() if own == four]
-            given |= dict(zip(four, _unit(_product([here[e] for e in four], (1, *arm))), strict=True))
+        given = {x: here[x] + h * d for x, d in step.items() if x not in self._turns and x not in self._spins}
+        for four in {turn.four for turn in self._turns.values()}:
+            mine = {label: turn for label, turn in self._turns.items() if turn.four == four}
+            arm, e = (1, *(step.get(label, 0) * h / 2 for label in mine)), [here[e] for e in four]
+            standing = any(turn.standing for turn in mine.values())
+            given |= dict(zip(four, _unit(_product(arm, e) if standing else _product(e, arm)), strict=True))
+        for turn in {turn.four: turn for turn in self._spins.values()}.values():
+            v = vector_of(step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four)
+            w = apply(transposed(self._axes(turn)), v)
+            given |= {x: here[x] + d for x, d in zip(turn.speeds, w, strict=True)}
         return given
+
+    def _axes(self, turn: SmallTurn) -> Matrix:
+        """R of the reference."""
+        return rotation_of("quaternion", tuple(self.origin.state[e] for e in turn.four))
+
+    def _speed(self, going: Going, label: Node) -> tuple[Any, Any]:
+        """A speed and its rate; about axes that stand still R_0 w, and R_0 (w_0 x w + w')."""
+        if label not in self._spins:
+            return going.state[label], going.a[label]
+        turn = self._spins[label]
+        w, rate, before = (vector_of(way[x] for x in turn.speeds) for way in (going.state, going.a, self.origin.state))
+        R = self._axes(turn)
+        return apply(R, w)[turn.axis], apply(R, plus(cross(before, w), rate))[turn.axis]
 
     def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
         """Of the coordinates that are printed where they are, and their first and second rates."""
@@ -128,15 +177,17 @@ class Differences:
             yield tuple([each[order] for each in reading] for reading in readings)  # type: ignore[misc]
 
     def _one(self, going: Going, label: Node) -> tuple[Any, Any, Any]:
-        """A coordinate and its rates; a small turn is 2 vec(e_0* e), e_0 the quaternion of the reference."""
+        """A coordinate and its rates; a small turn is 2 vec(e_0* e), about axes that stand still 2 vec(e e_0*), e_0 the
+        quaternion of the reference."""
         if label not in self._turns:
             return going.state[label], going.q1[label], going.q2[label]
-        four, axis = self._turns[label]
+        turn = self._turns[label]
+        four = turn.four
         at = [[way[e] for e in four] for way in (going.state, going.q1, going.q2)]
         home = [_conjugate([way[e] for e in four]) for way in (self.origin.state, self.origin.q1, self.origin.q2)]
 
         def part(i: int, j: int) -> Any:
-            return 2 * _product(home[i], at[j])[axis + 1]
+            return 2 * (_product(at[j], home[i]) if turn.standing else _product(home[i], at[j]))[turn.axis + 1]
 
         return part(0, 0), part(1, 0) + part(0, 1), part(2, 0) + 2 * part(1, 1) + part(0, 2)
 
@@ -222,11 +273,12 @@ def _reference(differences: Differences) -> Check:
     small, origin = differences.small, differences.origin
     A = abs(small.state_matrix)
     state = [abs(float(origin.state.get(x, 0))) for x in (*small.numbers.coordinates, *small.numbers.speeds)]
-    usual = A[-len(small.numbers.speeds) :] @ np.maximum(1.0, state)
+    usual = dict(zip(small.numbers.speeds, A[-len(small.numbers.speeds) :] @ np.maximum(1.0, state), strict=True))
+    most = max(usual.values())
     wrong = [
         f"{u.name} changes by {float(origin.a[u]):.3g}"
-        for u, most in zip(small.numbers.speeds, usual, strict=True)
-        if abs(origin.a[u]) > COMPUTED * max(most, TINIEST) and abs(origin.a[u]) > COMPUTED * most
+        for u in differences.nearby.u
+        if abs(origin.a[u]) > COMPUTED * max(usual.get(u, most), TINIEST)
     ]
     name = "the equations of motion hold at the reference, without acceleration"
     return checked(name, "; ".join(wrong), "50 digits")

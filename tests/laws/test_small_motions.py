@@ -593,3 +593,15 @@ def test_matrices_are_the_derivatives_of_the_equations():
     for mine, letter in zip(own, "KCM", strict=True):
         ((entry,),) = getattr(found.equations, letter)
         assert is_formula(entry, to_text(mine), found.small)
+
+
+def test_a_mass_that_is_light_beside_another_is_not_rounding() -> None:
+    """w = sqrt(k/m) of each, 1e16 kg to 1 kg."""
+    bodies = "".join(
+        f'[bodies.{name}]\nshape = {{ kind = "particle", mass = "{mass}" }}\n'
+        f'joint = {{ kind = "prismatic", axis = [1, 0], distance = "{name}_x" }}\n'
+        f'[forces.{name}_spring]\nkind = "potential"\nenergy = "{name}_x^2/2"\n'
+        for name, mass in (("light", "10^(-16)"), ("heavy", "1"))
+    )
+    found = linearized(f"[coordinates]\nlight_x = 0\nheavy_x = 0\n{bodies}")
+    assert sorted(mode.frequency for mode in found.spectrum.oscillating) == pytest.approx([1, 1e8])

@@ -106,3 +106,60 @@ acceleration = [0, -9.81]
 """)
     with pytest.raises(eomgen.DerivationError, match="no steady motion was found near the start"):
         eomgen.linearize(model, about="steady")
+
+
+SPINNING_BALL = """
+eomgen = 1
+name = "ball"
+space = "space"
+[parameters]
+m = 0.05
+R = 0.03
+g = 9.81
+mu = 0.2
+[coordinates]
+x = 0
+y = 0
+z = { dependent = true, near = "R" }
+e0 = 1
+e1 = 0
+e2 = 0
+e3 = 0
+[speeds]
+w1 = {}
+w2 = {}
+w3 = { start = 40 }
+[bodies.ball]
+mass = "m"
+inertia = [1.7e-5, 1.7e-5, 1.9e-5]
+[bodies.ball.joint]
+kind = "free"
+position = ["x", "y", "z"]
+orientation = "quaternion"
+quaternion = ["e0", "e1", "e2", "e3"]
+omega = ["w1", "w2", "w3"]
+[constraints.table]
+kind = "rolling"
+body = "ball"
+radius = "R"
+plane = { at = [0, 0, 0], normal = [0, 0, 1] }
+slip = true
+friction = { viscous = "mu" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+[linearize]
+about = "start"
+"""
+
+
+def test_a_ball_that_spins_on_a_rubbing_table_has_small_motions_about_axes_that_stand_still():
+    """I_1 m s^2 + (I_1 c - i I_3 w m + R^2 c m) s - i w c (I_3 + R^2 m) = 0, c = mu m g, by hand in complex numbers."""
+    m, R, c, w, I_1, I_3 = 0.05, 0.03, 0.2 * 0.05 * 9.81, 40, 1.7e-5, 1.9e-5
+    by_hand = np.roots([I_1 * m, I_1 * c - 1j * I_3 * w * m + R * R * c * m, -1j * w * c * (I_3 + R * R * m)])
+    found = eomgen.linearize(eomgen.loads(SPINNING_BALL))
+    oscillating = [mode.eigenvalue for mode in found.spectrum.oscillating]
+    expected = sorted((complex(s.real, abs(s.imag)) for s in by_hand), key=lambda s: s.imag)
+    assert oscillating == pytest.approx(expected, rel=1e-9)
+    assert found.coordinates[2:] == ("turn_x_ball", "turn_y_ball", "turn_z_ball")
+    assert found.certify()

@@ -37,6 +37,7 @@ class Choice:
     Args:
         q, dq: coordinates that stay, and those that follow by the rows `relations`.
         u, du: speeds that stay, and those that follow by the closing rows `ties`.
+        standing: whether small turns of bodies that spin are about axes that stand still; else about their own.
     """
 
     q: tuple[int, ...]
@@ -45,6 +46,7 @@ class Choice:
     u: tuple[int, ...]
     du: tuple[int, ...]
     ties: tuple[int, ...]
+    standing: bool = False
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ from eomgen.mechanics.small_motions.reference import (
     place_of_rest,
     relative_rest,
 )
+from eomgen.mechanics.small_motions.spin_axes import spinning
 from eomgen.mechanics.small_motions.steadiness import (
     reduced_equations,
     refuse_corners,
@@ -137,8 +138,7 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError("the ties leave no freedom: there are no small motions")
-    raw = _equations(first, choice, reference)
-    kept = steady_coordinates(first, choice, reference, raw, wanted)
+    choice, raw, kept = _steady_equations(first, choice, reference, wanted)
     refuse_corners(first, choice, reference, raw, kept)
     refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
@@ -152,6 +152,25 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
         _refuse_unvalued(reference)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
     return SmallMotions(reference, numbers, exact, raw, left, first)
+
+
+def _steady_equations(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, wanted: Sequence[str]
+) -> tuple[Choice, LinearEquations, tuple[int, ...]]:
+    """The equations in numbers, and the coordinates over which they stay as they are; where bodies spin about axes that
+    stand still if they do not stay so about their own."""
+    raw = _equations(first, choice, reference)
+    try:
+        return choice, raw, steady_coordinates(first, choice, reference, raw, wanted)
+    except DerivationError as error:
+        standing = replace(choice, standing=True)
+        if not any(turn.standing for turn in spinning(reference, standing)):
+            raise
+        raw = _equations(first, standing, reference)
+        try:
+            return standing, raw, steady_coordinates(first, standing, reference, raw, wanted)
+        except DerivationError:
+            raise error from None
 
 
 def _refuse_unvalued(reference: ReferenceMotion) -> None:

@@ -1,10 +1,15 @@
-"""LinearEquations of a body that spins, by quaternion -> the same over small turns about its own axes.
+"""LinearEquations of a body that spins, by quaternion -> the same over small turns about axes.
 
 In a steady spin the quaternion e moves on, and equations in de have coefficients that change with it. The small turn
 dtheta about the body's axes, de = N dtheta with e' = N w, goes with the body:
 
     de_c = T dtheta,  T = N_c of the three of e that stay;      T dtheta' + T' dtheta = F T dtheta + E du
     K -> K T,   P -> P T,   F -> T^-1 (F T - T'),   E -> T^-1 E
+
+Where something acts on it in directions that stand still, as friction on a ball that spins on a table, the equations
+stay the same about axes that stand still, R dtheta with T R^T in the place of T, and R dw in that of dw:
+
+    dw = U v,  U = R^T:      M -> U^T M U,   C -> U^T (C U + M U'),   K, B -> U^T K, U^T B,   E -> E U
 """
 
 from __future__ import annotations
@@ -21,13 +26,16 @@ from eomgen.mechanics.small_motions.field import (
     matrix_product,
     matrix_solution,
     matrix_sum,
+    matrix_transposed,
     negative,
 )
 from eomgen.mechanics.small_motions.first_order import Choice
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
+from eomgen.model.joints.orientation import rotation_of
 from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 NAME = "turn_"
@@ -41,11 +49,27 @@ class SpinAxis:
         four: its coordinates.
         speeds: its angular velocity, body axes.
         carriers: which columns of the equations are three of the four.
+        standing: whether the turns are about axes that stand still in what carries the body; else about its own.
+        body: its name.
     """
 
     four: tuple[Node, ...]
     speeds: tuple[Node, ...]
     carriers: tuple[int, ...]
+    standing: bool = False
+    body: str = ""
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What the small turns are called."""
+        if self.standing:
+            return tuple(f"{NAME}{axis}_{self.body}" for axis in "xyz")
+        return tuple(NAME + w.name for w in self.speeds)
+
+    @property
+    def R(self) -> Matrix:
+        """The body's axes in those of what carries it."""
+        return rotation_of("quaternion", self.four)
 
 
 def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]:
@@ -57,7 +81,9 @@ def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]
         carriers = tuple(j for j, k in enumerate(choice.q) if system.symbols.q[k] in four)
         moves = any(e in reference.moving for e in four)
         if moves and len(carriers) == len(part.speeds) and all(w in speeds for w in part.speeds):
-            found.append(SpinAxis(four, tuple(speeds[w] for w in part.speeds), carriers))
+            own = tuple(speeds[w] for w in part.speeds)
+            free = {system.symbols.u[k] for k in choice.u}
+            found.append(SpinAxis(four, own, carriers, choice.standing and free >= {*own}, part.body))
     return tuple(found)
 
 
@@ -67,7 +93,28 @@ def over_turns(
     """The equations with small turns in the place of quaternions that move."""
     for turn in turns:
         equations = _over_turn(field, system, equations, turn)
+        if turn.standing:
+            equations = _over_standing_speeds(field, system, equations, turn)
     return equations
+
+
+def _over_standing_speeds(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis) -> LinearEquations:
+    """dw = R^T v"""
+    own, n = [e.speeds.index(w) for w in turn.speeds], len(e.speeds)
+    flat = tuple(x for column in zip(*turn.R, strict=True) for x in column)
+    block, rate = (at(field, [x[k : k + 3] for k in (0, 3, 6)]) for x in (flat, system.scope.time_derivative(flat)))
+    U, moved = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
+    for i, k in enumerate(own):
+        U[k], moved[k] = _spread(block[i], tuple(own), n), _spread(rate[i], tuple(own), n)
+    front, MU = matrix_transposed(U, n), matrix_product(field, e.M, U)
+    C = matrix_sum(field, matrix_product(field, e.C, U), matrix_product(field, e.M, moved))
+    labels = dict(zip(own, turn.labels, strict=True))
+    return replace(
+        e,
+        speeds=tuple(system.scope.graph.symbol(labels[k] + "'") if k in labels else u for k, u in enumerate(e.speeds)),
+        **{name: matrix_product(field, front, A) for name, A in (("M", MU), ("C", C), ("K", e.K), ("B", e.B))},
+        E=matrix_product(field, e.E, U),
+    )
 
 
 def _over_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis) -> LinearEquations:
@@ -76,8 +123,8 @@ def _over_turn(field: NumberField, system: System, e: LinearEquations, turn: Spi
     one = [[int(i == j) for j in range(n)] for i in range(n)]
     T_inverse = matrix_solution(field, T, one)
     F = matrix_product(field, T_inverse, matrix_sum(field, matrix_product(field, e.F, T), negative(rate)))
-    names = dict(zip(turn.carriers, turn.speeds, strict=True))
-    labels = tuple(graph.symbol(NAME + names[j].name) if j in names else q for j, q in enumerate(e.coordinates))
+    names = dict(zip(turn.carriers, turn.labels, strict=True))
+    labels = tuple(graph.symbol(names[j]) if j in names else q for j, q in enumerate(e.coordinates))
     return replace(
         e,
         coordinates=labels,
@@ -94,6 +141,8 @@ def _by_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinA
     places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]
     columns = [scope.symbols.u.index(w) for w in turn.speeds]
     rows = [tuple(scope.N[i][k] for k in columns) for i in places]
+    if turn.standing:
+        rows = [apply(turn.R, vector_of(row)) for row in rows]  # N R^T
     flat = scope.time_derivative(tuple(x for row in rows for x in row))
     size = len(columns)
     block, moved = at(field, rows), at(field, [flat[size * i : size * i + size] for i in range(len(rows))])
