@@ -10,8 +10,7 @@ import scipy.integrate
 
 import eomgen
 from eomgen.codegen.build import compiler
-from eomgen.simulation.quick_steps import quick
-from eomgen.simulation.solvers import EXPLICIT, solver_of
+from eomgen.simulation.solvers import EXPLICIT, quick, solver_of
 
 MODELS = Path(__file__).parent.parent / "models"
 

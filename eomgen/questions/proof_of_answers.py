@@ -31,9 +31,9 @@ from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.report.quantity import Quantity
+from eomgen.simulation.constraint_drift import projection_of
+from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
-from eomgen.simulation.measures import nearness_of
-from eomgen.simulation.projection import projection_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.expressions import Call, parse

@@ -17,14 +17,14 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.model.parts import Model
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate
-from eomgen.simulation.breakpoints import knots_of
-from eomgen.simulation.conditions import condition_of
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import joined, thinned, with_reactions
 from eomgen.simulation.motion import Plan, through
 from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
+from eomgen.simulation.phase_run import condition_of
 from eomgen.simulation.result import Phase, Trajectory
+from eomgen.simulation.solvers import knots_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 CHOOSE = "declare other speeds"

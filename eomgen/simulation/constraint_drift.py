@@ -1,14 +1,208 @@
-"""Projection, tolerance -> DriftCorrection: which states of a run are put back onto the ties, how well they hold."""
+"""System, parameters -> Projection: states put back onto the ties, by the least change that does it.
+
+    min ds^T M ds  with  J ds = -phi,             q <- q + N ds      until phi = 0
+    min du^T M du  with  J du = -(J u + sigma),   u <- u + du
+
+Positions move in all coordinates, dependent ones as freely as others; speeds are those of the state. Measured by M the
+least change is the same in every set of coordinates. Driven coordinates and the time stay: their rows of N are zero.
+Redundant rows do no harm: what is open is closed in the sense of least squares, and directions in which the ties all
+but do not resist (near a singular position) are passed over.
+Source: Eich, Convergence results for a coordinate projection method applied to mechanical systems with algebraic
+constraints, SIAM J. Numer. Anal. 30 (1993).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen.spheres import SpherePlaces, on_spheres
-from eomgen.simulation.projection import Projection
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.spheres import SpherePlaces, on_spheres, spheres_of
+from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.closure import gaps_of
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.formulations import recursive
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.dense import weighted, without_rounding
+from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
+
+ITERATIONS = 8
+FAR = 1e-3  # of what is allowed to be open: so far it is closed
+SHORT = 400  # operations up to which a function is not worth a compiler
+ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows J of some ties at a state, and what measures a change there.
+
+    Args:
+        function: (t, x, p) -> M, J, N and how far each row is open, one after the other.
+        k, n: rows and speeds.
+    """
+
+    function: RightHandSide
+    k: int
+    n: int
+
+    def change(self, t: float, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """N ds, the least change of the state that closes the rows to first order."""
+        values, n, k = np.asarray(self.function(t, x, p)), self.n, self.k
+        ends = n * n, n * n + k * n, len(values) - k
+        M, J = values[: ends[0]].reshape(n, n), values[ends[0] : ends[1]].reshape(k, n)
+        change: np.ndarray = values[ends[1] : ends[2]].reshape(-1, n) @ least_change(M, J, -values[ends[2] :])
+        return change
+
+
+@dataclass(frozen=True)
+class Projection:
+    """What keeps states on the ties of a system.
+
+    Args:
+        p: the parameters' values.
+        coordinates: how many.
+        size: of (q, u); what a state has beyond is left alone.
+        placed: how many of the gaps are phi.
+        spheres: the places of quaternions, which keep norm 1.
+        gaps: (t, x, p) -> phi of all ties, J u + sigma of the closing ones.
+        positions, speeds: how either is put back; None where there is nothing to hold.
+    """
+
+    p: np.ndarray
+    coordinates: int
+    size: int
+    placed: int
+    spheres: tuple[SpherePlaces, ...]
+    gaps: RightHandSide
+    positions: Rows | None
+    speeds: Rows | None
+
+    def open(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """(the largest |phi|, the largest |J u + sigma|) at n states, n x 2."""
+        found = np.abs(self.gaps.many(t, x[:, : self.size], self.p))
+        parts = found[:, : self.placed], found[:, self.placed :]
+        return np.column_stack([np.max(part, axis=1, initial=0.0) for part in parts])
+
+    def is_open(self, t: float, x: np.ndarray, allowed: float) -> bool:
+        """Whether a tie is open by more than is allowed, and by more than rounding."""
+        return not self._gap(t, x, slice(None)) <= max(allowed, _rounding(x))
+
+    def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
+        """(the nearest state in which the ties hold, by how much they are open there all the same)."""
+        found = on_spheres(x, self.spheres)
+        enough = max(FAR * allowed, _rounding(x))
+        places, speeds = slice(0, self.coordinates), slice(self.coordinates, self.size)
+        if self.positions is not None:
+            found = self._improved(self.positions, t, found, places, slice(0, self.placed), enough)
+        if self.speeds is not None:
+            found = self._improved(self.speeds, t, found, speeds, slice(self.placed, None), enough)
+        return found, self._gap(t, found, slice(None))
+
+    def _improved(self, rows: Rows, t: float, x: np.ndarray, moved: slice, which: slice, enough: float) -> np.ndarray:
+        """Newton's method until some of the gaps are closed, or come no nearer."""
+        gap = self._gap(t, x, which)
+        for _ in range(ITERATIONS):
+            if gap <= enough:
+                break
+            state = x[: self.size] if moved.start else np.concatenate([x[moved], np.zeros(rows.n)])
+            nearer = x.copy()
+            nearer[moved] += rows.change(t, state, self.p)
+            nearer = on_spheres(nearer, self.spheres)
+            left = self._gap(t, nearer, which)
+            if not left < gap:
+                break
+            x, gap = nearer, left
+        return x
+
+    def _gap(self, t: float, x: np.ndarray, which: slice) -> float:
+        return float(np.abs(self._gaps_at(t, x[: self.size])[which]).max(initial=0.0))
+
+    @cached_property
+    def _gaps_at(self) -> Callable[[float, np.ndarray], np.ndarray]:
+        return self.gaps.at(self.p)
+
+
+def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """ds with the least ds^T M ds of those that come nearest to J ds = right; ds^T ds where M leaves some unmeasured.
+
+    M + J^T W J measures alike where J ds is given, and is positive definite also where M is so on J ds = 0 only. Then
+    ds = M^-1 J^T lam with J M^-1 J^T lam = right, rows brought to one length, damped where they depend on one another.
+    """
+    J = without_rounding(J)
+    try:
+        moved = np.linalg.solve(weighted(M, J), J.T)
+    except np.linalg.LinAlgError:  # bodies without mass
+        moved = J.T
+    S = J @ moved
+    d = 1 / np.sqrt(np.where(np.diagonal(S) > 0, np.diagonal(S), 1.0))
+    lam = d * np.linalg.solve(d[:, None] * S * d + NEARLY_SINGULAR**2 * np.eye(len(S)), d * right)
+    found: np.ndarray = moved @ lam
+    return found
+
+
+def projection_of(system: System, p: np.ndarray, target: str | None = None) -> Projection | None:
+    """What keeps states on the ties of a system; None where none closes.
+
+    Args:
+        p: the parameters' values.
+        target: in which language long functions are run.
+    """
+    free = system if system.elimination is None else system.free or system
+    symbols, closing, gaps = system.symbols, system.ties.closing, gaps_of(free.ties)
+    if not gaps and not closing:
+        return None
+    speeds = tuple(row.velocity for row in closing)
+    function = _compiled((*gaps, *speeds), system, target)
+    return Projection(
+        p,
+        len(symbols.q),
+        len(symbols.q) + len(symbols.u),
+        len(gaps),
+        spheres_of(function.program),
+        function,
+        _positions(free, gaps, target) if gaps else None,
+        _rows(system, system.ties.J, _identity(len(symbols.u)), speeds, target) if closing and symbols.u else None,
+    )
+
+
+def _positions(free: System, gaps: tuple[Scalar, ...], target: str | None) -> Rows:
+    """The rows of the ties that have a gap, and e . de = 0 of every quaternion."""
+    J = [row for row, tie in zip(free.ties.J, free.ties.closing, strict=True) if tie.gap is not None]
+    q, N = free.symbols.q, free.scope.N
+    for four in free.scope.quaternions:
+        rows = [(e, N[q.index(e)]) for e in four]
+        J.append(tuple(sum((e * row[k] for e, row in rows), start=0) for k in range(len(free.symbols.u))))
+    return _rows(free, J, N, (*gaps, *(0 for _ in free.scope.quaternions)), target)
+
+
+def _rows(
+    system: System,
+    J: Sequence[Sequence[Scalar]],
+    N: Sequence[Sequence[Scalar]],
+    gaps: Sequence[Scalar],
+    target: str | None,
+) -> Rows:
+    M = recursive.mass(system.motion, branches_of(system.motion))
+    entries = tuple(x for matrix in (M, J, N) for row in matrix for x in row)
+    return Rows(_compiled((*entries, *gaps), system, target), len(gaps), len(M))
+
+
+def _compiled(outputs: tuple[Scalar, ...], system: System, target: str | None) -> RightHandSide:
+    program = program_of(outputs, system.symbols, inputs=system.inputs)
+    return compiled(program, target if program.count.total > SHORT else "numpy")
+
+
+def _identity(n: int) -> tuple[tuple[int, ...], ...]:
+    return tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+
+
+def _rounding(x: np.ndarray) -> float:
+    return ROUNDING * max(1.0, float(np.abs(x).max(initial=0.0)))
+
 
 LOST = 100.0  # absolute tolerances of a step by which a tie that cannot be closed may be open without a word
 

@@ -1,17 +1,81 @@
-"""How far a run is from the singular positions of its ties, followed from step to step."""
+"""System, states along a motion -> how near it comes to positions in which the ties do not determine it."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.bodies.gimbal import locks_of
+from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.constraints.freedom import rank_of_ties
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
 from eomgen.simulation.event_location import PARTS, Crossing
-from eomgen.simulation.independence import ConstraintRank
 from eomgen.simulation.integrator import LOOKED_OUT
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.dense import divisor
+
+SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
+
+
+@dataclass(frozen=True)
+class ConstraintRank:
+    """The closing rows J of a system.
+
+    Args:
+        rows: (t n, x n x states) -> J, n x (k nu).
+        ties: the tie of each row, k.
+        rank: how many rows are independent at almost every state.
+    """
+
+    rows: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    ties: tuple[str, ...]
+    rank: int
+
+    def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The singular value of J that vanishes where the rank falls, each row against its greatest length, n x 1."""
+        return np.linalg.svd(self._scaled(t, x), compute_uv=False)[:, self.rank - 1 : self.rank]
+
+    def words(self, t: np.ndarray, x: np.ndarray) -> str:
+        """Which ties depend on one another at the worst of the states."""
+        J = self._scaled(t, x)
+        worst = int(np.argmin(np.linalg.svd(J, compute_uv=False)[:, self.rank - 1]))
+        shares = np.abs(np.linalg.svd(J[worst])[0][:, self.rank - 1])
+        names = dict.fromkeys(tie for tie, share in zip(self.ties, shares, strict=True) if share > SHARE)
+        listed = ", ".join(f"'{name}'" for name in names)
+        return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
+
+    def least(self, t: np.ndarray, x: np.ndarray, lengths: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """(the same singular value at n states, n x 1, the greatest lengths of the rows, which it is against).
+
+        Args:
+            lengths: the greatest so far, k x 1.
+        """
+        J = self.J(t, x)
+        greatest: np.ndarray = np.maximum(lengths, _lengths(J))
+        return np.linalg.svd(J / divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
+
+    def J(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """J at n states, n x k x nu; 0 where it has no value."""
+        values = self.rows(t, x)
+        known = np.isfinite(values)
+        return (values if known.all() else np.where(known, values, 0.0)).reshape(len(t), len(self.ties), -1)
+
+    def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        J = self.J(t, x)
+        return J / divisor(_lengths(J))
+
+
+def _lengths(J: np.ndarray) -> np.ndarray:
+    found: np.ndarray = np.sqrt(np.einsum("nkj,nkj->nk", J, J)).max(axis=0, initial=0.0)[:, None]
+    return found
+
 
 STEEP = 2.0  # times the steepest fall or rise in the steps before: s may not change faster in a step
 REMEMBERED = 4  # steps
@@ -121,3 +185,62 @@ class RankLookout:
         first = least if not np.any(sizes <= self.near) else float(t[np.flatnonzero(sizes <= self.near)[0]])
         before = t[(t < first) & (sizes > self.near)]
         return float(brentq(lambda s: size(s) - self.near, before[-1], first)) if before.size else first
+
+
+def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measure:
+    """(t n, x n x states) -> the outputs at each state, n x outputs."""
+    function = compiled(program_of(outputs, system.symbols, inputs=system.inputs), "numpy")
+    one = function.at(p)
+
+    def along(t: Any, x: Any) -> np.ndarray:
+        return one(t[0], x[0])[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
+
+    return along
+
+
+@dataclass(frozen=True)
+class Undetermined:
+    """What vanishes where something of the motion is not determined.
+
+    Args:
+        determinants: (t n, x n x states) -> n x k.
+        what: (t n, x n x states) -> of each determinant, what is not determined where it vanishes there.
+        place: what such a position is called.
+    """
+
+    determinants: Measure
+    what: Callable[[np.ndarray, np.ndarray], Sequence[str]]
+    place: str = PLACE
+
+
+def undetermined_of(system: System, assembly: Assembly, p: np.ndarray) -> tuple[Undetermined, ...]:
+    """Rates of dependent coordinates, declared speeds, angles that lock, rows that depend on one another."""
+
+    def of(parts: Sequence[Any], place: str) -> list[Undetermined]:
+        words = tuple(map(str, parts))
+        determinants = tuple(part.determinant for part in parts)
+        return [Undetermined(measure(system, determinants, p), lambda t, x: words, place)] if parts else []
+
+    found = of(singular_blocks(system.elimination, system.scope), PLACE)
+    found += of(system.declared, "declare other speeds")
+    found += of(locks_of(system.motion), "gimbal lock: choose another `orientation`, or a quaternion")
+    rows = independence_of(system, assembly, p)
+    return (*found, *([] if rows is None else [Undetermined(rows, lambda t, x: [rows.words(t, x)])]))
+
+
+def nearness_of(system: System, assembly: Assembly, p: np.ndarray) -> Nearness | None:
+    """How near a motion is to positions in which the ties do not determine it; None without ties."""
+    blocks = singular_blocks(system.elimination, system.scope)
+    determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
+    rows = independence_of(system, assembly, p)
+    what = tuple(map(str, blocks))
+    return None if determinants is None and rows is None else Nearness(determinants, rows, what)
+
+
+def independence_of(system: System, assembly: Assembly, p: np.ndarray) -> ConstraintRank | None:
+    """How independent the rows are that close by multipliers; None without such."""
+    rank = rank_of_ties(system.ties)
+    if not rank:
+        return None
+    J = measure(system, tuple(x for row in assembly.J for x in row), p)
+    return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank)

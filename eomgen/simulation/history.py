@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from eomgen.model.parts import Model
-from eomgen.simulation.endings import PhaseCondition, met
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import phase_text
 from eomgen.simulation.motion import Plan, passed
 from eomgen.simulation.phase_change import Course, at_start, course_of
 from eomgen.simulation.phase_model import PhaseModel, Values
-from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, met
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import FINE_RUN
 

@@ -9,14 +9,13 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
+from eomgen.simulation.constraint_drift import Projection
 from eomgen.simulation.constraint_rank import Nearness
 from eomgen.simulation.event_location import Events
-from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping
-from eomgen.simulation.projection import Projection
+from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.simulation.solvers import METHODS, Slope
-from eomgen.simulation.step_states import measured
 from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001

@@ -9,13 +9,12 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.simulation.configuration import changed
-from eomgen.simulation.first_slide import begun
 from eomgen.simulation.integrate import drift_of
+from eomgen.simulation.integrator import measured
 from eomgen.simulation.phase_change import Course
 from eomgen.simulation.phase_run import PhaseRun
-from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Phase, Trajectory
-from eomgen.simulation.step_states import measured
 
 
 def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:

@@ -10,12 +10,11 @@ import numpy as np
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
 from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.endings import PhaseCondition, ended
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import Run, Stepping
 from eomgen.simulation.phase_change import Course, PhaseStart
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.simulation.solvers import IMPLICIT

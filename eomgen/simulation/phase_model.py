@@ -22,10 +22,9 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.constraint_rank import Nearness
+from eomgen.simulation.constraint_drift import Projection, projection_of
+from eomgen.simulation.constraint_rank import Nearness, Undetermined, nearness_of, undetermined_of
 from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopped_below
-from eomgen.simulation.measures import Undetermined, nearness_of, undetermined_of
-from eomgen.simulation.projection import Projection, projection_of
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.slopes import slope_of
 from eomgen.simulation.solvers import Slope

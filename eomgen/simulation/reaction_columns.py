@@ -19,6 +19,7 @@ from eomgen.codegen.reactions import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.constraints.ties import STILL
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.simulation.leaf_to_root_balance import BodyBalance, balanced_from_leaves, steps_of
 from eomgen.symbolic.expression.graph import Scalar
@@ -169,3 +170,31 @@ def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
         return np.full(len(C), np.nan)
     traces = np.abs(C @ V[rank:].T).max(axis=1, initial=0.0)
     return np.where(traces > SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
+
+
+SLIDES = 1e2 * float(STILL)  # |v|, at which friction is all but along it [m/s]
+BRIEF = 1e-2  # of the phase, the longest time that is waited for it
+TRIES = 30  # each twice as long as the one before
+
+
+def begun(
+    t: np.ndarray,
+    x: np.ndarray,
+    rate: Callable[[float, np.ndarray], np.ndarray],
+    sliding: Callable[[float, np.ndarray], float],
+) -> np.ndarray:
+    """n states, n x states, the first of them a little later where a contact begins to slide.
+
+    Args:
+        t: their instants.
+        rate: (t, x) -> x'.
+        sliding: (t, x) -> the least speed with which anything slides on a surface [m/s].
+    """
+    if len(t) < 2 or sliding(t[0], x[0]) >= SLIDES:
+        return x
+    later, h = x[0], BRIEF * (t[-1] - t[0]) / 2 ** (TRIES + 1)
+    for _ in range(TRIES):
+        later, h = later + h * rate(t[0], later), 2 * h
+        if sliding(t[0], later) >= SLIDES:
+            return np.vstack([later, x[1:]])
+    return x

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from eomgen.simulation.constraint_rank import Undetermined
 from eomgen.simulation.integrator import Run
-from eomgen.simulation.measures import Undetermined
 from eomgen.symbolic.numeric.tolerances import RUN, RUNS_AGREE
 
 STEPS = 100  # tolerances of one step by which they may differ

@@ -14,8 +14,8 @@ from scipy.special import ellipj, ellipk
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.questions.run import run
+from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.projection import projection_of
 
 pytestmark = pytest.mark.slow
 
