@@ -55,19 +55,34 @@ def test_a_damaged_library_is_made_anew(own_cache, monkeypatch, size):
 
 
 @needs_cc
-@pytest.mark.parametrize("what", ["folder", "file"])
-def test_what_others_may_write_is_not_loaded(own_cache, monkeypatch, what):
-    """A folder, or a file, that others may write holds their code, whatever its name says."""
+@pytest.mark.parametrize("what", ["may be written", "belongs to another", "is another program"])
+def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatch, what):
+    """A file that others may write, or own, or have given another program's name, is compiled anew."""
     path = cached(own_cache, monkeypatch)
-    (own_cache if what == "folder" else path).chmod(0o777)
-    loaded = []
-    monkeypatch.setattr(build.ctypes, "CDLL", lambda path: loaded.append(path))
-    made = build.library(TEXT), build.library(TEXT)
-    assert len(loaded) == len(made) == 2
-    if what == "folder":
-        assert not any(str(own_cache) in place for place in loaded)
+    if what == "may be written":
+        path.chmod(0o777)
+    elif what == "belongs to another":
+        monkeypatch.setattr(build, "_is_ours", lambda x: x != path or x.stat().st_mtime_ns != old)
     else:
-        assert not path.stat().st_mode & 0o077  # made anew, and put in its place
+        other = own_cache / f"{'0' * 32}-{path.name[33:]}"
+        path.rename(other)
+        assert not build._is_whole(other)
+    old = path.stat().st_mtime_ns if path.exists() else 0
+    ran = []
+    real = build.subprocess.run
+    monkeypatch.setattr(build.subprocess, "run", lambda *a, **k: (ran.append(a), real(*a, **k))[1])
+    assert build.library(TEXT).twice is not None
+    assert len(ran) == 1 and not path.stat().st_mode & 0o022
+
+
+@needs_cc
+def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(own_cache, monkeypatch):
+    """0777 becomes 0700; where the folder is another's, one of this process is taken."""
+    cached(own_cache, monkeypatch)
+    own_cache.chmod(0o777)
+    assert build._cache() == own_cache and own_cache.stat().st_mode & 0o777 == 0o700
+    monkeypatch.setattr(build.os, "getuid", lambda: own_cache.stat().st_uid + 1)
+    assert build._cache() != own_cache
 
 
 @needs_cc

@@ -69,17 +69,23 @@ def _digest(content: bytes) -> str:
 def _is_whole(path: Path) -> bool:
     """Whether a file is what its name says, NAME-DIGEST.so, and nobody else can write it; half a file kills at load."""
     try:
-        return _is_ours(path) and path.stem.endswith(f"-{_digest(path.read_bytes())}")
+        return _is_ours(path) and not _others_write(path) and path.name == _named(path.name[:32], path)
     except OSError:
         return False
 
 
+def _named(name: str, path: Path) -> str:
+    """NAME-DIGEST.so; the digest is of both name and content."""
+    return f"{name}-{_digest(name.encode() + path.read_bytes())}.so"
+
+
 def _is_ours(path: Path) -> bool:
-    """Whether a file or folder belongs to this user, who alone may write it."""
-    if not hasattr(os, "getuid"):
-        return True  # Windows: a user's cache folder is the user's by inheritance
-    found = path.stat()
-    return found.st_uid == os.getuid() and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    """Whether a file or folder belongs to this user; on Windows what is below the user's folder does."""
+    return not hasattr(os, "getuid") or path.stat().st_uid == os.getuid()
+
+
+def _others_write(path: Path) -> bool:
+    return hasattr(os, "getuid") and bool(path.stat().st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
 
 def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
@@ -100,7 +106,7 @@ def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
                 said = done.stderr.strip()[:2000] or f"it ended with {done.returncode}"
                 raise RunFailed(f"the C compiler failed: {said}", command[0])
             made.chmod(0o700)  # whatever the umask
-            path = folder / f"{name}-{_digest(made.read_bytes())}.so"
+            path = folder / _named(name, made)
             os.replace(made, path)
             return path
     except subprocess.TimeoutExpired:
@@ -132,12 +138,16 @@ def _command() -> list[str]:
 
 
 def _cache() -> Path:
-    """The user's cache folder, or one of this process where that cannot be written, or others can write it too."""
+    """The user's cache folder, closed to others; one of this process where that is another's or not writable."""
     place = Path(platformdirs.user_cache_dir("eomgen"))
     try:
         place.mkdir(parents=True, exist_ok=True, mode=0o700)
+        if not _is_ours(place):
+            return _own_folder()
+        if _others_write(place):
+            place.chmod(0o700)  # what others have put there meanwhile is theirs, and not loaded
         with tempfile.TemporaryFile(dir=place):
-            return place if _is_ours(place) else _own_folder()
+            return place
     except OSError:
         return _own_folder()
 
