@@ -60,6 +60,7 @@ _HOMES = {
     "model.samples": ("samples",),
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
+    "verbs.reactions": ("FoundReactions", "reactions"),
     "generated": ("Generated", "generate"),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),

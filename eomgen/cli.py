@@ -167,6 +167,7 @@ def solve_command(**options: Any) -> int:
 )
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
+@CERTIFY
 def reactions_command(**options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 

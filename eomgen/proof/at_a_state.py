@@ -17,21 +17,23 @@ from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
+from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
-from eomgen.proof.trials import exact_accelerations
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE, SOLVED
+
+AWAY = 10  # times what nearby states make of it, by which a number may be off
 
 
 @dataclass(frozen=True)
@@ -138,3 +140,40 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
+
+
+def read_back(system: System, text: str) -> Scalar:
+    """A printed formula as a scalar of the system.
+
+    Raises:
+        ExpressionError: our grammar does not read it.
+        DerivationError: a function of the motion stands in it.
+    """
+
+    def none(call: Call) -> Scalar:
+        raise DerivationError(f"'{call}' stands in the text")
+
+    found: Scalar = parse(text).evaluate(system.scope.names, none)
+    return found
+
+
+def differing(found: float, right: float, share: float = COMPUTED) -> str:
+    """That two numbers differ by more than a share of the larger, in words; ""."""
+    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
+        return ""
+    return f"{found:.10g} for {right:.10g}"
+
+
+def off_by(found: float, right: float, near: list[float]) -> str:
+    """That a number is off by more than nearby states make of it.
+
+    Raises:
+        NoValue: next to a singular position nearby states are far apart.
+    """
+    change = max(abs(x - right) for x in near)
+    off = abs(found - right)
+    if off <= AWAY * change <= SAME_PLACE * (1 + abs(right)):
+        return ""
+    if off <= AWAY * change:
+        raise NoValue("the state is next to a singular position, and doubles say too little of it")
+    return differing(found, right)

@@ -91,6 +91,14 @@ class PhaseEquations:
         return tuple(self.unknowns[a] for a in self.system.symbols.a)
 
     @cached_property
+    def moves_by_time(self) -> bool:
+        """Whether time stands in the equations of motion."""
+        e, t = self.assembly, (self.system.symbols.t,)
+        entries = (x for row in (*e.M, *e.J) for x in row)
+        inputs = (self.system.inputs[name] for name in self.system.symbols.inputs)
+        return any(depends_on(x, t) for x in (*entries, *e.forcing, *e.gamma, *inputs))
+
+    @cached_property
     def _quantities(self) -> Quantities:
         return Quantities(self.system)
 

@@ -23,7 +23,7 @@ from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import LINEARIZED
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
-from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.at_a_state import NumericState, differing, off_by, read_back
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.tally import Tally
@@ -36,14 +36,12 @@ from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
-from eomgen.symbolic.expression.expressions import Call, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.sure_numbers import number_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE, SOLVED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE
 
 STEPS = 2000  # of a run in time that one instant is compared with
-AWAY = 10  # times what nearby states make of it, by which a number may be off
 WAY = 1.0  # s, of the motion along which functions of the configuration are tried
 ROWS = 21  # of it
 
@@ -102,10 +100,10 @@ class _Proof:
 
     def _read_back(self, found: Quantity) -> str:
         phase = self.solver.motions[False].phase
-        number = number_of(read(phase, found.exact or ""), self._start_values)
+        number = number_of(read_back(phase.system, found.exact or ""), self._start_values)
         if math.isnan(number):
             raise NoValue("the text holds what has no value at the start")
-        return _differing(found.value or 0.0, number)
+        return differing(found.value or 0.0, number)
 
     @cached_property
     def _start_values(self) -> dict[Node, Scalar | float]:
@@ -137,13 +135,16 @@ class _Proof:
             phase, numbers = self.solver.motions[False].phase, _start(self.solver.motions[False])
         else:
             phase, numbers = moment.phase, dict(moment.numbers)
+        t = phase.system.symbols.t
+        if math.isnan(numbers.get(t, 0.0)) and not phase.moves_by_time:
+            numbers[t] = 0.0
         if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
             raise RunFailed("the state is not known in numbers")
         state = self._state(phase, numbers)
         right = _in_unit(state.worth(output.value), output)
-        if not _differing(found.value, right):
+        if not differing(found.value, right):
             return ""
-        return _beyond(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
+        return off_by(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
 
     def _refuse_other(self, output: Output) -> None:
         """Raises DerivationError for what is of no state of the motion."""
@@ -248,7 +249,7 @@ class _Proof:
     def _along(self, output: Output, found: Quantity) -> str:
         motion = self.solver.motions[output.from_ == "rest"]
         phase, run = motion.phase, _run(motion, WAY, ROWS)
-        scalar, symbols = read(phase, found.exact or ""), phase.system.symbols
+        scalar, symbols = read_back(phase.system, found.exact or ""), phase.system.symbols
         if depends_on(scalar, symbols.u):
             return ""  # a function of the state: its number is compared
         nodes, parameters = (*symbols.q, *symbols.u), known_exactly(phase.system.scope)
@@ -257,7 +258,7 @@ class _Proof:
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
             right = _in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
-            wrong = _differing(number_of(scalar, here), right, CARRIED) and _beyond(
+            wrong = differing(number_of(scalar, here), right, CARRIED) and off_by(
                 number_of(scalar, here), right, [_in_unit(near.worth(output.value), output) for near in state.beside()]
             )
             if wrong:
@@ -265,45 +266,8 @@ class _Proof:
         return ""
 
 
-def read(phase: PhaseEquations, text: str) -> Scalar:
-    """A printed formula as a scalar of the phase.
-
-    Raises:
-        ExpressionError: our grammar does not read it.
-        DerivationError: a function of the motion stands in it.
-    """
-
-    def none(call: Call) -> Scalar:
-        raise DerivationError(f"'{call}' stands in the text")
-
-    found: Scalar = parse(text).evaluate(phase.system.scope.names, none)
-    return found
-
-
 def _in_unit(value: float, output: Output) -> float:
     return value if output.unit is None else float(output.unit.from_si(value, math.pi))
-
-
-def _differing(found: float, right: float, share: float = COMPUTED) -> str:
-    """That two numbers differ by more than a share of the larger, in words; ""."""
-    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
-        return ""
-    return f"{found:.10g} for {right:.10g}"
-
-
-def _beyond(found: float, right: float, near: list[float]) -> str:
-    """That a number is off by more than nearby states make of it.
-
-    Raises:
-        NoValue: next to a singular position nearby states are far apart.
-    """
-    change = max(abs(x - right) for x in near)
-    off = abs(found - right)
-    if off <= AWAY * change <= SAME_PLACE * (1 + abs(right)):
-        return ""
-    if off <= AWAY * change:
-        raise NoValue("the state is next to a singular position, and doubles say too little of it")
-    return _differing(found, right)
 
 
 def _start(motion: MotionFromStart) -> dict[Node, float]:

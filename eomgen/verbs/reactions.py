@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from eomgen import pipeline
+from eomgen.certificate import certify as certificate_of_equations
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
 from eomgen.questions import answers
 from eomgen.report.document import Document, plain_document
 from eomgen.report.quantity import Quantity
@@ -40,7 +46,29 @@ NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
 
 
-def reactions_document(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> Document:
+class FoundReactions(dict[str, Quantity]):
+    """{name as an output asks for it: the reaction}.
+
+    Args:
+        equations: None where unknowns in the loads hold the system.
+        proof: of what stands in it.
+    """
+
+    def __init__(
+        self,
+        found: Mapping[str, Quantity],
+        equations: Equations | None,
+        proof: Callable[[Mapping[str, Quantity]], Certificate],
+    ) -> None:
+        super().__init__(found)
+        self.equations, self._proof = equations, proof
+
+    def certify(self) -> Certificate:
+        """The equations; the formulas against the balance in numbers, or the numbers against the motion in numbers."""
+        return self._proof(self)
+
+
+def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> FoundReactions:
     """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
 
     Args:
@@ -55,14 +83,30 @@ def reactions_document(model: Model, *, at: str | None = None, from_rest: tuple[
     system = system_of(model) if equations is None else equations.system
     asked = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
     if equations is not None and at is None and not from_rest:
-        found = _formulas(equations, asked)
-    else:
-        found = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
+        return FoundReactions(_formulas(equations, asked), equations, partial(_proof_of_formulas, equations))
+    solved = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
+    named = {each.name: replace(answer, unit=each.unit) for each, answer in zip(asked, solved.values(), strict=True)}
+    return FoundReactions(named, equations, partial(_proof_of_answers, solved))
+
+
+def reactions_document(
+    model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = (), certify: bool = True
+) -> Document:
+    """Every reaction, as `reactions` finds it, in words and for machines.
+
+    Args:
+        at, from_rest: as of `reactions`.
+        certify: whether it is proven.
+    """
+    found = reactions(model, at=at, from_rest=from_rest)
+    equations = found.equations
+    system = system_of(model) if equations is None else equations.system
+    asked = [named for named in named_reactions(balance_of(system)) if named.name in found]
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     space = null_space(system, equations.graph) if open_ and equations is not None else []
-    return plain_document(
+    document = plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **({"null_space": space} if space else {})},
         _listing(system, asked, found, bool(space)),
@@ -70,6 +114,7 @@ def reactions_document(model: Model, *, at: str | None = None, from_rest: tuple[
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=() if found else ("nothing reacts: no body is held by joints or ties",),
     )
+    return document.proven(found.certify() if certify and found else None)
 
 
 def _function(name: str) -> str:
@@ -109,18 +154,43 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
     }, None
 
 
+def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> Certificate:
+    """The equations of motion, then every formula and its number at the start."""
+    texts = {name: answer.exact for name, answer in found.items() if answer.exact is not None}
+    values = {name: answer.value for name, answer in found.items() if answer.value is not None}
+    system, assembly = equations.system, equations.graph
+    certificate = certificate_of_equations(system, assembly)
+    try:
+        symbols, start = assembly.symbols, equations.start()
+        numbers = {symbols.t: 0.0, **dict(zip((*symbols.q, *symbols.u), start.tolist(), strict=True))}
+        state = NumericState(system, assembly, known_exactly(system.scope), numbers)
+    except (MissingValues, DerivationError):
+        return certificate + reaction_texts(system, assembly, texts)
+    return certificate + reaction_texts(system, assembly, texts) + reaction_numbers(state, texts, values)
+
+
 # -- at an instant, or from rest -------------------------------------------------------------------
 
 
-def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> dict[str, Quantity]:
-    """The answers to outputs that ask for the reactions, with their units."""
+def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> answers.Answers:
+    """The answers to outputs that ask for the reactions, in their order."""
     instant = None if at is None else _instant(at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
     values = [parse(named.name, references=True) for named in asked]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {at}", outputs=Table(outputs))
-    found = answers.solve(model)
-    return {named.name: dataclasses.replace(found[f"o{k}"], unit=named.unit) for k, named in enumerate(asked)}
+    return answers.solve(model)
+
+
+def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) -> Certificate:
+    """That of the outputs by which they were asked, under the names of the reactions."""
+    names = dict(zip(solved, found, strict=True))
+    solved.update(zip(solved, found.values(), strict=True))
+
+    def told(check: Check) -> Check:
+        return replace(check, detail=re.sub(r"\bo\d+\b", lambda m: names.get(m[0], m[0]), check.detail))
+
+    return Certificate(tuple(map(told, solved.certify().checks)))
 
 
 def _instant(text: str) -> WrittenEquation | AtRest:
@@ -158,7 +228,7 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
         UsageError: something in them is wrong.
     """
     try:
-        return dataclasses.replace(model, **changes)
+        return replace(model, **changes)
     except ModelError as error:
         raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", mend=error.mend) from error
 
@@ -188,7 +258,7 @@ def _listing(system: System, asked: Iterable[NamedReaction], found: dict[str, Qu
     for named in asked:
         answer = found[named.name]
         if below and OPEN in (answer.message or ""):
-            answer = dataclasses.replace(answer, message=f"{OPEN}, see below")
+            answer = replace(answer, message=f"{OPEN}, see below")
         rows.append(Found(named.name, answer, said(balance, named)))
     return Listing(tuple(rows))
 

@@ -1,0 +1,102 @@
+"""Formulas of reactions as they are printed -> a check: read back, they are the reactions solved in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from functools import partial
+
+from eomgen.codegen.reactions import determinate
+from eomgen.errors import EomgenError
+from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.proof.at_a_state import NumericState, off_by, read_back
+from eomgen.proof.check import Check
+from eomgen.proof.states import TrialState
+from eomgen.proof.tally import Tally
+from eomgen.proof.trials import Trials
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+MOST = 3  # states at which all of them are compared
+
+
+def reaction_texts(system: System, assembly: Assembly, texts: Mapping[str, str]) -> Iterator[Check]:
+    """Each text at the start, in pieces and at random, against the bodies' equations solved there in doubles.
+
+    Args:
+        texts: of each reaction by its name, a function of q, u, t and accelerations.
+    """
+    tally = Tally("formulas, read back, are the reactions of the bodies' balance", "50 digits against doubles")
+    states = list(_states(system, assembly))
+
+    def compared(name: str, text: str) -> str:
+        scalar, judged = read_back(system, text), 0
+        for state in states:
+            if name not in state.reactions:
+                continue
+            size = max(map(abs, state.reactions.values()))
+            found, right = state.number(scalar), state.reactions[name]
+            if abs(found - right) > COMPUTED * (1 + size):
+                near = [beside.reactions.get(name, right) for beside in state.beside()]
+                if wrong := off_by(found, right, near):
+                    return f"{wrong} at t = {state.t:.6g} s, {_place(state)}"
+            judged += 1
+        if not judged:
+            raise NoValue("at none of the states tried it has a single value")
+        return ""
+
+    for name, text in texts.items():
+        tally.add(name, partial(compared, name, text))
+    return tally.checks()
+
+
+def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Check]:
+    """Each number at the start is what its formula is worth there with 50 digits: as printed, else as it was solved."""
+    tally = Tally("formulas, read back, give the numbers at the start", "50 digits against doubles")
+    untold = Tally("numbers too long to print a formula for are those of the balance", "50 digits against doubles")
+    solved = {} if values.keys() <= texts.keys() else determinate(reactions_of(start.system))
+    size = max(map(abs, values.values()), default=0.0)
+
+    def compared(name: str) -> str:
+        scalar = read_back(start.system, texts[name]) if name in texts else solved[name]
+        found, right = values[name], start.number(scalar)
+        if abs(found - right) <= COMPUTED * (1 + size):
+            return ""
+        return off_by(found, right, [beside.number(scalar) for beside in start.beside()])
+
+    for name in values:
+        if name in texts or name in solved:
+            (tally if name in texts else untold).add(name, partial(compared, name))
+    return iter((*tally.checks(), *untold.checks()))
+
+
+def _states(system: System, assembly: Assembly) -> Iterator[NumericState]:
+    """The first state of each supply where the motion has accelerations."""
+    count = 0
+    for _, supply in Trials(system, assembly).states.supplies:
+        for place in supply:
+            state = _in_numbers(system, assembly, place)
+            try:
+                state.unknowns.keys()
+            except (NoValue, ZeroDivisionError, EomgenError):
+                continue
+            yield state
+            count += 1
+            break
+        if count == MOST:
+            return
+
+
+def _in_numbers(system: System, assembly: Assembly, place: TrialState) -> NumericState:
+    symbols, values = assembly.symbols, place.state
+    parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
+    return NumericState(
+        system, assembly, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)}
+    )
+
+
+def _place(state: NumericState) -> str:
+    moving = [f"{node.name} = {x:.6g}" for node, x in state.numbers.items()]
+    return ", ".join(moving[1:4])
