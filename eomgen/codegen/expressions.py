@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import number_of
 
 SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
 LONGEST_INLINE = 60
@@ -79,7 +79,7 @@ class ExpressionWriter:
             if x.op == "neg":
                 known = f"-{held(self._text(x.args[0]), PRODUCT)}", SUM
             else:  # an exact constant: sqrt(2), pi/2
-                known = self._number(Fraction(evaluate([x], {}, FLOAT)[0]))
+                known = self._number(Fraction(number_of(x)))
             self._texts[x] = known
         return known
 

@@ -22,7 +22,7 @@ from eomgen.report.support_symbols import GROUNDED, PagePoint, clamp, coil, hing
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 BODY, LOAD, REACTION = "#2f5d8a", "#b03a2e", "#2e7d4f"
@@ -46,7 +46,7 @@ class Sketch:
 
     def numbers(self, scalars: Iterable[Scalar]) -> list[float]:
         """What scalars are worth there."""
-        return [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
+        return numbers_of(scalars, self.values)
 
     def place(self, point: Vector) -> PagePoint:
         """A place of the ground's axes."""

@@ -7,6 +7,7 @@ closed form, taken where it agrees with the numbers and the equations hold exact
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -29,10 +30,11 @@ from eomgen.mechanics.equilibria.one_sided import pulling_contacts
 from eomgen.mechanics.equilibria.rest_places import ANYWHERE, Places, places_of_rest
 from eomgen.mechanics.equilibria.stability import Stability, stability_of
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.dense import rank
@@ -277,7 +279,10 @@ class _Search:
             self._chosen if self._slides else None,
         )
         own = fixed | self._determined(z)
-        own |= {q: 0.0 for q in own if q in exact and is_zero(exact[q])}  # no 1e-51 for it
+        if self.valued:  # what is known in closed form has all its digits
+            known = [q for q in own if q in exact]
+            sure = shown_numbers([exact[q] for q in known], known_exactly(self.system.scope))
+            own |= {q: x for q, x in zip(known, sure, strict=True) if x is not None and math.isfinite(x)}
         return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
 
     def _determined(self, z: np.ndarray) -> dict[Node, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Entries
 from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
@@ -35,7 +36,7 @@ from eomgen.report.setting_steps import data_step
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import numbers_of
 from eomgen.symbolic.print.text import to_text
 
 METHOD = "linearization"
@@ -268,9 +269,8 @@ class Linearization(Result):
     def _values(self, A: Entries) -> list[list[float]] | None:
         if not self.valued:
             return None
-        values = {x: float(v) for x, v in self.small.reference.trial.items()}
-        flat = iter(evaluate([x for row in A for x in row], values, FLOAT))
-        return [[float(next(flat)) for _ in row] for row in A]
+        flat = iter(numbers_of([x for row in A for x in row], known_exactly(self.small.reference.system.scope)))
+        return [[next(flat) for _ in row] for row in A]
 
     def _mode(self, mode: Mode) -> dict[str, Any]:
         exact = next((f.exact for f in self.frequencies if f.mode is mode), None)

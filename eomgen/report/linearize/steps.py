@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
@@ -20,7 +21,7 @@ from eomgen.report.statements import Cell, Formula, Grid, Law, Side, Statement, 
 from eomgen.report.statements import Entry as Place
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 from eomgen.symbolic.print.text import text_size
 
@@ -299,7 +300,7 @@ def _or_number(modes: Modes, x: Scalar) -> Side:
     reference = modes.small.reference
     if text_size(x) <= LONG or not reference.valued:
         return _side(x)
-    return _number(float(evaluate((x,), {p: float(v) for p, v in reference.trial.items()}, FLOAT)[0]))
+    return _number(number_of(x, known_exactly(reference.system.scope)))
 
 
 def _transfers(modes: Modes) -> tuple[Step, ...]:
