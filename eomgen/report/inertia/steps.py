@@ -140,7 +140,8 @@ def moments_grid(section: Section) -> Iterator[Statement]:
 
 def _plus(I: Matrix, i: int, j: int) -> Scalar:
     """A moment, or a product with the textbook's plus."""
-    return I[i][j] if i == j else -I[i][j]
+    entry: Scalar = I[i][j] if i == j else -I[i][j]
+    return entry
 
 
 STEINER = Law(
@@ -213,7 +214,8 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Inerti
 def _radius(sum: InertiaSum, moment: Scalar) -> Scalar:
     """k = sqrt(I/m), short where the moment is."""
     if text_size(moment) > LONGEST_LINE:
-        return sqrt(over(moment, sum.m))
+        root: Scalar = sqrt(over(moment, sum.m))
+        return root
     return sum.short(sqrt(sum.short(over(moment, sum.m))))
 
 

@@ -55,7 +55,8 @@ def _in_ground(system: System, body: str, places: np.ndarray, values: State) -> 
     """Places of a body, where they are in the ground at the instant."""
     pose = system.motion.link(body).pose
     turn = np.array(evaluate([x for row in pose.R[:2] for x in row[:2]], values, FLOAT), dtype=float).reshape(2, 2)
-    return places @ turn.T + np.array(evaluate(pose.p[:2], values, FLOAT), dtype=float)
+    moved: np.ndarray = places @ turn.T + np.array(evaluate(pose.p[:2], values, FLOAT), dtype=float)
+    return moved
 
 
 def _cut(places: np.ndarray, size: float) -> np.ndarray:

@@ -155,7 +155,8 @@ def _entries(
 
 def _plain(x: Node) -> Node:
     """The coordinate of a rate."""
-    return x.graph.symbol(x.name.removesuffix("'"))
+    plain: Node = x.graph.symbol(x.name.removesuffix("'"))
+    return plain
 
 
 def _side(x: MatrixEntry) -> Side:
@@ -222,7 +223,8 @@ def _latex_number(text: str) -> str:
 
 def _written(polynomial: Polynomial, s: Node) -> Scalar:
     """The highest power first."""
-    return sum((c * s**n for n, c in reversed(list(enumerate(polynomial.coefficients)))), start=0)
+    total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(polynomial.coefficients)))), start=0)
+    return total
 
 
 def _modes(modes: Modes) -> Step:

@@ -47,7 +47,8 @@ def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
 def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
     """The angle where a block turns by 1, else a length."""
     turns = any(not isinstance(w, Node) and w == 1 for block in blocks for w in block.spin)
-    return symbol.graph.symbol(TURN if turns else SHIFT)
+    scale: Node = symbol.graph.symbol(TURN if turns else SHIFT)
+    return scale
 
 
 def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:

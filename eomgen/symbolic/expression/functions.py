@@ -34,7 +34,7 @@ NAMES = {
 """The functions of the model file's grammar and how many arguments each takes (min and max: two or more)."""
 
 
-def function(name: str, *args):
+def function(name: str, *args: Any) -> Any:
     """The function of the table NAMES at its arguments, in the arithmetic of the arguments.
 
     At exact numbers it stays exact: sqrt(4) is 2, sqrt(2) a node of the graph CONSTANTS.
@@ -59,10 +59,10 @@ def _at_floats(name: str, *args: float) -> float:
         return abs(args[0])
     if name == "sign":
         return float((args[0] > 0) - (args[0] < 0))
-    return getattr(math, name)(*args)
+    return float(getattr(math, name)(*args))
 
 
-def _sympy_function(name: str, *args):
+def _sympy_function(name: str, *args: Any) -> Any:
     import sympy
 
     known_to_sympy()
@@ -71,19 +71,19 @@ def _sympy_function(name: str, *args):
     return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
 
 
-def sin(a):
+def sin(a: Any) -> Any:
     return 0 if type(a) is int and a == 0 else function("sin", a)
 
 
-def cos(a):
+def cos(a: Any) -> Any:
     return 1 if type(a) is int and a == 0 else function("cos", a)
 
 
-def sqrt(a):
+def sqrt(a: Any) -> Any:
     return function("sqrt", a)
 
 
-def over(a, b):
+def over(a: Any, b: Any) -> Any:
     """a / b, exact when both are exact (Python's int / int would be a float)."""
     if isinstance(a, int) and isinstance(b, int):
         quotient = Fraction(a, b)
