@@ -1,4 +1,4 @@
-"""Statements of a Program -> text of assignments, in the grammar that C and Python share.
+"""Statements of a Program -> text of assignments, in the grammar that languages share.
 
 Signs and constants are written in place, and so is what is used once and short; everything else
 gets a variable. The order of operations is the graph's: the text rounds as the graph does.
