@@ -599,7 +599,7 @@ def test_a_mass_that_is_light_beside_another_is_not_rounding() -> None:
     """w = sqrt(k/m) of each, 1e16 kg to 1 kg."""
     bodies = "".join(
         f'[bodies.{name}]\nshape = {{ kind = "particle", mass = "{mass}" }}\n'
-        f'joint = {{ kind = "prismatic", axis = [1, 0], distance = "{name}_x" }}\n'
+        f'joint = {{ kind = "prismatic", axis = [1, 0], displacement = "{name}_x" }}\n'
         f'[forces.{name}_spring]\nkind = "potential"\nenergy = "{name}_x^2/2"\n'
         for name, mass in (("light", "10^(-16)"), ("heavy", "1"))
     )

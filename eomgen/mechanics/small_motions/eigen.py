@@ -97,7 +97,8 @@ def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[No
 def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
     """(A_0, B_0)"""
     n, m = len(e.coordinates), len(e.speeds)
-    M, C, K = (_without_rounding(x, m) for x in (e.M, e.C, e.K))
+    M = floats(e.M)  # a light mass counts too
+    C, K = (_without_rounding(x, m) for x in (e.C, e.K))
     F, E = (_without_rounding(x, n) for x in (e.F, e.E))
     return np.block([[F, E], [-K, -C]]), np.block([[np.eye(n), np.zeros((n, m))], [np.zeros((m, n)), M]])
 
