@@ -9,25 +9,28 @@ A row without bodies (`equation`) gives dphi/dq, or its row in the rates, direct
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.bodies.contact_modes import CLOSED, ContactMode, ContactModes, friction_factor, rows_in_mode
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, slide_of
-from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes
+from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes, start_value
 from eomgen.mechanics.bodies.simplify import shorter_row
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
 
@@ -237,8 +240,43 @@ def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
 
 
 def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
-    holds = holds_identically(velocity) and (gap is None or holds_identically(gap) or _is_met(motion, gap))
+    holds = _holds(motion, velocity) and (gap is None or _holds(motion, gap) or _is_met(motion, gap))
     return "identical" if holds else "closing"
+
+
+def _holds(motion: Motion, scalar: Scalar) -> bool:
+    """Whether the scalar is zero whatever the motion; where roots and sizes choose a branch, on that of the start.
+
+    L - |L - x| - x is zero wherever x < L, as at the start, and not for all x and L.
+    """
+    if type(scalar) is int:
+        return scalar == 0
+    verdict = equal_at_random_states([(scalar, 0)])
+    if verdict.equal or verdict.arithmetic == PRIME_FIELD.name:
+        return verdict.equal
+    here = equal_at_real_states([(scalar, 0)], states=0, given=[[state] for state in _around_start(motion)])
+    return here.equal and here.states > 0
+
+
+def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
+    """States beside the start, at parameters beside the model's; none where a value is missing."""
+    scope, rng, digits = motion.scope, Random(5), fifty_digits()
+    known = exact_parameters(scope.model)
+    symbols = scope.symbols
+    if known.keys() < symbols.parameters.keys():
+        return
+    for _ in range(3):
+        state = {p: digits.number(known[name] * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
+        starts = tuple(start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q)
+        state |= {
+            q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
+        }
+        state |= {x: digits.number(_aside(rng)) for x in (*symbols.u, *symbols.a, *symbols.inputs.values(), symbols.t)}
+        yield state
+
+
+def _aside(rng: Random) -> Fraction:
+    return Fraction(rng.randint(-1000, 1000), 100_000)
 
 
 def _is_met(motion: Motion, gap: Scalar) -> bool:
