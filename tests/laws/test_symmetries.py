@@ -203,3 +203,9 @@ def test_it_does_not_matter_where_a_loop_is_cut():
     there["constraints"]["B"]["points"] = ["rocker.start", "D"]
     there.pop("outputs")
     assert_same(accelerations(there), accelerations(tables))
+
+
+def test_a_wire_that_is_straight_in_no_axis_freezes_nothing():
+    """L - |L - x| - x is zero for x < L, as at the start: the turned wire holds as the upright one does."""
+    path = MODELS / "seeds" / "ch18_p5.toml"
+    assert_same(accelerations(turned(tables_of(path))), plain(path))
