@@ -289,7 +289,7 @@ def linearize_command(**options: Any) -> int:
 )
 @FOLLOW
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
-@click.option("--target", type=click.Choice(["numpy", "c"]), help="What runs the equations.  [default: the fastest]")
+@click.option("--target", metavar="NAME", help="What runs the equations, as of codegen --list.  [default: the fastest]")
 @CERTIFY
 def simulate_command(
     model: str,

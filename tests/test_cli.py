@@ -521,6 +521,8 @@ def test_the_languages_are_those_of_the_seam(tmp_path):
     wrong = run("codegen", PENDULUM, "--target", "fortran", "-o", str(tmp_path))
     assert wrong.exit_code == 2 and ", ".join(names) in wrong.stderr and not list(tmp_path.iterdir())
     assert run("codegen", "-o", str(tmp_path)).exit_code == run("codegen", PENDULUM).exit_code == 2
+    wrong = run("simulate", PENDULUM, "--target", "fortran")
+    assert wrong.exit_code == 2 and ", ".join(names) in wrong.stderr
     both = [word for name in names for word in ("--target", name)]
     payload = json.loads(run("codegen", PENDULUM, *both, "-o", str(tmp_path), "--json").stdout)
     assert payload["targets"] == names and {Path(file).parent.name for file in payload["files"]} == set(names)
