@@ -52,6 +52,7 @@ PREAMBLE = r"""\documentclass[fleqn]{article}
 \renewcommand{\arraystretch}{1.25}
 """
 WORDS = 60  # characters in a line of a column of words, and its width in mm
+MEANING = "p{85mm}"  # a column of meanings
 NARROW = 45  # the same in a table of many columns
 LINE = 95  # characters of words in all columns of a table, in which a formula counts as SIDE
 SIDE = 8
@@ -144,7 +145,7 @@ def latex_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
         elif isinstance(group, Lines):
             blocks.append("\n".join([r"\begin{verbatim}", *group.lines, r"\end{verbatim}"]))
         else:
-            blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
+            blocks.append(_grid(setter, group))
     return blocks
 
 
@@ -293,19 +294,6 @@ def value_latex(value: str) -> str:
     return f"${number[1]}" + (rf" \cdot 10^{{{int(number[2])}}}$" if number[2] else "$")
 
 
-def _table(setter: Setter, table: Table) -> str:
-    """A table without its empty columns."""
-    kept = table.columns
-    alignment = "".join(r"p{85mm}" if k == 1 else "l" for k in kept)
-    head = " & ".join(latex_escaped(table.head[k]) for k in kept)
-    lines = []
-    for row in table.rows:
-        symbol = f"${side_latex(setter, row.symbol)}$"
-        cells = (symbol, latex_escaped(row.meaning), unit_latex(row.unit), value_latex(row.value))
-        lines.append(" & ".join(cells[k] for k in kept))
-    return _ruled(alignment, head, lines)
-
-
 def _ruled(alignment: str, head: str, rows: list[str]) -> str:
     """A table with a line under its head; a long one may go over pages, and then needs a second run of LaTeX."""
     top = head + r" \\ \hline \noalign{\vskip 3pt}"
@@ -317,17 +305,19 @@ def _ruled(alignment: str, head: str, rows: list[str]) -> str:
     return "\n".join(lines)
 
 
-def _grid(setter: Setter, grid: Grid) -> str:
+def _grid(setter: Setter, table: Grid | Table) -> str:
     """A table of words and formulas; columns of long words are wrapped, units and numbers set as such."""
+    grid = table if isinstance(table, Grid) else table.grid
     longest = [
         max(len(cell) if isinstance(cell, str) else SIDE for cell in column)
         for column in zip(grid.head, *grid.rows, strict=True)
     ]
     room = WORDS if sum(longest) <= LINE else NARROW
-    alignment = "".join(f"p{{{room}mm}}" if length > room else "l" for length in longest)
+    wide = [f"p{{{room}mm}}" if length > room else "l" for length in longest]
+    alignment = wide if table is grid else [MEANING if head == "meaning" else "l" for head in grid.head]
     units = [head == "unit" for head in grid.head]
     head = _cells(setter, grid.head, [True] * len(grid.head))
-    return _ruled(alignment, head, [_cells(setter, row, units) for row in grid.rows])
+    return _ruled("".join(alignment), head, [_cells(setter, row, units) for row in grid.rows])
 
 
 def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from eomgen.report.document import Document
 from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex, with_listings_typeset
 from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose, Statement, Table
+from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose, Statement
 
 name = "markdown"
 
@@ -41,7 +41,7 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
         elif isinstance(group, Lines):
             blocks.append("\n".join(["```", *group.lines, "```"]))
         else:
-            blocks.append(_grid(setter, group) if isinstance(group, Grid) else _table(setter, group))
+            blocks.append(_grid(setter, group if isinstance(group, Grid) else group.grid))
     return blocks
 
 
@@ -56,16 +56,6 @@ def _piece(setter: Setter, piece: Piece) -> str:
     if isinstance(piece, str):  # blanks at the ends join the pieces
         return _SPECIAL.sub(r"\\\1", piece)
     return piece_latex(setter, piece, markdown_escaped)
-
-
-def _table(setter: Setter, table: Table) -> str:
-    """A table without its empty columns."""
-    kept = table.columns
-    lines = ["| " + " | ".join(table.head[k] for k in kept) + " |", "|" + "---|" * len(kept)]
-    for row in table.rows:
-        cells = (f"${side_latex(setter, row.symbol)}$", *map(markdown_escaped, (row.meaning, row.unit, row.value)))
-        lines.append("| " + " | ".join(cells[k] for k in kept) + " |")
-    return "\n".join(lines)
 
 
 def _grid(setter: Setter, grid: Grid) -> str:

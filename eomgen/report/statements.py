@@ -124,10 +124,9 @@ class Table:
     rows: tuple[Meaning, ...]
 
     @property
-    def columns(self) -> tuple[int, ...]:
-        """The columns in which something stands; the first one always."""
-        cells = [(True, row.meaning, row.unit, row.value) for row in self.rows]
-        return tuple(k for k in range(4) if any(row[k] for row in cells))
+    def grid(self) -> Grid:
+        """Its columns in which something stands."""
+        return narrow_grid(self.head, [(row.symbol, row.meaning, row.unit, row.value) for row in self.rows])
 
 
 Cell = str | Side

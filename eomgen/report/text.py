@@ -17,7 +17,6 @@ from eomgen.report.statements import (
     Law,
     Lines,
     Listing,
-    Meaning,
     Name,
     Omitted,
     Partial,
@@ -26,7 +25,6 @@ from eomgen.report.statements import (
     Rate,
     Side,
     Statement,
-    Table,
 )
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
@@ -36,6 +34,8 @@ name = "text"
 RELATIONS = {"less": "<", "less_equal": "<="}
 WIDTH = 100
 INDENT = "    "
+MEANING = 20  # characters that a column of meanings has at least
+LAST = 30  # the same of the last column of a grid
 
 
 def render(document: Document) -> str:
@@ -72,7 +72,10 @@ def statement_lines(statement: Statement) -> list[str]:
             head = broken(f"{formula_text(Formula(tuple(left)))} =", INDENT, WIDTH)
             return [*head, *(line for case in cases_text(last) for line in broken(case, 2 * INDENT, WIDTH))]
         return broken(formula_text(statement), INDENT, WIDTH)
-    return _grid_lines(statement) if isinstance(statement, Grid) else _table_lines(statement)
+    if isinstance(statement, Grid):
+        return _column_lines(statement, len(statement.head) - 1, LAST)
+    grid = statement.grid
+    return _column_lines(grid, grid.head.index("meaning") if "meaning" in grid.head else 0, MEANING)
 
 
 def prose_text(prose: Prose) -> str:
@@ -130,24 +133,6 @@ def _name_text(quantity: Name) -> str:
     return text if quantity.power == 1 else f"{text}^{quantity.power}"
 
 
-def _table_lines(table: Table) -> list[str]:
-    """Columns as wide as what stands in them; the meaning is wrapped."""
-    rows = [tuple(table.head), *(_cells(row) for row in table.rows)]
-    kept = table.columns
-    widths = {k: max(len(row[k]) for row in rows) for k in kept}
-    most = max(20, WIDTH - len(INDENT) - sum(widths[k] + 2 for k in kept if k != 1))
-    if 1 in widths:
-        widths[1] = max(20, min(widths[1], most))
-    lines: list[str] = []
-    for row in rows:
-        meaning = textwrap.wrap(row[1], most) or [""]
-        for number, part in enumerate(meaning):
-            cells = [part if k == 1 else row[k] if number == 0 else "" for k in kept]
-            line = "  ".join(cell.ljust(widths[k]) for k, cell in zip(kept, cells, strict=True))
-            lines.append(f"{INDENT}{line}".rstrip())
-    return lines
-
-
 def _listing_lines(listing: Listing) -> list[str]:
     """Each name and what is known of it beside it; below it where words stand there."""
     width = max((len(row.name) for row in listing.rows), default=0)
@@ -161,26 +146,27 @@ def _listing_lines(listing: Listing) -> list[str]:
     return lines
 
 
-def _cells(row: Meaning) -> tuple[str, str, str, str]:
-    return side_text(row.symbol), row.meaning, row.unit, row.value
-
-
 def cell_text(cell: Cell) -> str:
     """A cell of a grid."""
     return cell if isinstance(cell, str) else side_text(cell)
 
 
-def _grid_lines(grid: Grid) -> list[str]:
-    """Columns as wide as what stands in them; where they do not fit beside one another, the last one is wrapped."""
+def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
+    """Columns as wide as what stands in them; one is wrapped where they do not fit beside one another.
+
+    Args:
+        least: the width that is left to that column.
+    """
     rows = [tuple(map(cell_text, row)) for row in (grid.head, *grid.rows)]
-    *widths, last = (max(map(len, column)) for column in zip(*rows, strict=True))
-    most = max(30, WIDTH - len(INDENT) - sum(width + 2 for width in widths))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    most = max(least, WIDTH - len(INDENT) - sum(width + 2 for k, width in enumerate(widths) if k != wrapped))
+    widths[wrapped] = max(MEANING, min(widths[wrapped], most)) if wrapped else widths[wrapped]
     lines: list[str] = []
-    for *cells, end in rows:
-        for number, part in enumerate(textwrap.wrap(end, most) or [""] if last > most else [end]):
-            shown = ["" if number else cell for cell in cells]
-            line = "".join(f"{cell.ljust(width)}  " for cell, width in zip(shown, widths, strict=True))
-            lines.append(f"{INDENT}{line}{part}".rstrip())
+    for row in rows:
+        for number, part in enumerate(textwrap.wrap(row[wrapped], most) or [""]):
+            cells = [part if k == wrapped else "" if number else cell for k, cell in enumerate(row)]
+            line = "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+            lines.append(f"{INDENT}{line}".rstrip())
     return lines
 
 
