@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
@@ -179,12 +179,20 @@ class _Report:
         results = [result for _, found, _ in made for result in found]
         axes = {key or "together": rows for _, _, (key, rows) in made if rows is not None}
         steps = (data_step(self.system), _conventions(), *(step for step, _, _ in made))
-        values = {name: self._quantity(r) for name, r in named_results(results).items()}
-        return Inertia(self.system, values, axes, steps, tuple(self.stated), self.start)
+        return Inertia(
+            self.system, self._quantities(named_results(results)), axes, steps, tuple(self.stated), self.start
+        )
 
-    def _quantity(self, entry: InertiaEntry) -> Quantity:
-        values = numbers_in((entry.value,), self.system.scope, self.start)
-        return Quantity(readable_text(entry.value), None if values is None else values[0] + 0.0, entry.unit)
+    def _quantities(self, entries: Mapping[str, InertiaEntry]) -> dict[str, Quantity]:
+        """Each with its number: all in one go, or each by itself where some have none."""
+        scalars = [entry.value for entry in entries.values()]
+        whole = numbers_in(scalars, self.system.scope, self.start)
+        single = (numbers_in((x,), self.system.scope, self.start) for x in scalars)
+        numbers = whole or [None if each is None else each[0] for each in single]
+        return {
+            name: Quantity(readable_text(entry.value), None if x is None else x + 0.0, entry.unit)
+            for (name, entry), x in zip(entries.items(), numbers, strict=True)
+        }
 
     def _own(self, body: str) -> Section:
         return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))

@@ -70,8 +70,17 @@ class InertiaSum:
     start: State
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
-        """What scalars are worth at the start; None where one holds what has no value."""
-        return numbers_in(scalars, self.motion.scope, self.start)
+        """What scalars are worth at the start, those not met before in one go; None where one has no value."""
+        fresh = [x for x in dict.fromkeys(scalars) if x not in self._worth]
+        found = numbers_in(fresh, self.motion.scope, self.start) if fresh else []
+        if found is None:
+            return None
+        self._worth.update(zip(fresh, found, strict=True))
+        return [self._worth[x] for x in scalars]
+
+    @cached_property
+    def _worth(self) -> dict[Scalar, float]:
+        return {}
 
     def short(self, x: Scalar) -> Scalar:
         """x in readable form; what was read once is not read again."""

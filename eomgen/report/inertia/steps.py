@@ -81,7 +81,7 @@ def number(section: Section, x: Scalar) -> str:
 def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str | Law | Scalar]]) -> Grid:
     """A table of scalars and words: exact where all are short or one has no value, else in numbers."""
     scalars = [x for row in rows for x in row if not isinstance(x, str | Law)]
-    valued = all(number(section, x) for x in scalars)
+    valued = section.sum.numbers(scalars) is not None
     in_numbers = valued and any(text_size(section.sum.short(x)) > LONGEST for x in scalars)
 
     def cell(x: str | Law | Scalar) -> Cell:
