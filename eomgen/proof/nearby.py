@@ -16,7 +16,7 @@ from typing import Any
 
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
-from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import follows_in_digits
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -163,8 +163,9 @@ class Nearby:
 
     @cached_property
     def _dependent_q(self) -> tuple[Node, ...]:
-        coordinates = self.system.scope.model.coordinates
-        return tuple(q for q in self.system.symbols.q if q not in self.q and not coordinates[q.name].driven)
+        """Those that stand in what is known between positions; others stay where they are."""
+        coordinates, bound = self.system.scope.model.coordinates, {*symbols_of(self.relations)}
+        return tuple(q for q in self.system.symbols.q if q in bound - {*self.q} and not coordinates[q.name].driven)
 
     @cached_property
     def _slopes(self) -> list[DigitRow]:

@@ -95,3 +95,12 @@ def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     right = kinematic_state.field_of
     monkeypatch.setattr(kinematic_state, "field_of", lambda *given: replace(f := right(*given), v=times(2, f.v)))
     assert "do not trust" in shown(verb(model)).wrong
+
+
+def test_points_that_meet_with_one_velocity_and_part_again_stand_apart() -> None:
+    """The slider of a governor passes the middle of its shaft at rest, and falls."""
+    found = eomgen.kinematics(eomgen.load(MODELS / "flyball_governor.toml"))
+    accelerations = {name: a for names, _, _, a in found.state.points for name in names.split(", ")}
+    assert not found.state.worth.vanish(accelerations["slider.center"])
+    assert found.state.worth.vanish(accelerations["shaft.center"])
+    assert found.certify()

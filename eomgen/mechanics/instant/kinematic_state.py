@@ -99,7 +99,7 @@ class KinematicState:
         for link in self.system.motion.links:
             for name, place in self._named(link):
                 r, v, a = self._of(link.name, place)
-                home = next((entry for entry in found if self._same(entry[1:3], (r, v))), None)
+                home = next((entry for entry in found if self._same(entry[1:], (r, v, a))), None)
                 if home is None:
                     found.append(([name], r, v, a))
                 else:
@@ -126,8 +126,10 @@ class KinematicState:
         """A vector at the instant, readable."""
         return vector_of(map(self.simple, substituted(tuple(scalars), self.state)))
 
-    def _same(self, a: tuple[Vector, Vector], b: tuple[Vector, Vector]) -> bool:
-        return self.worth.vanish(x - y for u, v in zip(a, b, strict=True) for x, y in zip(u, v, strict=True))
+    def _same(self, one: Sequence[Vector | None], other: Sequence[Vector | None]) -> bool:
+        """Whether places, velocities and accelerations (None: not known) are the same."""
+        pairs = ((u, v) for u, v in zip(one, other, strict=True) if u is not None and v is not None)
+        return self.worth.vanish(x - y for u, v in pairs for x, y in zip(u, v, strict=True))
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it is where it is very long."""
