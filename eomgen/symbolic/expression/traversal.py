@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from eomgen.symbolic.expression.graph import CONSTANTS, Graph, Node, Scalar
 
 FREE = frozenset(("symbol", "pi", "neg"))
+_INDEX = attrgetter("index")
 
 
 @dataclass(frozen=True)
@@ -29,16 +31,17 @@ class Count:
 
 def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> list[Node]:
     """Every node that the outputs need, arguments before results; what is `given` is not looked into."""
-    stack = [x for x in outputs if type(x) is Node]
-    seen: set[Node] = set()
+    seen = {x for x in outputs if type(x) is Node}
+    stack = list(seen)
     while stack:
         x = stack.pop()
-        if x in seen:
+        if given and x in given:
             continue
-        seen.add(x)
-        if x.op != "symbol" and x not in given:
-            stack += [a for a in x.args if type(a) is Node]
-    return sorted(seen, key=_index)
+        for a in x.args:
+            if type(a) is Node and a not in seen:
+                seen.add(a)
+                stack.append(a)
+    return sorted(seen, key=_INDEX)
 
 
 def united(outputs: Sequence[Scalar]) -> tuple[Graph, list[Scalar]]:
@@ -69,7 +72,3 @@ def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Co
         if x.op not in FREE:
             counts[of] += 1
     return Count(total=counts[moving], hoisted=counts[fixed])
-
-
-def _index(x: Node) -> int:
-    return x.index
