@@ -37,7 +37,7 @@ def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None
     checks.append(trials.free_bodies())
     if rubs(system):
         checks.append(trials.friction())
-    checks += trials.balance()
+    checks += [*trials.contacts(), *trials.passive_elements(), *trials.balance()]
     if rhs is not None:
         checks.append(trials.code(rhs))
     return Certificate(tuple(checks))

@@ -23,7 +23,9 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.passive_elements import PassiveElements
 from eomgen.proof.states import States, in_doubles
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
@@ -175,6 +177,20 @@ class Trials:
         """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""
         F, factor, *N = map(float, evaluate(law, self._moving(state), fifty_digits()))
         return math.isclose(F, factor * math.hypot(*N), rel_tol=COMPUTED, abs_tol=COMPUTED)
+
+    def contacts(self) -> Iterable[Check]:
+        """What touches touches, where it is declared; none where nothing does."""
+        if meetings_of(self.system):
+            name = "contacts lie on both surfaces, and neither part nor slip"
+            yield self._at_states(name, "50 digits", lambda state: apart(self.system, state))
+
+    def passive_elements(self) -> Iterable[Check]:
+        """Dampers take power, springs have no energy at their rest length; none where there are none."""
+        found = PassiveElements(self.system)
+        if found.brakes:
+            yield self._at_states("dampers take power", "50 digits", found.driven_on)
+        if found.springs:
+            yield self._at_states("springs have no energy at their rest length", "50 digits", found.stretched)
 
     def balance(self) -> Iterable[Check]:
         """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""

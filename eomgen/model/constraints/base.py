@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
+from eomgen.model.constraints.meeting import Meeting
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.findings import Finding
@@ -55,6 +56,10 @@ class Constraint(Part, ABC):
     def edges(self, scene: Scene) -> tuple[Edge, ...]:
         """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
         return ()
+
+    def meeting(self) -> Meeting | None:
+        """What touches what, as it is declared; None where nothing does, or where it is not told."""
+        return None
 
     def drives(self) -> str:
         """The coordinate that it gives as a function of time; "" where it does no such thing."""

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, not_in_the_plane
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import FlatSurface, Meeting, RoundSurface, TouchingRound
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.round_bodies import Egg, RollingBall, Round, Wheel
 from eomgen.model.constraints.row import Edge, TieRow
@@ -125,6 +126,21 @@ class Rolling(Constraint):
                 )
                 what = f"'{path[1]}': {where}, '{self.body}' has '{key}'"
                 yield Finding((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)
+
+    def meeting(self) -> Meeting | None:
+        """The round body and its track; None of an ellipsoid, of a pipe, and of a wheel on something round."""
+        body = TouchingRound(self.body, self.center, self.radius, self.axis, self.tube)
+        flat = self.line or self.plane
+        if self.ellipsoid is not None:
+            return None
+        if flat is not None:
+            return Meeting(body, FlatSurface(self.on, flat.at, flat.normal), not self.slip)
+        if self.axis is not None or (self.circle is not None and self.circle.axis is not None):
+            return None
+        if self.circle is None:
+            return Meeting(body, RoundSurface(self.on, None, None), not self.slip)
+        track = RoundSurface(self.on, self.circle.at, self.circle.radius, bool(self.circle.inside))
+        return Meeting(body, track, not self.slip)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.

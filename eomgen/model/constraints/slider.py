@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import BodyLine, Meeting, TouchingPoint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.findings import Finding
@@ -47,6 +48,10 @@ class Slider(Constraint):
         if owner_of(self.point) == self.on:
             what = f"the point '{self.point}' of '{path[1]}' is on the body along which it should slide"
             yield Finding((*path, "point"), what)
+
+    def meeting(self) -> Meeting:
+        """The point, on the body's line."""
+        return Meeting(TouchingPoint(self.point), BodyLine(self.on))
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.

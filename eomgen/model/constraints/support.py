@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import FlatSurface, Meeting, TouchingPoint
 from eomgen.model.constraints.round_bodies import laid_in
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
@@ -30,6 +31,10 @@ class Support(Constraint):
     at: GroundPlace | None = None
     unilateral: Flag = False
     friction: FrictionLaw | None = None
+
+    def meeting(self) -> Meeting:
+        """The point, on its line or plane."""
+        return Meeting(TouchingPoint(self.point), FlatSurface(None, self.at, self.normal))
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.

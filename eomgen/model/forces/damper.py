@@ -7,6 +7,7 @@ from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, Law, TwoPoints
+from eomgen.symbolic.expression.formula import Expression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +24,10 @@ class Damper(Force):
     points: TwoPoints
     damping: Law
     along: Direction | None = None
+
+    @property
+    def damping_law(self) -> Expression:
+        return self.damping
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull c l'."""

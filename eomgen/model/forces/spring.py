@@ -7,6 +7,7 @@ from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -32,6 +33,10 @@ class Spring(Force):
     @property
     def spring_ends(self) -> tuple[str, ...]:
         return self.points
+
+    @property
+    def rest_length(self) -> Expression | str | None:
+        return self.length if self.along is None else None
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull k (l - l0)."""

@@ -7,6 +7,7 @@ from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import BodyName, Law, TwoBodies
+from eomgen.symbolic.expression.formula import Expression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +25,10 @@ class TorsionDamper(Force):
     bodies: TwoBodies | None = None
     body: BodyName | None = None
     damping: Law
+
+    @property
+    def damping_law(self) -> Expression:
+        return self.damping
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A couple - c theta' on the second body, the opposite on the first."""
