@@ -10,6 +10,7 @@ import pytest
 
 import eomgen
 from eomgen.model.values import exact_parameters
+from eomgen.report import rendered
 from eomgen.report.document import Document
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
@@ -61,3 +62,14 @@ def test_the_exact_text_of_every_quantity_gives_its_number(verb, name):
             assert quantity.value == pytest.approx(found, rel=1e-12, abs=1e-300), key
             compared += 1
     assert compared
+
+
+def test_the_answers_of_python_are_drawn_as_those_of_the_verb():
+    """eomgen.solve(model): text, LaTeX, Markdown and JSON are those of `eomgen solve --no-certify`."""
+    model = eomgen.load(MODELS / "seeds" / "ch22_p1.toml")
+    found, told = eomgen.solve(model), solve_document(model, certify=False)
+    assert [found.render(form) for form in ("text", "latex", "markdown")] == [
+        rendered(told, form) for form in ("text", "latex", "markdown")
+    ]
+    assert str(found).startswith("kinetic_energy  = ") and r"\dot{\theta}^{2}" in found.latex()
+    assert found.as_dict()["outputs"]["Q_theta"]["exact"] == found["Q_theta"].exact == "6*M*R*g*sin(theta)"

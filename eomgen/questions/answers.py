@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from eomgen.errors import (
     DerivationError,
@@ -34,8 +35,11 @@ from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.proof_of_answers import Solver, certificate_of
+from eomgen.report.document import Document, plain_document
 from eomgen.report.linearize.result import Linearization, linearize
 from eomgen.report.quantity import Quantity
+from eomgen.report.result import Result
+from eomgen.report.statements import Found, Listing
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call
@@ -51,7 +55,7 @@ Answer = Quantity  # of an output
 NO_VALUE = "it has no finite value {}"
 
 
-class Answers(dict[str, Answer]):
+class Answers(dict[str, Answer], Result):
     """{name: answer}, in the order of the model's outputs.
 
     Args:
@@ -61,6 +65,23 @@ class Answers(dict[str, Answer]):
     def __init__(self, found: Mapping[str, Answer], solver: Solver) -> None:
         super().__init__(found)
         self._solver = solver
+
+    @property
+    def derivation(self) -> Document:
+        """Each answer by its name: exact, as a number, by which way."""
+        rows = tuple(Found(name, answer) for name, answer in self.items())
+        notes = () if self else ("the model asks nothing: it has no [outputs]",)
+        return plain_document(self._solver.model, self.entries, Listing(rows), notes=notes)
+
+    @property
+    def failed(self) -> str:
+        """Which outputs have no answer, in words; "" as it must be."""
+        unanswered = [name for name, answer in self.items() if not answer.answered]
+        return f"not answered: {', '.join(unanswered)}" if unanswered else ""
+
+    def entries(self) -> dict[str, Any]:
+        """What `solve --json` carries."""
+        return {"name": self._solver.model.name, "outputs": dict(self)}
 
     def certify(self) -> Certificate:
         """Every number against the motion in numbers, every text against its number; the equations first."""
