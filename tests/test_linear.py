@@ -11,7 +11,7 @@ from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.solve.linear import sparse_solution
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots, sparse_solution
 
 
 def system(rows, right, unknowns, **how):
@@ -22,7 +22,7 @@ def system(rows, right, unknowns, **how):
         state = {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))}
         return evaluate(scalars, state, fifty_digits())
 
-    return sparse_solution(rows, right, unknowns, values, **how)
+    return sparse_solution(LinearSystem(rows, right, unknowns, values), Pivots(**how))
 
 
 def rank(a) -> int:
@@ -33,10 +33,10 @@ def test_a_force_along_a_direction_is_found_without_dividing_by_its_components()
     """-sin T = b1, cos T = b2: T = -sin b1 + cos b2, also where sin = 0."""
     g = Graph()
     theta, b = g.symbol("theta"), [g.symbol("b1"), g.symbol("b2")]
-    solution = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, simple=rank, sure=1)
+    solution = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, rank=rank, sure=1)
     assert solution.determined(0) and len(solution.left) == 1
     assert equal_at_random_states([(solution.constants[0], -sin(theta) * b[0] + cos(theta) * b[1])]).equal
-    divided = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, simple=rank)
+    divided = system([{0: -sin(theta)}, {0: cos(theta)}], b, 1, rank=rank)
     assert not equal_at_random_states([(divided.constants[0], solution.constants[0])]).equal  # only for consistent b
 
 
@@ -46,7 +46,7 @@ def test_what_is_indeterminate_stays_so(sure):
     g = Graph()
     theta, b, c = g.symbol("theta"), g.symbol("b"), g.symbol("c")
     rows = [{0: cos(theta), 1: sin(theta)}, {2: sin(theta)}]
-    solution = system(rows, [b, c], 3, simple=rank, sure=sure)
+    solution = system(rows, [b, c], 3, rank=rank, sure=sure)
     assert len(solution.free) == 1 and solution.determined(2) and not solution.determined(0)
     assert equal_at_random_states([(solution.constants[2], c / sin(theta))]).equal
 
@@ -56,7 +56,7 @@ def test_numbers_go_before_normal_equations():
     g = Graph()
     theta, b = g.symbol("theta"), [g.symbol(name) for name in ("b0", "b1", "b2")]
     s, c = sin(theta), cos(theta)
-    solution = system([{0: 1, 1: c}, {1: s}, {1: c, 0: 1}], [b[0], b[1], b[0]], 2, simple=rank, sure=1)
+    solution = system([{0: 1, 1: c}, {1: s}, {1: c, 0: 1}], [b[0], b[1], b[0]], 2, rank=rank, sure=1)
     assert solution.determined(0) and solution.determined(1)
     assert equal_at_random_states([(solution.constants[0] + c * solution.constants[1], b[0])]).equal
 
@@ -67,5 +67,5 @@ def test_a_normal_reaction_that_rubs_is_tested_by_its_push_alone():
     theta, mu, b = g.symbol("theta"), g.symbol("mu"), [g.symbol("b1"), g.symbol("b2")]
     s, c = sin(theta), cos(theta)
     rows = [{0: -s - mu * c}, {0: c - mu * s}]
-    solution = system(rows, b, 1, simple=rank, sure=1, tests=[{0: -s}, {0: c}])
+    solution = system(rows, b, 1, rank=rank, sure=1, tests=[{0: -s}, {0: c}])
     assert equal_at_random_states([(solution.constants[0], -s * b[0] + c * b[1])]).equal

@@ -10,6 +10,7 @@ from eomgen.symbolic.expression.functions import sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots
 from eomgen.symbolic.solve.scaling import monomial, scaled_solution, without_common_factors
 
 
@@ -55,7 +56,7 @@ def test_the_solution_is_that_of_the_equations_as_given():
     a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
     L, K = sqrt(4 * a * a + h * h), sqrt(a * a + h * h)
     rows, right = [{0: 2 * a / L, 1: -a / K}, {0: h / L, 1: h / K}], [0, -P]
-    x = scaled_solution(rows, right, 2, values, sure_symbols={a, h}).constants
+    x = scaled_solution(LinearSystem(rows, right, 2, values), Pivots(factors={a, h})).constants
     pairs = [(sum((c * x[j] for j, c in row.items()), start=0), b) for row, b in zip(rows, right, strict=True)]
     assert equal_at_random_states(pairs).equal
 
@@ -64,7 +65,7 @@ def test_shares_of_free_unknowns_are_those_of_the_unscaled_ones():
     """a x0 + h x1 = P: x0 = P/a - (h/a) x1."""
     g = Graph()
     a, h, P = g.symbol("a"), g.symbol("h"), g.symbol("P")
-    solution = scaled_solution([{0: a, 1: h}], [P], 2, values, sure_symbols={a, h})
+    solution = scaled_solution(LinearSystem([{0: a, 1: h}], [P], 2, values), Pivots(factors={a, h}))
     (free,) = solution.free
     j = 1 - free
     total = (a, h)[j] * (solution.constants[j] - solution.shares[j][free] * P) + (a, h)[free] * P

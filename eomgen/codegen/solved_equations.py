@@ -18,7 +18,8 @@ from eomgen.mechanics.reactions.accelerations_at_start import FEW, by_independen
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.solve import cramer, linear
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 
 
 def accelerations_and_multipliers(system: System, assembly: Assembly) -> dict[Node, Scalar]:
@@ -81,6 +82,6 @@ def _multipliers(system: System, assembly: Assembly, a: Mapping[Node, Scalar]) -
     rows = [{k: assembly.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
     right = [inner(assembly.M[i], list(a.values())) - assembly.forcing[i] for i in range(n)]
     entries = [x for row in rows for x in row.values()]
-    solution = linear.sparse_solution(rows, right, len(kept), values_at_a_state(system, entries))
+    solution = general_solution(LinearSystem(rows, right, len(kept), values_at_a_state(system, entries)))
     found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
     return {x: found.get(x, 0) for x in system.symbols.lam}

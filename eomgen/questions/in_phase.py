@@ -44,7 +44,7 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve import linear
+from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 
@@ -246,7 +246,7 @@ class PhaseEquations:
             entries, needed = (readable_all(x, Work.ANSWER, self.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
-        solution = linear.sparse_solution(rows, needed, len(right), values_at_a_state(self.system, entries))
+        solution = general_solution(LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)))
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # what holds one is no answer
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}

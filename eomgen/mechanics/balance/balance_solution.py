@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
-from eomgen.symbolic.solve.scaling import scaled_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 TRIES = 20
 Combination = dict[int, Scalar]
@@ -37,7 +37,7 @@ def solution_of_balance(
 
     Args:
         at: what stands in place of coordinates, speeds, accelerations and t; {}: as functions of them.
-        sure: pivots that may vanish at some state are only taken from so many kinds on (see `linear.sparse_solution`).
+        sure: pivots that may vanish at some state are only taken from so many kinds on (see `Pivots`).
         work: products of terms by which an entry is made readable.
     """
     coefficients, needed = with_unknowns(balance)
@@ -63,16 +63,9 @@ def solution_of_balance(
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
-    return scaled_solution(
-        rows,
-        needed,
-        len(balance.names),
-        values,
-        simple=simple,
-        last=last,
-        sure=sure,
-        tests=pushes,
-        sure_symbols=parameters,
+    return general_solution(
+        LinearSystem(rows, needed, len(balance.names), values),
+        Pivots(rank=simple, last=last, sure=sure, tests=pushes, factors=parameters),
     )
 
 

@@ -27,8 +27,8 @@ from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.solve import cramer, linear
 from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
 
 
 @dataclass(frozen=True)
@@ -247,10 +247,6 @@ def _multiplier(system: System, component: Component, name: str, kept: Sequence[
 
 def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) -> list[Scalar]:
     """The unknowns: by determinants where they are few, else by elimination."""
-    if len(right) <= cramer.LARGEST_BLOCK:
-        return [x for (x,) in cramer.solution_by_minors(rows, [(x,) for x in right], vanishes=holds_identically)[0]]
     entries = [x for row in rows for x in row.values()]
-    solution = linear.sparse_solution(rows, right, len(right), values_at_a_state(system, entries))
-    if solution.free:
-        raise DerivationError("the equations with friction have no single solution")
-    return [solution.constants[i] for i in range(len(right))]
+    equations = LinearSystem(rows, right, len(right), values_at_a_state(system, entries))
+    return list(unique_solution(equations, vanishes=holds_identically))

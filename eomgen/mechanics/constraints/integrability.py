@@ -34,7 +34,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve import linear
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 LONGEST = 400  # characters of a form that is integrated in closed form
 
@@ -174,7 +174,7 @@ def _fields(forms: _Forms) -> list[DifferentialForm]:
     """Fields that span what all rows allow, as functions of y."""
     n = len(forms.y)
     rows = [{k: x for k, x in enumerate(w) if not is_zero(x)} for w in (*forms.held, *(w for _, w in forms.moving))]
-    solution = linear.sparse_solution(rows, [0] * len(rows), n, forms.values, last=(n - 1,))
+    solution = general_solution(LinearSystem(rows, [0] * len(rows), n, forms.values), Pivots(last=(n - 1,)))
     return [
         tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
         for f in solution.free

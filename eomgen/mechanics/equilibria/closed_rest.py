@@ -23,11 +23,11 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, digits_at
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import sparse_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
@@ -133,12 +133,10 @@ class ClosedForms:
             if not all(map(_is_nothing, phi)):
                 return None
             entries = readable_all([x for row in rows for x in row], Work.VALUE) if rows and statics.lam else ()
-            solution = sparse_solution(
-                [{j: entries[len(statics.lam) * k + j] for j in range(len(statics.lam))} for k in range(len(rows))],
-                readable_all(right, Work.VALUE),
-                len(statics.lam),
-                lambda scalars: evaluate(scalars, self.values, fifty_digits()),
-            )
+            n = len(statics.lam)
+            lines = [{j: entries[n * k + j] for j in range(n)} for k in range(len(rows))]
+            values = digits_at(self.values)
+            solution = general_solution(LinearSystem(lines, readable_all(right, Work.VALUE), n, values))
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
         if not all(map(_is_nothing, solution.left)):

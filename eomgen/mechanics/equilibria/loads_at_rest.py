@@ -17,9 +17,9 @@ from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters, 
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import digits_at
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import Solution, sparse_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Solution, general_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 
@@ -84,8 +84,8 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
     flat = iter(readable_all(substituted([x for row in slopes for x in row], place), Work.VALUE))
     rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
     values = values_of_parameters(statics.system.scope, Random(3))
-    return sparse_solution(
-        rows, readable_all(right, Work.VALUE), len(sought), lambda scalars: evaluate(scalars, values, fifty_digits())
+    return general_solution(
+        LinearSystem(rows, readable_all(right, Work.VALUE), len(sought), digits_at(values)),
     )
 
 

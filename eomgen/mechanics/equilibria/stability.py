@@ -29,10 +29,11 @@ from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.dense import balanced, rank, without_noise
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE, RANK_NEARBY, ROUNDING, TINIEST
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve import cramer, linear
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 MOST_EXACT = 6  # freedoms of a K that is written exactly
@@ -216,12 +217,8 @@ class _Place:
         Z: list[list[Scalar]] = [[int(k == a) for a in along] for k in range(n)]
         values = self.values or values_of_parameters(self.statics.system.scope, Random(3))
         for column, a in enumerate(along):
-            solution = linear.sparse_solution(
-                [{j: row[k] for j, k in enumerate(others)} for row in J],
-                [-row[a] for row in J],
-                len(others),
-                lambda scalars: evaluate(scalars, values, fifty_digits()),
-            )
+            rows = [{j: row[k] for j, k in enumerate(others)} for row in J]
+            solution = general_solution(LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)))
             if len(solution.constants) < len(others):
                 raise NoValue("the ties do not determine the other coordinates there")
             for j, k in enumerate(others):

@@ -15,9 +15,9 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.symbols import Symbols
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import digits_at
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve import linear
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Solution, general_solution
 
 MOST_SPEEDS = 12  # of a system whose speeds are sought from its integrals
 
@@ -82,13 +82,13 @@ def relations_of(
 
 def _solved(
     system: System, rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int
-) -> linear.Solution | None:
+) -> Solution | None:
     """The speeds by the rows, with pivots that do not vanish at a generic state of the motion."""
     try:
         state = generic_state(system.ties)
     except EomgenError:
         return None
-    return linear.sparse_solution(rows, right, unknowns, lambda entries: evaluate(entries, state, fifty_digits()))
+    return general_solution(LinearSystem(rows, right, unknowns, digits_at(state)))
 
 
 def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:

@@ -21,10 +21,10 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import independent_rows
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import sparse_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 UNSAID = ""  # what nobody wrote, as the norm of a quaternion
 
@@ -186,12 +186,9 @@ def solution_of(
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
-    found = sparse_solution(
-        rows,
-        [line.right for line in lines],
-        len(unknowns),
-        lambda scalars: evaluate(scalars, values, fifty_digits()),
-        tolerance=ELIMINATED_AT_50 if near is None else RANK,
+    found = general_solution(
+        LinearSystem(rows, [line.right for line in lines], len(unknowns), digits_at(values)),
+        Pivots(tolerance=ELIMINATED_AT_50 if near is None else RANK),
     )
     result = {}
     for j, constant in found.constants.items():

@@ -32,10 +32,10 @@ from eomgen.symbolic.expression.derivative import derivative, substituted, tange
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import sparse_rank
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
-from eomgen.symbolic.solve.scaling import scaled_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 UnknownColumn = tuple[int, int]
 """(index of the body, direction in DIRECTIONS): one velocity."""
@@ -209,12 +209,9 @@ class Structure:
         graph = self.system.scope.graph
         parameters = self._parameters(shaken=not self.is_special)
         deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
-
-        def values(scalars: Sequence[Scalar]) -> list[Any]:
-            return evaluate(scalars, parameters, fifty_digits())
-
         sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
-        solution = scaled_solution(self.rows, deltas, len(self.columns), values, sure_symbols=sure)
+        equations = LinearSystem(self.rows, deltas, len(self.columns), digits_at(parameters))
+        solution = general_solution(equations, Pivots(factors=sure))
         return _Solved(solution, deltas, len(self.columns), parameters)
 
     def _parameters(self, *, shaken: bool) -> State:

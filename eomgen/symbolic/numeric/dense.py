@@ -105,19 +105,14 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
 
 def follows_in_digits(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
     """Whether a row of numbers of 50 digits is a combination of others (`modular.follows` in the reals)."""
-    left, waiting = list(row), [list(each) for each in rows]
-    size = max(map(abs, left), default=0)
-    while waiting:
-        pivot = max(waiting, key=lambda line: max(map(abs, line)))
-        waiting.remove(pivot)
-        k = max(range(len(pivot)), key=lambda j: abs(pivot[j]))
-        if abs(pivot[k]) < ZERO_AT_50:
-            break
-        for other in (*waiting, left):
-            factor = other[k] / pivot[k]
-            other[:] = [x - factor * y for x, y in zip(other, pivot, strict=True)]
-        size = max(size, *map(abs, left))
-    return max(map(abs, left), default=0) <= ZERO_AT_50 * size
+    others = [_of_size_one(each) for each in rows]
+    return sparse_rank([*others, _of_size_one(row)]) == sparse_rank(others)
+
+
+def _of_size_one(row: Sequence[Any]) -> dict[int, Any]:
+    """The row over its largest entry; {} of one that is rounding."""
+    largest = max(map(abs, row), default=0)
+    return {k: x / largest for k, x in enumerate(row)} if largest > ZERO_AT_50 else {}
 
 
 def scaled_condition(M: np.ndarray) -> float:

@@ -280,3 +280,8 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
     failed = (lambda x: mp.nan) if partial else _no_value
     return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed)
+
+
+def digits_at(state: Mapping[Node, Any]) -> Callable[[Sequence[Scalar]], list[Any]]:
+    """scalars -> their values at the state, with 50 digits."""
+    return lambda scalars: evaluate(scalars, state, fifty_digits())

@@ -11,7 +11,7 @@ which for equations without contradiction have the same solution, and with W = A
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,77 +58,85 @@ class _Line:
     test: SparseRow
 
 
-def sparse_solution(
-    rows: Sequence[Mapping[int, Scalar]],
-    right: Sequence[Scalar],
-    unknowns: int,
-    values: ValuesAt,
-    *,
-    simple: Callable[[Scalar], int] | None = None,
-    tolerance: float = ELIMINATED_AT_50,
-    last: Sequence[int] = (),
-    sure: int | None = None,
-    tests: Sequence[Mapping[int, Scalar]] = (),
-) -> Solution:
-    """The solution of sparse linear equations, sum over j of rows[i][j] x_j = right[i].
-
-    Pivots are plain numbers where there are any, of those the ones that fill in least (Markowitz).
+@dataclass(frozen=True)
+class LinearSystem:
+    """sum over j of rows[i][j] x_j = right[i]
 
     Args:
         unknowns: how many x there are.
         values: the values of scalars at one generic state, in an arithmetic of many digits.
-        simple: a rank of scalars as pivots, 0 the best (None: numbers 0, all else 1).
+    """
+
+    rows: Sequence[Mapping[int, Scalar]]
+    right: Sequence[Scalar]
+    unknowns: int
+    values: ValuesAt
+
+
+def _number_first(a: Scalar) -> int:
+    return 1 if type(a) is Node else 0
+
+
+@dataclass(frozen=True)
+class Pivots:
+    """What may be divided by, and in which order.
+
+    Args:
+        rank: of a scalar as a pivot, 0 the best: numbers before all else.
         tolerance: of shadows against the largest of their row, below which an entry is zero.
         last: unknowns that are taken as pivots only where there is no other.
         sure: the largest rank of a pivot that vanishes nowhere; the others wait for the normal equations (None: all
             are taken as they come).
         tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
+        factors: symbols that may stand in common factors of rows and columns, which are taken out first: parameters for
+            which the equations are not singular.
     """
+
+    rank: Callable[[Scalar], int] = _number_first
+    tolerance: float = ELIMINATED_AT_50
+    last: Collection[int] = ()
+    sure: int | None = None
+    tests: Sequence[Mapping[int, Scalar]] = ()
+    factors: Collection[Node] = ()
+
+
+def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
+    """By elimination: pivots are plain numbers where there are any, those first that fill in least (Markowitz)."""
+    rank, late, sure = pivots.rank, frozenset(pivots.last), pivots.sure
 
     def tested(line: _Line, j: int) -> bool:
         """Whether W has the entry too: friction alone does not tell the push that it comes from."""
         return j not in late or not is_zero(line.test.get(j, 0))
 
-    lines = _lines(rows, right, values, tolerance, tests or [{}] * len(rows))
-    simple, late = simple or _number_first, frozenset(last)
+    lines = _lines(system, pivots)
     order: list[tuple[int, _Line]] = []
     if sure is not None:
         _eliminate(
             lines,
             order,
-            lambda line, j, x: (simple(x) if tested(line, j) else sure + 1, j in late),
-            tolerance,
+            lambda line, j, x: (rank(x) if tested(line, j) else sure + 1, j in late),
+            pivots.tolerance,
             worst=(sure, True),
         )
-        _normal(lines, order, values)
-    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), simple(x)), tolerance)
-    free = tuple(j for j in range(unknowns) if j not in {pivot for pivot, _ in order})
-    constants, shares = _substituted(order, free, tolerance)
+        _normal(lines, order, system.values)
+    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots.tolerance)
+    free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
+    constants, shares = _substituted(order, free, pivots.tolerance)
     return Solution(constants, shares, free, tuple(line.right for line in lines))
 
 
-def _lines(
-    rows: Sequence[Mapping[int, Scalar]],
-    right: Sequence[Scalar],
-    values: ValuesAt,
-    tolerance: float,
-    tests: Sequence[Mapping[int, Scalar]],
-) -> list[_Line]:
-    flat = [entry for row in rows for entry in row.values()]
-    found = values(flat)
+def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
+    tolerance, tests = pivots.tolerance, pivots.tests or [{}] * len(system.rows)
+    found = system.values([entry for row in system.rows for entry in row.values()])
     shadows, floor = iter(found), tolerance**2 * max(map(abs, found), default=0)  # a row may be rounding alone
     lines = []
-    for row, b, test in zip(rows, right, tests, strict=True):
+    for row, b, test in zip(system.rows, system.right, tests, strict=True):
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
         kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > max(tolerance * largest, floor)}
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
         lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines
-
-
-def _number_first(a: Scalar) -> int:
-    return 1 if type(a) is Node else 0
 
 
 def _eliminate(

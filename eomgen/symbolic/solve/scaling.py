@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.solve.linear import Solution, ValuesAt
-from eomgen.symbolic.solve.linear import sparse_solution as solved_as_given
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, sparse_solution
 
 SWEEPS = 3  # over rows and columns
 
@@ -55,24 +53,11 @@ class Scaled:
     columns: dict[int, Scalar]
 
 
-def scaled_solution(
-    rows: Sequence[Mapping[int, Scalar]],
-    right: Sequence[Scalar],
-    unknowns: int,
-    values: ValuesAt,
-    *,
-    sure_symbols: Collection[Node],
-    tests: Sequence[Mapping[int, Scalar]] = (),
-    **how: Any,
-) -> Solution:
-    """`linear.sparse_solution` of equations that may have common factors in their rows and columns.
-
-    Args:
-        sure_symbols: that may stand in what is divided by: parameters, for which the equations are not singular.
-        how: what else `linear.sparse_solution` takes.
-    """
-    found = without_common_factors(rows, right, frozenset(sure_symbols), tests)
-    solution = solved_as_given(found.rows, found.right, unknowns, values, tests=found.tests, **how)
+def scaled_solution(system: LinearSystem, pivots: Pivots) -> Solution:
+    """By elimination, once the common factors of rows and columns in `pivots.factors` were taken out."""
+    found = without_common_factors(system.rows, system.right, frozenset(pivots.factors), pivots.tests)
+    scaled = replace(system, rows=found.rows, right=found.right)
+    solution = sparse_solution(scaled, replace(pivots, tests=found.tests))
     s = found.columns
     constants = {j: over(x, s.get(j, 1)) for j, x in solution.constants.items()}
     shares = {j: {f: over(x * s.get(f, 1), s.get(j, 1)) for f, x in own.items()} for j, own in solution.shares.items()}
