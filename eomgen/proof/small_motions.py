@@ -225,11 +225,24 @@ class Differences:
 
     def energy_along(self, step: Mapping[Node, Any]) -> tuple[Any, DigitColumn, DigitColumn]:
         """(second difference of T, the rates of coordinates and the speeds along a step of the speeds)."""
-        T, now = self.small.first.assembly.T, self.origin
-        states = [self.nearby.state(self._moved(step, sign)) for sign in (1, -1)]
-        here, late, early = (self.nearby.at((T,), state)[0] for state in (now.state, *states))
-        one = self.along(step, 1)
-        return late + early - 2 * here, one.q1, one.u
+        T, e = self.small.first.assembly.T, self.small.numbers
+        ways = [self._rates(self.nearby.state(self._moved(step, sign))) for sign in (1, -1)]
+        here, late, early = (self.nearby.at((T,), way.state)[0] for way in (self.origin, *ways))
+        labels = self.moved if self.is_part else e.coordinates
+        q1 = [
+            (x - y) / 2 for x, y in zip(*([self._one(way, label)[1] for label in labels] for way in ways), strict=True)
+        ]
+        u = [
+            (x - y) / 2
+            for x, y in zip(*([self._speed(way, node)[0] for node in e.speeds] for way in ways), strict=True)
+        ]
+        return late + early - 2 * here, q1, u
+
+    def _rates(self, state: State) -> Going:
+        """The rates of the coordinates at a state; of accelerations nothing is asked."""
+        symbols, scope = self.nearby.system.symbols, self.nearby.system.scope
+        q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))
+        return Going(state, q1, dict.fromkeys(symbols.q, 0), dict.fromkeys(symbols.u, 0))
 
 
 def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:
