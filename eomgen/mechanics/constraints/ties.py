@@ -266,7 +266,7 @@ def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
     if known.keys() < symbols.parameters.keys():
         return
     for _ in range(3):
-        state = {p: digits.number(known[name] * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
+        state = {p: digits.number(Fraction(known[name]) * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
         starts = tuple(start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q)
         state |= {
             q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
