@@ -17,6 +17,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.model.parts import Model
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate
+from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.joined import joined, thinned, with_reactions
@@ -49,7 +50,8 @@ class RunProof:
         """The proof of the equations, then that of the run."""
         certificate = certify(self.equations.system, self.equations.graph)
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        return certificate + motion.run_checks(legs, motion.Promise(self.how.rtol, self.how.atol, found.steps))
+        promise = motion.Promise(self.how.rtol, self.how.atol, found.steps)
+        return certificate + motion.run_checks(legs, promise) + reaction_columns_hold(found, self.p)
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
         """The states that a phase went through, none of them after the run was cut."""
@@ -106,8 +108,7 @@ def run(
     runs = list(through(course, here, plan))
     found = with_reactions(_told(joined(course, runs), until), runs)
     found = replace(found, assembled="" if here.begun is None else here.begun.words)
-    ran = equations if pulled is None else pulling(equations, pulled)
-    return thinned(replace(found, proof=RunProof(ran, p, how)), samples)
+    return thinned(replace(found, proof=RunProof(equations, p, how)), samples)
 
 
 def _refuse_given(model: Model, start: Mapping[str, float]) -> None:

@@ -57,7 +57,7 @@ def test_a_run_that_loses_energy_is_seen():
         x[len(t) // 2 :, 1] *= 1 - 1e-5
         return x
 
-    assert failing(bent(run, 0, slower)) == {ENERGY, STEPS}
+    assert {ENERGY, STEPS} <= failing(bent(run, 0, slower))
 
 
 def test_a_single_wrong_row_between_the_steps_is_seen():
@@ -169,3 +169,17 @@ def test_an_integral_that_is_not_sure_judges_nothing(monkeypatch):
     run = eomgen.simulate(eomgen.loads(DAMPED), time=1, target="numpy")
     (energy,) = (check for check in run.certify().checks if check.name == ENERGY)
     assert energy.status == "unchecked" and "not sure" in energy.detail
+
+
+@pytest.mark.parametrize("name", ["four_bar", "sliding_ladder"])
+def test_a_column_of_reactions_that_is_wrong_is_seen(name):
+    """A thousandth too large, in one phase or another."""
+    run = run_of(name)
+    columns = {key: column * 1.001 for key, column in run.reactions.items()}
+    assert failing(replace(run, reactions=columns)) == {"columns of reactions are those of the balance"}
+
+
+def test_rows_that_pull_are_proven_with_their_power():
+    """Baumgarte's rows take power lam . (J u + sigma) where ties are open; the equations themselves hold as derived."""
+    certificate = run_of("bricard", stabilization="baumgarte").certify()
+    assert certificate.ok, str(certificate)

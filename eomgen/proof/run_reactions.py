@@ -1,0 +1,73 @@
+"""A run -> a check: its columns of reactions are those of the bodies' balance, solved in symbols, at states of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+
+from eomgen.codegen.reactions import determinate
+from eomgen.proof.at_a_state import NumericState, off_by
+from eomgen.proof.check import Check
+from eomgen.proof.emitted_code import WORK
+from eomgen.proof.tally import Tally
+from eomgen.simulation.result import Phase, Trajectory
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+MOST = 4  # phases that are looked at, each in its middle
+
+
+def reaction_columns_hold(run: Trajectory, p: np.ndarray) -> Iterator[Check]:
+    """A(q) rho = b solved by rank in doubles, against its solution in symbols with 50 digits; () where none reacts.
+
+    Both share A and b, which the balance of every body proves at other states.
+    """
+    tally = Tally("columns of reactions are those of the balance", "symbols with 50 digits")
+    work = 0
+    if not run.reactions:
+        return iter(())
+    for phase in run.phases[:: max(1, len(run.phases) // MOST)]:
+        first, last = phase.rows
+        if phase.model is None or phase.track is None or last - first < 3:
+            continue
+        formulas = determinate(phase.model.reactions)
+        work += len(order(tuple(formulas.values())))
+        if work > WORK:
+            tally.left[f"from {phase.start:.6g} s"] = "its formulas are too long to be evaluated with 50 digits"
+            continue
+        row = (first + last) // 2
+        tally.add(f"t = {run.t[row]:.6g} s", partial(_differs, run, phase, p, row, formulas))
+    return tally.checks()
+
+
+def _differs(run: Trajectory, phase: Phase, p: np.ndarray, row: int, formulas: Mapping[str, Scalar]) -> str:
+    """Which column is not that of the symbols in a row, or ""."""
+    state = _state(run, phase, p, row)
+    columns = {name: float(run.reactions[name][row]) for name in formulas if name in run.reactions}
+    known = {name: x for name, x in columns.items() if np.isfinite(x)}
+    if not known:
+        raise NoValue("no reaction has a single value there")
+    size = max(map(abs, known.values()))
+    for name, found in known.items():
+        right = state.number(formulas[name])
+        if abs(found - right) > COMPUTED * (1 + size):
+            wrong = off_by(found, right, [near.number(formulas[name]) for near in state.beside()])
+            if wrong:
+                return f"{name}: {wrong}"
+    return ""
+
+
+def _state(run: Trajectory, phase: Phase, p: np.ndarray, row: int) -> NumericState:
+    """The state of a row, in the coordinates and speeds of its phase."""
+    assert phase.track is not None
+    t, x = phase.track
+    system, assembly = phase.model.system, phase.model.assembly
+    symbols, here = assembly.symbols, x[int(np.argmin(np.abs(t - run.t[row])))]
+    parameters = {node: Fraction(float(value)) for node, value in zip(symbols.parameters.values(), p, strict=True)}
+    numbers = {node: float(value) for node, value in zip((*symbols.q, *symbols.u), here, strict=False)}
+    return NumericState(system, assembly, parameters, {symbols.t: float(run.t[row]), **numbers})
