@@ -122,7 +122,8 @@ class Newton:
         return np.asarray(np.linalg.lstsq(damped, np.append(right, np.zeros(n)), rcond=None)[0])
 
     def _factor(self, step: np.ndarray, last: np.ndarray | None, longest: float) -> float:
-        if last is not None and longest and np.linalg.norm(2 * step - last) <= self.double * np.linalg.norm(last):
+        halves = last is not None and np.linalg.norm(2 * step - last) <= self.double * np.linalg.norm(last)
+        if self.double and longest and halves:
             return 2.0
         return min(1.0, self.longest / longest) if longest else 1.0
 
