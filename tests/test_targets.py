@@ -373,6 +373,17 @@ def test_the_c_files_compile_without_a_warning_and_pass_their_own_test(name, tmp
 
 
 @needs_cc
+def test_a_remark_uses_no_argument(tmp_path):
+    """What a comment names is not read: (void)t stands there all the same, and nothing warns."""
+    program = right_hand_side(pendulum())
+    remarks = {"theta": "angle at t, from p and c, no inputs"}
+    told = Description("Pendulum", "", remarks, vectors(program))
+    texts = texts_of("pendulum", program, told, targets=["c"])
+    assert "(void)t;" in texts["pendulum_rhs.c"]
+    assert self_test(write_files(texts, tmp_path)[0]).returncode == 0
+
+
+@needs_cc
 def test_the_self_test_notices_a_wrong_sign(tmp_path):
     """The sign of one product in the file turned: the self-test returns 1 and names the entry."""
     path = written(tmp_path, "c")[0]

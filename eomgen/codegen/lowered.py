@@ -219,7 +219,11 @@ class Language:
             out=out,
             size=size,
         )
-        text, names = "\n".join(body), [*(name for name, _ in function.arguments), *([out] if out else [])]
+        said = self.remark.partition("{text}")[0]
+        text, names = (
+            "\n".join(line.partition(said)[0] for line in body),
+            [*(name for name, _ in function.arguments), *([out] if out else [])],
+        )
         spare = [name for name in names if self.unused and not re.search(rf"\b{name}\b", text)]
         inner = [*map(lambda name: self.unused.format(name=name), spare), *body]
         about = [self._remark(function.about)] if function.about else []
