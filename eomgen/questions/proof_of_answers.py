@@ -303,7 +303,7 @@ def _run(motion: MotionFromStart, time: float, samples: int | None = None) -> Tr
         atol=FINE_RUN,
         samples=samples,
         projection=projection_of(system, p, "numpy"),
-        nearness=nearness_of(system, assembly, p),
+        nearness=nearness_of(system, assembly, p, system),
         most_steps=STEPS,
     )
     if not run.ok:

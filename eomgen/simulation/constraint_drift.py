@@ -92,9 +92,14 @@ class Projection:
         return not self._gap(t, x, slice(None)) <= max(allowed, _rounding(x))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
-        """(the nearest state in which the ties hold, by how much they are open there all the same)."""
+        """(the nearest state in which the ties hold, by how much they are open there all the same).
+
+        Args:
+            allowed: how far they may be open; 0: as little as Newton's method can do, as it takes near a singular
+                position, where what is left is divided by what vanishes there.
+        """
         found = on_spheres(x, self.spheres)
-        enough = max(FAR * allowed, _rounding(x))
+        enough = max(FAR * allowed, _rounding(x)) if allowed > 0 else 0.0
         places, speeds = slice(0, self.coordinates), slice(self.coordinates, self.size)
         if self.positions is not None:
             found = self._improved(self.positions, t, found, places, slice(0, self.placed), enough)

@@ -32,11 +32,13 @@ class ConstraintRank:
         rows: (t n, x n x states) -> J, n x (k nu).
         ties: the tie of each row, k.
         rank: how many rows are independent at almost every state.
+        dependent: ties, and what dependent coordinates they determine, in words.
     """
 
     rows: Callable[[np.ndarray, np.ndarray], np.ndarray]
     ties: tuple[str, ...]
     rank: int
+    dependent: tuple[tuple[tuple[str, ...], str], ...] = ()
 
     def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The singular value of J that vanishes where the rank falls, each row against its greatest length, n x 1."""
@@ -48,6 +50,9 @@ class ConstraintRank:
         worst = int(np.argmin(np.linalg.svd(J, compute_uv=False)[:, self.rank - 1]))
         shares = np.abs(np.linalg.svd(J[worst])[0][:, self.rank - 1])
         names = dict.fromkeys(tie for tie, share in zip(self.ties, shares, strict=True) if share > SHARE)
+        for ties, words in self.dependent:
+            if names.keys() <= set(ties):
+                return words
         listed = ", ".join(f"'{name}'" for name in names)
         return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
 
@@ -213,7 +218,7 @@ class Undetermined:
     place: str = PLACE
 
 
-def undetermined_of(system: System, assembly: Assembly, p: np.ndarray) -> tuple[Undetermined, ...]:
+def undetermined_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> tuple[Undetermined, ...]:
     """Rates of dependent coordinates, declared speeds, angles that lock, rows that depend on one another."""
 
     def of(parts: Sequence[Any], place: str) -> list[Undetermined]:
@@ -224,23 +229,25 @@ def undetermined_of(system: System, assembly: Assembly, p: np.ndarray) -> tuple[
     found = of(singular_blocks(system.elimination, system.scope), PLACE)
     found += of(system.declared, "declare other speeds")
     found += of(locks_of(system.motion), "gimbal lock: choose another `orientation`, or a quaternion")
-    rows = independence_of(system, assembly, p)
+    rows = independence_of(system, assembly, p, declared)
     return (*found, *([] if rows is None else [Undetermined(rows, lambda t, x: [rows.words(t, x)])]))
 
 
-def nearness_of(system: System, assembly: Assembly, p: np.ndarray) -> Nearness | None:
+def nearness_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> Nearness | None:
     """How near a motion is to positions in which the ties do not determine it; None without ties."""
     blocks = singular_blocks(system.elimination, system.scope)
     determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
-    rows = independence_of(system, assembly, p)
+    rows = independence_of(system, assembly, p, declared)
     what = tuple(map(str, blocks))
     return None if determinants is None and rows is None else Nearness(determinants, rows, what)
 
 
-def independence_of(system: System, assembly: Assembly, p: np.ndarray) -> ConstraintRank | None:
+def independence_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> ConstraintRank | None:
     """How independent the rows are that close by multipliers; None without such."""
     rank = rank_of_ties(system.ties)
     if not rank:
         return None
     J = measure(system, tuple(x for row in assembly.J for x in row), p)
-    return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank)
+    dependent = () if declared.elimination is None else declared.elimination.blocks
+    known = tuple((block.ties, str(block)) for block in dependent)
+    return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank, known)

@@ -164,7 +164,7 @@ class PhaseModel:
 
     @cached_property
     def _nearness(self) -> Nearness | None:
-        found = nearness_of(self.system, self.assembly, self.p)
+        found = nearness_of(self.system, self.assembly, self.p, self.declared)
         if found is None or not self.loose:
             return found
         (determinants, rows), inner = (found.determinants, found.rows), self.inner
@@ -177,7 +177,7 @@ class PhaseModel:
     @cached_property
     def undetermined(self) -> tuple[Undetermined, ...]:
         """What of the motion is not determined at singular positions."""
-        return undetermined_of(self.system, self.assembly, self.p)
+        return undetermined_of(self.system, self.assembly, self.p, self.declared)
 
     @cached_property
     def slope(self) -> Slope | None:

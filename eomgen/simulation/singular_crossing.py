@@ -239,7 +239,12 @@ def _before(flow: Flow, t: float, x: np.ndarray, window: float, many: int) -> tu
     with np.errstate(all="ignore"):
         run = solve_ivp(flow.f, (t, t - window), x, method="DOP853", rtol=FINEST_RUN, atol=FINEST_RUN, t_eval=nodes)
     good = run.success and run.y.shape[1] == many and np.all(np.isfinite(run.y))
-    return nodes, run.y.T if good else None
+    if not good:
+        return nodes, None
+    states = run.y.T
+    if flow.projection is not None:
+        states = np.array([flow.projection.closed(float(s), x, 0.0)[0] for s, x in zip(nodes, states, strict=True)])
+    return nodes, states
 
 
 # -- all of it ---------------------------------------------------------------------------------------

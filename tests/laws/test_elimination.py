@@ -366,12 +366,12 @@ def by_piston(x: str) -> eomgen.Model:
 def test_a_flywheel_carries_a_slider_crank_across_its_dead_centres():
     """Over x or over theta it is one motion: theta' = x'/(dx/dtheta)."""
     run = eomgen.simulate(by_piston("{ start = 1.1577728, speed = -3 }"), time=2, target="numpy")
-    assert run.ok and len(run.passages) == 6
+    assert run.ok and not run.passages
     first = {q: run[q][0] for q in ("theta", "phi")}
     rate = 3 * np.cos(first["phi"]) / (0.4 * np.sin(first["theta"] - first["phi"]))
     start = {"theta": first["theta"], "theta'": rate}
     other = eomgen.simulate(eomgen.load(MODELS / "slider_crank.toml"), time=2, target="numpy", start=start)
-    assert run["theta"] == pytest.approx(other["theta"], abs=1e-5)
+    assert run["theta"] == pytest.approx(other["theta"], abs=1e-7)
 
 
 def test_a_run_that_cannot_pass_a_dead_centre_ends_with_time_and_tie():
