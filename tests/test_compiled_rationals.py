@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fractions
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -63,3 +64,15 @@ def test_sympy_takes_our_rationals_as_exact_numbers():
     """x/3 with sympy's x holds the rational 1/3, not a float."""
     form = sympy.Symbol("x") * Fraction(1, 3) + Fraction(1, 7)
     assert not form.atoms(sympy.Float) and form.atoms(sympy.Rational) == {sympy.Rational(1, 3), sympy.Rational(1, 7)}
+
+
+def test_one_module_chooses_the_rationals():
+    """Every other module takes its Fraction from there: two classes side by side would be two answers to `is exact`."""
+    package = MODELS.parent / "eomgen"
+    wrong = [
+        str(path.relative_to(package))
+        for path in package.rglob("*.py")
+        if path.name != "rational.py"
+        and re.search(r"^\s*(from|import) (fractions|quicktions)\b", path.read_text(), re.M)
+    ]
+    assert wrong == []

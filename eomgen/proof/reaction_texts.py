@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from functools import partial
 
 from eomgen.codegen.reactions import determinate
@@ -16,6 +15,7 @@ from eomgen.proof.check import Check
 from eomgen.proof.states import TrialState
 from eomgen.proof.tally import Tally
 from eomgen.proof.trials import Trials
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
