@@ -16,7 +16,7 @@ from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.mechanics.instant.construction import FoundPoint, PointPair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -133,19 +133,11 @@ class KinematicState:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it is where it is very long."""
-        known = self._written
-        if x not in known:
-            known[x] = x if text_size(x) > LARGE else simplest(x, Work.ANSWER, self._positive)
-        return known[x]
+        return self._legibly(x)
 
     @cached_property
-    def _written(self) -> dict[Scalar, Scalar]:
-        """What was made readable once."""
-        return {}
-
-    @cached_property
-    def _positive(self) -> frozenset[Node]:
-        return positive_parameters(self.system.scope)
+    def _legibly(self) -> Legibly:
+        return Legibly(Work.ANSWER, positive_parameters(self.system.scope), LARGE)
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""

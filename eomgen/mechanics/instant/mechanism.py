@@ -17,7 +17,7 @@ from eomgen.mechanics.fields.centers import Homogeneous, homogeneous_center
 from eomgen.mechanics.fields.field import field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, vector_of
@@ -118,8 +118,9 @@ class Mechanism:
         """Whether all are zero here."""
         return self.worth.vanish(scalars)
 
-    def _one(self, x: Scalar) -> Scalar:
-        return simplest(x, Work.ANSWER, positive_parameters(self.system.scope))
+    @cached_property
+    def _one(self) -> Legibly:
+        return Legibly(Work.ANSWER, positive_parameters(self.system.scope))
 
     def _simple(self, v: Vector) -> Vector:
         return vector_of(map(self._one, v))

@@ -17,7 +17,7 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, rotation_center
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
-from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.exact.normal_form import Legibly, readable_all
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -172,18 +172,14 @@ class VelocityPlan:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it."""
-        if type(x) is not Node:
-            return x
-        if x not in self._written:
-            self._written[x] = simplest(x, Work.VALUE, self._positive)
-        return self._written[x]
+        return self._legibly(x)
 
     def _simple(self, vector: Vector) -> Vector:
         return vector_of(map(self.simple, vector))
 
     @cached_property
-    def _written(self) -> dict[Node, Scalar]:
-        return {}
+    def _legibly(self) -> Legibly:
+        return Legibly(Work.VALUE, self._positive)
 
     @cached_property
     def _fields(self) -> dict[str, VelocityField]:

@@ -26,6 +26,7 @@ from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
 from eomgen.symbolic.print.text import text_size
 
 __all__ = [
+    "Legibly",
     "NormalForm",
     "TooLarge",
     "cancelled",
@@ -247,6 +248,31 @@ def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Sca
     found = simplest(x, limit, positive)
     size = text_size(found)
     return x if size > long and text_size(x) < size else found
+
+
+@dataclass(frozen=True)
+class Legibly:
+    """Scalars as a person writes them, each made so once.
+
+    Args:
+        work: products of terms for one of them.
+        positive: symbols that stand for positive numbers.
+        longest: characters of what is made readable; longer ones stay as they are (None: all are).
+    """
+
+    work: int
+    positive: Collection[Node] = ()
+    longest: int | None = None
+    _found: dict[Node, Scalar] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def __call__(self, x: Scalar) -> Scalar:
+        """x at its simplest."""
+        if type(x) is not Node:
+            return x
+        if x not in self._found:
+            stays = self.longest is not None and text_size(x) > self.longest
+            self._found[x] = x if stays else simplest(x, self.work, self.positive)
+        return self._found[x]
 
 
 def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
