@@ -126,8 +126,9 @@ class PassiveElements:
 
 def _power(motion: Motion, load: Load) -> Scalar:
     """F . v of a place, M . w of a body."""
+    power: Scalar = 0
     if isinstance(load, PointForce):
-        return dot(in_ground_axes(motion, load.force, load.axes), velocity_of(motion, load.place))
+        power = dot(in_ground_axes(motion, load.force, load.axes), velocity_of(motion, load.place))
     if isinstance(load, Couple):
-        return dot(in_body_axes(motion, load.body, load.couple, load.axes), motion.link(load.body).twist.w)
-    return 0
+        power = dot(in_body_axes(motion, load.body, load.couple, load.axes), motion.link(load.body).twist.w)
+    return power

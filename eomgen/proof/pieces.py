@@ -47,7 +47,7 @@ class Switch:
         places = self.places(state)
         if any(abs(value - end) <= COMPUTED * (1 + abs(end)) for end in places):
             return None
-        return sum(value > end for end in places)
+        return len([end for end in places if value > end])
 
     def targets(self, state: State) -> list[list[Any]]:
         """Of every piece some values of the quantity inside."""

@@ -69,8 +69,8 @@ class Trials:
         if not seen:
             return unchecked(name, NOWHERE, how)
         pieces = seen.pop("in a piece", 0)
-        where = [*seen, *([f"in {pieces} piece{'s' * (pieces > 1)}"] if pieces else [])]
-        return checked(name, "", f"{how}, {', '.join(where)}")
+        told = [*seen, *([f"in {pieces} piece{'s' * (pieces > 1)}"] if pieces else [])]
+        return checked(name, "", f"{how}, {', '.join(told)}")
 
     @cached_property
     def _solved(self) -> dict[int, tuple[State, State]]:

@@ -56,7 +56,7 @@ def _inverse(A: np.ndarray, *, regular: bool) -> np.ndarray:
         found = np.linalg.inv(scaled) if regular else np.linalg.pinv(scaled, rcond=LEAST_CHANGE)
     except np.linalg.LinAlgError as error:
         raise NoValue("the equations of motion are singular") from error
-    return columns[:, None] * found * rows
+    return np.asarray(columns[:, None] * found * rows)
 
 
 def _refined(wide: np.ndarray, n: int, right: np.ndarray, inverse: np.ndarray) -> list[Any]:
