@@ -51,4 +51,6 @@ from eomgen.report.linearize.result import linearize as linearize
 from eomgen.report.statics.result import Statics as Statics
 from eomgen.report.statics.result import statics as statics
 from eomgen.simulation.result import Trajectory as Trajectory
+from eomgen.verbs.reactions import FoundReactions as FoundReactions
+from eomgen.verbs.reactions import reactions as reactions
 from eomgen.version import __version__ as __version__

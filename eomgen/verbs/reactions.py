@@ -24,6 +24,7 @@ from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Output
+from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
 from eomgen.proof.at_a_state import NumericState
@@ -68,7 +69,7 @@ class FoundReactions(dict[str, Quantity]):
         return self._proof(self)
 
 
-def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> FoundReactions:
+def reactions(model: ModelOrPath, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> FoundReactions:
     """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
 
     Args:
@@ -78,6 +79,7 @@ def reactions(model: Model, *, at: str | None = None, from_rest: tuple[str, ...]
         UsageError: no equation, or no coordinate of that name.
         DerivationError: a body is held by nothing; a force acts at no place.
     """
+    model = model_at(model)
     held = bool(in_loads(model))
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
