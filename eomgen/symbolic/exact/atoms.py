@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from eomgen.symbolic.exact.terms import AngleSum, Key, Monomial, Terms
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
 
 RADIAN = -1  # the index of the angle of a plain number: sin(1)
-SortKey = tuple  # sorts monomials as they are written
+SortKey = tuple[Any, ...]  # sorts monomials as they are written
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Atoms:
 
     def place(self, monomial: Monomial) -> SortKey:
         """Accelerations before squares of rates before rates before the rest; then in the order of declaration."""
-        moving: tuple[list, list, list] = ([], [], [])
+        moving: tuple[list[Any], list[Any], list[Any]] = ([], [], [])
         for atom, e in monomial:
             moving[min(2, self._primes(atom))].append((atom, -e))
         still, rates, accelerations = moving

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import powers_in, reduced
@@ -38,7 +39,7 @@ def with_squares(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] 
     return _rewritten(x, limit, positive, _by_parameters)
 
 
-def _rewritten(x: Scalar, limit: int, positive: Collection[Node], write) -> Scalar:
+def _rewritten(x: Scalar, limit: int, positive: Collection[Node], write: Any) -> Scalar:
     if type(x) is not Node:
         return x
     try:
@@ -61,7 +62,7 @@ def _parted(expansion: Expansion, monomial: Monomial) -> tuple[Monomial, Monomia
 
 def _by_what_moves(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar:
     """sum of (sum of parameters) * (product of what moves)"""
-    groups: dict[tuple, Terms] = {}
+    groups: dict[tuple[Any, ...], Terms] = {}
     for c, monomial, factors in writer.written(terms):
         still, moving = _parted(expansion, monomial)
         accumulate(groups.setdefault((moving, factors), {}), (still, ()), c)

@@ -91,7 +91,8 @@ def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: i
     """
     rng, flat = Random(seed), [x for pairs in groups for pair in pairs for x in pair]
     _, flat = united(flat)
-    nodes, culprits, sure = order(flat), [None] * len(groups), True
+    nodes, sure = order(flat), True
+    culprits: list[int | None] = [None] * len(groups)
     ends = list(accumulate(2 * len(pairs) for pairs in groups))
     try:
         for _ in range(states):

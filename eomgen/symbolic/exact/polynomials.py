@@ -8,12 +8,12 @@ look at, but s^2 + m^2 s^2 + 2 m s c is s^2 (1 + m^2) + 2 m s c.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, Wave, terms_plus
+from eomgen.symbolic.exact.terms import AngleSum, Monomial, Terms, TooLarge, Wave, terms_plus
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 from eomgen.symbolic.expression.rational import Fraction
@@ -46,7 +46,7 @@ class Polynomials:
 
     def of(self, terms: Terms) -> Element:
         """The sum with s^2 = 1 - c^2 used."""
-        groups: dict[tuple, dict[Wave, Number]] = {}
+        groups: dict[Monomial, dict[Wave, Number]] = {}
         for (monomial, w), c in terms.items():
             groups.setdefault(monomial, {})[w] = c
         polynomial = {}
@@ -102,7 +102,9 @@ class Polynomials:
         """(place of the cosine among the generators, axis); the sine follows."""
         return ((len(self._atoms) + 2 * k, axis) for k, axis in enumerate(self._axes))
 
-    def _each(self, element: Element, i: int, change) -> Element:
+    def _each(
+        self, element: Element, i: int, change: Callable[[int, int], tuple[int, int, int, tuple[int, int]]]
+    ) -> Element:
         """Every c^m s^n as c^k s^l f^j; f = 1 - s^2 for (1, -1), c^2 + s^2 for (0, 1)."""
         cosine, sine = self.ring.gens[i : i + 2]
         total = self.ring.zero

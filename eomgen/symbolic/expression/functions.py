@@ -108,7 +108,7 @@ def combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any
     return tuple(total)
 
 
-def selected(a, bound, if_below, if_above):
+def selected(a: Any, bound: Any, if_below: Any, if_above: Any) -> Any:
     """if_below where a <= bound, else if_above: a piecewise law over any scalar."""
     for x in (a, bound):
         if type(x) is Node:

@@ -57,7 +57,7 @@ class Graph:
     """The owner of a set of expressions, each held once."""
 
     def __init__(self) -> None:
-        self._nodes: dict[tuple, Node] = {}
+        self._nodes: dict[tuple[Any, ...], Node] = {}
         self._listed: tuple[Node, ...] = ()
         self._adopted: dict[Node, Node] = {}
         self.pi = self.held("pi", ())
@@ -99,7 +99,7 @@ class Graph:
             self._listed = tuple(self._nodes.values())
         return self._listed
 
-    def held(self, op: str, args: tuple) -> Node:
+    def held(self, op: str, args: tuple[Any, ...]) -> Node:
         """The node of this operation, made where there is none yet; nothing folds."""
         key = (op, args)
         node = self._nodes.get(key)
@@ -452,7 +452,7 @@ def _node_at(graph: Graph, index: int) -> Node:
     return graph.nodes[index]
 
 
-def constant_again(op: str, args: tuple) -> Node:
+def constant_again(op: str, args: tuple[Any, ...]) -> Node:
     """A constant that comes from another process: in the one home of constants here."""
     return CONSTANTS.pi if op == "pi" else CONSTANTS.held(op, args)
 

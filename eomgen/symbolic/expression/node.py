@@ -34,43 +34,43 @@ class Node:
             raise TypeError(f"only a symbol has a name, not '{self.op}'")
         return self.args[0]
 
-    def __add__(self, other):
+    def __add__(self, other: Any) -> Any:
         return self.graph.add(self, other)
 
-    def __radd__(self, other):
+    def __radd__(self, other: Any) -> Any:
         return self.graph.add(other, self)
 
-    def __sub__(self, other):
+    def __sub__(self, other: Any) -> Any:
         return self.graph.add(self, self.graph.neg(other))
 
-    def __rsub__(self, other):
+    def __rsub__(self, other: Any) -> Any:
         return self.graph.add(other, self.graph.neg(self))
 
-    def __mul__(self, other):
+    def __mul__(self, other: Any) -> Any:
         return self.graph.mul(self, other)
 
-    def __rmul__(self, other):
+    def __rmul__(self, other: Any) -> Any:
         return self.graph.mul(other, self)
 
-    def __truediv__(self, other):
+    def __truediv__(self, other: Any) -> Any:
         return self.graph.div(self, other)
 
-    def __rtruediv__(self, other):
+    def __rtruediv__(self, other: Any) -> Any:
         return self.graph.div(other, self)
 
-    def __pow__(self, other):
+    def __pow__(self, other: Any) -> Any:
         return self.graph.pow(self, other)
 
-    def __rpow__(self, other):
+    def __rpow__(self, other: Any) -> Any:
         return self.graph.pow(other, self)
 
-    def __neg__(self):
+    def __neg__(self) -> Any:
         return self.graph.neg(self)
 
-    def __pos__(self):
+    def __pos__(self) -> Any:
         return self
 
-    def __abs__(self):
+    def __abs__(self) -> Any:
         return self.graph.call("abs", self)
 
     def __bool__(self) -> bool:

@@ -73,7 +73,7 @@ class _Balls:
             "sampled": self._sampled,
         }
         guarded = {op: self._guarded(function) for op, function in table.items()}
-        own = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
+        own: dict[str, Callable[..., Ball]] = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
         return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none)
 
     @property

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import inner, over
@@ -156,7 +157,9 @@ def determinant(matrix: Sequence[Sequence[Scalar]]) -> Scalar:
     return _minor(matrix, every, every, {})
 
 
-def _minor(A: Sequence[Sequence[Scalar]], rows: tuple[int, ...], columns: tuple[int, ...], known: dict) -> Scalar:
+def _minor(
+    A: Sequence[Sequence[Scalar]], rows: tuple[int, ...], columns: tuple[int, ...], known: dict[Any, Scalar]
+) -> Scalar:
     """The determinant of some rows and columns, by the first row; each one once."""
     if not rows:
         return 1
