@@ -28,14 +28,13 @@ LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied,
 HALF = Fraction(1, 2)
 DIVIDED = 4000  # characters: longer formulas are not tried as one quotient
 MOST_CASES = 4  # conditions of one formula, of which each case is put into readable form
-PATIENCE = 60  # formulas that did not become short, before no more are tried
 NAMED_PART = 160  # characters of a formula in which long parts have names
 NAMED = 80  # sub-expressions with a name of their own, at most
 NAMED_LENGTH = 8000  # characters of all named sub-expressions together, at most
 
 
 class Reader:
-    """Puts scalars into readable form, each once, with bounded work in all.
+    """Puts scalars into readable form, each once and with a budget of its own: none depends on those before it.
 
     Args:
         full: what is too long to print is printed as it is, and not left out.
@@ -48,7 +47,6 @@ class Reader:
         self.raw: set[Scalar] = set()  # what is too long to print whole
         self.roots: dict[Node, Scalar] = {}  # what the symbols in `shown` stand for
         self._known: dict[Scalar, Scalar | None] = {}
-        self._failures = 0
 
     def _read(self, x: Scalar) -> Scalar | None:
         """x in its readable form, a symbol for each root of a sum; None where it is too long to print."""
@@ -74,11 +72,10 @@ class Reader:
 
     def _shortened(self, x: Scalar) -> Scalar | None:
         size = text_size(x)
-        if size <= TRIED and self._failures < PATIENCE:
+        if size <= TRIED:
             short = self._shortest(x)
             if short is not None and text_size(short) <= LONGEST:
                 return short
-            self._failures += 1
         if size <= NESTED:
             return x
         self.raw.add(x)
