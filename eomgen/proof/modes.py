@@ -78,13 +78,17 @@ class _Proof:
 
     @cached_property
     def wrong_mode(self) -> str:
-        """(A - lambda) x = 0 with the printed coordinates of the shape; the speeds of x as they then must be."""
+        """(A - lambda) x = 0 with the printed coordinates of the shape; the speeds of x as they then must be.
+
+        Beside a steady motion A^2 x = 0: some motions of the eigenvalue 0 lead to others, which go on at other rates.
+        """
         n = len(self.modes.small.numbers.coordinates)
         for k, mode in enumerate(self.modes.spectrum.modes, start=1):
             v = self._coordinates(mode.shape)
             if v is None or not abs(v).max(initial=0):
                 continue
             pencil = self.A - mode.eigenvalue * np.eye(len(self.A))
+            pencil = pencil if mode.eigenvalue or mode.pair else pencil @ pencil / self.rate
             scale = 1 / (abs(pencil).max(axis=1) + SLOW * self.rate)  # of each row, in its own unit
             pencil = pencil * scale[:, None]
             u = np.linalg.lstsq(pencil[:, n:], -pencil[:, :n] @ v, rcond=None)[0]

@@ -19,7 +19,7 @@ from eomgen.mechanics.small_motions.linearization import SmallMotions, state_mat
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED, ROUNDING, SHARE, SOLVED, SUMMED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED, RANK, ROUNDING, SHARE, SOLVED, SUMMED
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,8 @@ def _general(small: SmallMotions, still: int) -> list[Mode]:
     """The eigenvalues of the state matrix."""
     values, vectors = eigenpairs(small.state_matrix)
     order = np.argsort(abs(values))
-    moving = vectors[: len(small.numbers.coordinates)]
+    moving = vectors[: len(small.numbers.coordinates)]  # 0 where speeds alone change, as that of a boat that glides
+    moving = np.where(abs(moving) > RANK * abs(vectors).max(axis=0, initial=0), moving, 0)
     real = [moving[:, k].imag if values[k].imag < 0 else moving[:, k].real for k in order[:still]]  # drawn to a pair
     zeros = [_shape(small, x.astype(complex), 0) for x in real]
     values, vectors = merged(values[order[still:]]), vectors[:, order[still:]]
