@@ -21,7 +21,7 @@ from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.instant.outputs import COMPONENTS, Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -96,6 +96,27 @@ class NumericState:
             return quantities.value(call) if found is None else Fraction(found)
 
         return self.number(formula.evaluate(self.system.scope.names, value))
+
+    def by_differences(self, call: Call) -> tuple[float, float]:
+        """(a component of a point's velocity or acceleration, the central difference of its place or velocity).
+
+        The second is taken along the motion, q + h q', u + h a, t + h, with h = 1e-15 and 50 digits.
+        """
+        order, axis = COMPONENTS[call.name]
+        before = replace(call, name=("", "v")[order - 1] + "xyz"[axis])
+        quantities, digits = Quantities(self.system), fifty_digits()
+        h = digits.number(1) / 10**15
+        ways = [evaluate((quantities.value(before),), self._later(sign * h), digits)[0] for sign in (1, -1)]
+        return self.number(quantities.value(call)), float((ways[0] - ways[1]) / (2 * h))
+
+    def _later(self, h: Any) -> dict[Node, Any]:
+        """The values h later, to first order."""
+        symbols, scope = self.assembly.symbols, self.system.scope
+        known = self.values | self.unknowns
+        rates = evaluate(scope.rates, known, fifty_digits())
+        moved = {q: known[q] + h * rate for q, rate in zip(symbols.q, rates, strict=True)}
+        moved |= {u: known[u] + h * known[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
+        return known | moved | {symbols.t: known[symbols.t] + h}
 
     def number(self, scalar: Scalar) -> float:
         """A function of the state, of accelerations and multipliers."""

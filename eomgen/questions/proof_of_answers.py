@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, Protocol
@@ -20,7 +21,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, EomgenError, RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.mechanics.instant.outputs import LINEARIZED
+from eomgen.mechanics.instant.outputs import COMPONENTS, LINEARIZED
 from eomgen.model.fields import AtRest
 from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, off_by, read_back
@@ -36,6 +37,7 @@ from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
+from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.sure_numbers import number_of
@@ -124,11 +126,36 @@ class _Proof:
         for name, (output, found) in self.asked.items():
             if (found.value is not None and output.from_ is None) or output.at is not None:
                 tally.add(name, partial(self._against_state, output, found))
+        return iter((*tally.checks(), *self._differences()))
+
+    def _differences(self) -> Iterator[Check]:
+        """What outputs call velocities and accelerations are the rates of places and velocities."""
+        tally = Tally("velocities and accelerations are the rates of places", "differences at 50 digits")
+        for output, found in self.asked.values():
+            calls = [c for c in output.value.calls if COMPONENTS.get(c.name, (0, 0))[0] and len(c.args) == 1]
+            if found.value is None or (output.from_ is not None and output.at is None) or not calls:
+                continue
+            with suppress(EomgenError):  # what is known of no state stands in the check of the numbers
+                state = self._state_of(output)
+                for call in calls:
+                    tally.add(str(call), partial(_rate_of_place, state, call))
         return tally.checks()
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:
             raise DerivationError("it has no number")
+        state = self._state_of(output)
+        right = _in_unit(state.worth(output.value), output)
+        if not differing(found.value, right):
+            return ""
+        return off_by(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
+
+    def _state_of(self, output: Output) -> NumericState:
+        """The state at which an output is asked.
+
+        Raises:
+            DerivationError, RunFailed: it is of none, or of one that is not known in numbers.
+        """
         self._refuse_other(output)
         moment = self._moment(output)
         if moment is None:
@@ -140,11 +167,7 @@ class _Proof:
             numbers[t] = 0.0
         if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
             raise RunFailed("the state is not known in numbers")
-        state = self._state(phase, numbers)
-        right = _in_unit(state.worth(output.value), output)
-        if not differing(found.value, right):
-            return ""
-        return off_by(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
+        return self._state(phase, numbers)
 
     def _refuse_other(self, output: Output) -> None:
         """Raises DerivationError for what is of no state of the motion."""
@@ -264,6 +287,12 @@ class _Proof:
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
         return ""
+
+
+def _rate_of_place(state: NumericState, call: Call) -> str:
+    """That a velocity or an acceleration is not what differences say, or ""."""
+    found, right = state.by_differences(call)
+    return differing(found, right)
 
 
 def _in_unit(value: float, output: Output) -> float:

@@ -153,6 +153,20 @@ def test_a_place_that_is_no_rest_is_seen(monkeypatch):
     assert REST in failing(solved(PENDULUM))
 
 
+def test_a_velocity_that_is_another_component_is_seen(monkeypatch):
+    """vx read as vy by the solver and by its proof alike: it is not the rate of x."""
+    from eomgen.mechanics.instant.outputs import Quantities
+
+    value = Quantities.value
+
+    def swapped(self, call):
+        return value(self, replace(call, name="vy") if call.name == "vx" else call)
+
+    monkeypatch.setattr(Quantities, "value", swapped)
+    text = PENDULUM.replace('at = "phi = 0"', 'at = "phi = pi/6"')
+    assert "velocities and accelerations are the rates of places" in failing(solved(text))
+
+
 def test_units_are_part_of_what_is_read_back():
     """A value in km/h beside a formula in m/s."""
     text = PENDULUM.replace('vx(rod.end)", at', 'vx(rod.end)", unit = "km/h", at')
