@@ -188,7 +188,7 @@ class _Report:
         scalars = [entry.value for entry in entries.values()]
         whole = numbers_in(scalars, self.system.scope, self.start)
         single = (numbers_in((x,), self.system.scope, self.start) for x in scalars)
-        numbers = whole or [None if each is None else each[0] for each in single]
+        numbers: Sequence[float | None] = whole or [None if each is None else each[0] for each in single]
         return {
             name: Quantity(readable_text(entry.value), None if x is None else x + 0.0, entry.unit)
             for (name, entry), x in zip(entries.items(), numbers, strict=True)
