@@ -28,9 +28,7 @@ from eomgen.simulation.result import Phase, Trajectory
 from eomgen.simulation.solvers import knots_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
-CHOOSE = "declare other speeds"
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
-LOCKED = "gimbal lock: choose another `orientation`, or a quaternion"
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ class EventSearch:
         self, k: int, floor: float, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]
     ) -> tuple[float, int] | None:
         """The first time at which function k crosses, and k."""
-        sign = self.signs[k]
+        sign = float(self.signs[k])
         touch = self.events.touch * self.largest[k] if k in self.events.either else None
 
         def value(t: float, level: float = 0.0) -> float:

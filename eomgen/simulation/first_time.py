@@ -76,7 +76,7 @@ class FirstTime:
 
     @property
     def t0(self) -> float:
-        return self.start.get(self.system.symbols.t, 0.0)
+        return float(self.start.get(self.system.symbols.t, 0.0))
 
     @cached_property
     def _phase(self) -> PhaseModel:

@@ -63,7 +63,7 @@ class RestDeparture:
 
     @property
     def t0(self) -> float:
-        return self.start.get(self.system.symbols.t, 0.0)
+        return float(self.start.get(self.system.symbols.t, 0.0))
 
     @cached_property
     def _x0(self) -> np.ndarray:
