@@ -80,8 +80,10 @@ class _Balls:
     def one(self) -> Ball:
         return (self.mp.mpf(1), self.mp.mpf(0))
 
-    def number(self, c: Number) -> Ball:
-        """An exact number."""
+    def number(self, c: Number | float) -> Ball:
+        """An exact number; a double, as of an outline that is drawn, is one."""
+        if isinstance(c, float):
+            return (self.mp.mpf(c), self.mp.mpf(0))
         above = self.mp.mpf(c.numerator)
         if c.denominator == 1 and above == c.numerator:
             return (above, self.mp.mpf(0))
