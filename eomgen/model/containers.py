@@ -19,7 +19,7 @@ class ListRule:
     most: int | None = None
     single: bool = False
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> tuple | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> tuple[Any, ...] | None:
         if self.single and not isinstance(raw, (list, tuple)):
             one = self.item.read(raw, path, found)
             return None if one is None else (one,)
@@ -38,8 +38,8 @@ class ListRule:
         for i, x in enumerate(value):
             yield from self.item.leaves(x, path if self.single and len(value) == 1 else (*path, i), part)
 
-    def schema(self, definitions: dict) -> dict:
-        many: dict = {"type": "array", "items": self.item.schema(definitions), "minItems": self.least}
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        many: dict[str, Any] = {"type": "array", "items": self.item.schema(definitions), "minItems": self.least}
         if self.most is not None:
             many["maxItems"] = self.most
         return {"anyOf": [self.item.schema(definitions), many]} if self.single else many
@@ -52,7 +52,7 @@ class TableRule:
     item: Any
     what: str
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Table | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Table[Any] | None:
         if not isinstance(raw, Mapping):
             found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
             return None
@@ -63,7 +63,7 @@ class TableRule:
             if x is not None:
                 yield from self.item.leaves(x, (*path, name), part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "object", "additionalProperties": self.item.schema(definitions)}
 
 
@@ -83,5 +83,5 @@ class EitherRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield from self._rule(value).leaves(value, path, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"anyOf": [self.text.schema(definitions), self.other.schema(definitions)]}

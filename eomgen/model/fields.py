@@ -62,7 +62,7 @@ class FormulaRule:
             return str(raw)
         return _expression(raw, path, found, references=bool(self.functions))
 
-    def _quantity(self, raw: Mapping, path: DocumentPath, found: list[Finding]) -> Expression | None:
+    def _quantity(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding]) -> Expression | None:
         unknown_keys(raw, ("value", "unit"), path, found, "a quantity")
         if "value" not in raw:
             found.append(Finding(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
@@ -79,7 +79,7 @@ class FormulaRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"$ref": "#/$defs/quantity"}
 
 
@@ -97,7 +97,7 @@ def in_si(value: Expression | None, unit: Unit | None) -> Expression | None:
 
 def is_mixed(value: Expression, unit: Unit) -> bool:
     """Whether a value has parameters in it, which are in SI, beside a unit that is not: it may mean two things."""
-    return bool(value.names - {"pi", "t"}) and (unit.factor, unit.pi_power) != (1, 0)
+    return bool(value.names - {"pi", "t"}) and (unit.factor != 1 or unit.pi_power != 0)
 
 
 def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Finding:
@@ -129,7 +129,7 @@ class OutputRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"$ref": "#/$defs/expression"}
 
 
@@ -163,7 +163,7 @@ class EquationRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": "an equation, like theta = pi/2"}
 
 
@@ -183,7 +183,7 @@ class InstantRule(EquationRule):
             return AtRest()
         return EquationRule.read(self, raw, path, found)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": "an equation, like theta = pi/2, or equilibrium"}
 
 
@@ -219,7 +219,7 @@ class VectorRule:
             for i, x in enumerate(value):
                 yield from self.item.leaves(x, (*path, i), part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         low, high = (self.length, self.length) if self.length else (2, 3)
         vector = {"type": "array", "items": self.item.schema(definitions), "minItems": low, "maxItems": high}
         return {"anyOf": [{"type": "string"}, vector]} if self.point else vector
@@ -249,7 +249,7 @@ class AxialRule:
         for i, x in enumerate(value):
             yield from self.item.leaves(x, path if len(value) == 1 else (*path, i), part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         one = self.item.schema(definitions)
         low, high = min(self.lengths), max(self.lengths)
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": low, "maxItems": high}]}
@@ -282,7 +282,7 @@ class NameRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": f"the name of {article(self.of)}"}
 
 
@@ -306,7 +306,7 @@ class TextRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"enum": list(self.options)} if self.options else {"type": "string"}
 
 
@@ -323,7 +323,7 @@ class FlagRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "boolean"}
 
 
@@ -346,7 +346,7 @@ class UnitRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": "a unit, like kg*m^2 or deg"}
 
 

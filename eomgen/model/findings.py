@@ -101,7 +101,9 @@ def whereabouts(path: DocumentPath, what: str = "") -> str:
     return " of ".join([*(f"the {key}" for key in reversed(inner)), owner])
 
 
-def unknown_keys(raw: Mapping, known: Iterable[str], path: DocumentPath, found: list[Finding], what: str) -> None:
+def unknown_keys(
+    raw: Mapping[str, Any], known: Iterable[str], path: DocumentPath, found: list[Finding], what: str
+) -> None:
     """Every key of a table that nobody reads is a finding."""
     strange = [key for key in raw if key not in known]
     listed = ", ".join(f"'{name}'" for name in known)

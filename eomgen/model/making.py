@@ -8,7 +8,7 @@ from eomgen.errors import ModelError, Problem
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
 from eomgen.model.findings import Finding
-from eomgen.model.part import altered, read_part, slots_of
+from eomgen.model.part import Made, altered, read_part, slots_of
 from eomgen.model.table import Table
 
 MOST_FINDINGS = 200  # of one model: more say nothing new
@@ -44,12 +44,12 @@ def finish(model: Any) -> None:
         object.__setattr__(model, name, value)
 
 
-def resolved(model: Any) -> Any:
+def resolved(model: Made) -> Made:
     """The checked model with the places of its ground joints as coordinates and its own points without their body."""
     return altered(model, **_resolved_tables(model))
 
 
-def _resolved_tables(model: Any) -> dict[str, Table]:
+def _resolved_tables(model: Any) -> dict[str, Table[Any]]:
     bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
     return {"bodies": bodies, "forces": Table({name: _resolved_force(force) for name, force in model.forces.items()})}
 

@@ -12,6 +12,6 @@ def in_own_unit(model: Model, name: str, value: float, digits: int = 9) -> str:
     rate = name.endswith("'")
     part = model.coordinates.get(name[:-1] if rate else name)
     unit = None if part is None else part.unit
-    if unit is None or (unit.factor, unit.pi_power) == (1, 0):
+    if unit is None or (unit.factor == 1 and unit.pi_power == 0):
         return f"{value:.{digits}g}"
     return f"{float(unit.from_si(value, math.pi)):.{digits}g} {unit.text}{'/s' * rate}"

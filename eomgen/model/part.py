@@ -4,13 +4,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
 from types import NoneType, UnionType
-from typing import Any, ClassVar, Union, get_args, get_origin
+from typing import Any, ClassVar, TypeVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, in_si
 from eomgen.model.findings import Finding, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ class Part:
             )
 
 
-def _in_si(cls: Any, values: dict, raw: Mapping) -> dict:
+def _in_si(cls: Any, values: dict[str, Any], raw: Mapping[str, Any]) -> dict[str, Any]:
     """The values read, those given in the part's `unit` exactly in SI (an Expression is in SI already)."""
     unit = values.get("unit")
     if unit is None or not cls.in_unit:
@@ -103,9 +105,9 @@ def title_of(cls: Any) -> str:
     return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
 
 
-def part_of_values(cls: Any, values: Mapping[str, Any]) -> Any:
+def part_of_values(cls: type[Made], values: Mapping[str, Any]) -> Made:
     """A part from values that were read already."""
-    part: Any = object.__new__(cls)
+    part = object.__new__(cls)
     for slot in slots_of(cls):
         object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
     return part
@@ -134,11 +136,13 @@ class PartRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return part_schema(self.cls, definitions)
 
 
-def read_part(cls: Any, raw: Mapping, path: DocumentPath, found: list[Finding], known: tuple[str, ...] = ()) -> Any:
+def read_part(
+    cls: Any, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding], known: tuple[str, ...] = ()
+) -> Any:
     """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
     slots = slots_of(cls)
     inline = next((slot for slot in slots if slot.inline), None)
@@ -159,7 +163,7 @@ def read_part(cls: Any, raw: Mapping, path: DocumentPath, found: list[Finding], 
     return part_of_values(cls, _in_si(cls, values, raw))
 
 
-def altered(part: Any, **changes: Any) -> Any:
+def altered(part: Made, **changes: Any) -> Made:
     """The part with some fields changed to values that were read already."""
     return part_of_values(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
 
@@ -206,12 +210,12 @@ class SeamRule:
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         branches = [part_schema(member, definitions) for member in self.members]
         return {"oneOf": branches, "required": ["kind"]}
 
 
-def part_schema(cls: Any, definitions: dict) -> dict:
+def part_schema(cls: Any, definitions: dict[str, Any]) -> dict[str, Any]:
     """The JSON Schema of a part, by reference into `definitions` (draft 2020-12)."""
     name = cls.__name__
     if name not in definitions:
@@ -220,14 +224,19 @@ def part_schema(cls: Any, definitions: dict) -> dict:
     return {"$ref": f"#/$defs/{name}"}
 
 
-def _table_schema(cls: Any, definitions: dict) -> dict:
+def _table_schema(cls: Any, definitions: dict[str, Any]) -> dict[str, Any]:
     slots = slots_of(cls)
     properties = {slot.key: slot.rule.schema(definitions) for slot in slots if not slot.inline}
     required = [slot.key for slot in slots if slot.required and not slot.inline]
     kind = getattr(cls, "kind", None)
     if kind is not None:
         properties, required = {"kind": {"const": kind}, **properties}, ["kind", *required]
-    table: dict = {"title": cls.__name__, "description": _first_line(cls), "type": "object", "properties": properties}
+    table: dict[str, Any] = {
+        "title": cls.__name__,
+        "description": _first_line(cls),
+        "type": "object",
+        "properties": properties,
+    }
     if required:
         table["required"] = required
     inline = [slot for slot in slots if slot.inline]
@@ -240,7 +249,7 @@ def _table_schema(cls: Any, definitions: dict) -> dict:
     return table
 
 
-def _with_inline(table: dict, members: tuple[Any, ...], definitions: dict) -> dict:
+def _with_inline(table: dict[str, Any], members: tuple[Any, ...], definitions: dict[str, Any]) -> dict[str, Any]:
     """A table that holds the keys of one of several parts besides its own."""
     branches = []
     for member in members:

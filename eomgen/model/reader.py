@@ -9,7 +9,7 @@ from eomgen.errors import ModelError, Problem
 from eomgen.model.findings import TABLES, Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
-from eomgen.model.positions import Index, Span, index_of
+from eomgen.model.positions import DocumentPath, Index, Span, index_of
 
 LARGEST = 1_000_000  # bytes
 WIDEST = 100  # characters of a source line that an error shows
@@ -71,7 +71,7 @@ def _loads(data: bytes, name: str, title: str) -> Model:
         raise ModelError((_problem(deep, index.deep, index, name),))
     raw, twice = _table(text, index, name)
     found = _version(raw)
-    draft = draft_of(Model, raw, title, found)
+    draft: Model = draft_of(Model, raw, title, found)
     found += findings_of(draft, found)
     if found or twice:
         raise ModelError((*twice, *_problems(found, index, name)))
@@ -114,7 +114,7 @@ def _without(text: str, spans: list[Span]) -> str:
     return text
 
 
-def _again(path: tuple, index: Index) -> Finding:
+def _again(path: DocumentPath, index: Index) -> Finding:
     line = index.line_and_column(index.keys[path].start)[0]
     return Finding(path, f"'{path[-1]}' is given twice", f"first given in line {line}")
 

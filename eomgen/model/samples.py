@@ -33,7 +33,7 @@ class TimeLawRule(FormulaRule):
             return self._sampled(raw, path, found)
         return FormulaRule.read(self, raw, path, found)
 
-    def _sampled(self, raw: Mapping, path: DocumentPath, found: list[Finding]) -> Expression | None:
+    def _sampled(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding]) -> Expression | None:
         unknown_keys(raw, KEYS, path, found, "samples")
         way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
         ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
@@ -46,7 +46,7 @@ class TimeLawRule(FormulaRule):
         text = f"{way} through {len(pairs)} samples from {_short(times[0])} to {_short(times[-1])} s"
         return Expression.through_samples(Sampled("f(t)", spline_of(times, values, way, ends)), text)
 
-    def schema(self, definitions: dict) -> dict:
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
         samples = {
             "type": "object",
@@ -69,7 +69,7 @@ def samples(times: Iterable[Any], values: Iterable[Any], between: str = "cubic",
     """
     found: list[Finding] = []
     pairs = [[_plain(t), _plain(value)] for t, value in zip(times, values, strict=True)]
-    law = TimeLawRule().read({"samples": pairs, "between": between, **_given_ends(ends)}, (), found)
+    law: Expression = TimeLawRule().read({"samples": pairs, "between": between, **_given_ends(ends)}, (), found)
     if found:
         raise ModelError(tuple(Problem(".".join(["samples", *map(str, f.path)]), f.what, mend=f.mend) for f in found))
     return law

@@ -126,7 +126,8 @@ def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Express
 
 def _value(expression: Expression, values: Mapping[str, Any], where: str) -> AnyNumber:
     try:
-        return expression.evaluate(values)
+        found: AnyNumber = expression.evaluate(values)
+        return found
     except ExpressionError as error:
         raise ModelError(f"'{expression.text}': {error.what}", where, error.mend) from error
 

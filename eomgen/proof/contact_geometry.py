@@ -30,7 +30,7 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
-    Vector,
+    Numbers,
     apply,
     cross,
     dot,
@@ -56,9 +56,9 @@ class Touch:
         held: directions in which they cannot part, ground axes.
     """
 
-    first: Vector
-    second: Vector
-    held: tuple[Vector, ...]
+    first: Numbers
+    second: Numbers
+    held: tuple[Numbers, ...]
 
 
 def meetings_of(system: System) -> dict[str, Meeting]:
@@ -110,7 +110,7 @@ class _Contact:
     @property
     def wrong(self) -> str:
         touch = self._touch
-        distance = minus(touch.first, touch.second)
+        distance: Numbers = minus(touch.first, touch.second)
         size = 1 + max(map(abs, touch.first))
         if max(map(abs, distance)) > COMPUTED * size:
             return "its two points of contact are apart"
@@ -127,7 +127,7 @@ class _Contact:
     def _numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         return evaluate(tuple(scalars), self.state, fifty_digits())
 
-    def _vector(self, vector: Sequence[Scalar]) -> Vector:
+    def _vector(self, vector: Sequence[Scalar]) -> Numbers:
         return vector_of(self._numbers(vector))
 
     @property
@@ -149,7 +149,7 @@ class _Contact:
         link = self.system.motion.link(body)
         return self._numbers([*(x for row in link.pose.R for x in row), *link.pose.p, *link.twist.w, *link.twist.v])
 
-    def _carried(self, body: str | None, place: Vector, *, direction: bool = False) -> Vector:
+    def _carried(self, body: str | None, place: Numbers, *, direction: bool = False) -> Numbers:
         """A place or direction of a body, ground axes."""
         pose = self._pose(body)
         if pose is None:
@@ -157,7 +157,7 @@ class _Contact:
         turned = apply(matrix_of((pose[0:3], pose[3:6], pose[6:9])), place)
         return turned if direction else plus(vector_of(pose[9:12]), turned)
 
-    def _velocity(self, body: str | None, P: Vector) -> Vector:
+    def _velocity(self, body: str | None, P: Numbers) -> Numbers:
         """Of the material point of a body at P, ground axes: R (v + w x R^T (P - p))."""
         pose = self._pose(body)
         if pose is None:
@@ -167,7 +167,7 @@ class _Contact:
         return apply(R, plus(vector_of(pose[15:18]), cross(vector_of(pose[12:15]), arm)))
 
     @cached_property
-    def _anchor(self) -> Vector:
+    def _anchor(self) -> Numbers:
         """`at` of the surface in its body's axes, over the graph; where it is not given, where the point stands."""
         surface = self.meeting.surface
         assert not isinstance(surface, BodyLine)
@@ -180,7 +180,7 @@ class _Contact:
         return vector_of(map(self._scene.start, self._scene.position(self._scene.place(what.point))))
 
     @property
-    def _center(self) -> Vector:
+    def _center(self) -> Numbers:
         """The point, or the centre of what is round, ground axes."""
         what, scene = self.meeting.what, self._scene
         place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
@@ -212,7 +212,7 @@ class _Contact:
         side = 1 if surface.inside else -1
         return Touch(plus(C, times(side * self._radius, out)), plus(A, times(self._numbers([r])[0], out)), (out,))
 
-    def _lowest(self, C: Vector, n: Vector) -> Vector:
+    def _lowest(self, C: Numbers, n: Numbers) -> Numbers:
         """The point of a round body that is farthest along -n."""
         what = self.meeting.what
         if isinstance(what, TouchingPoint):
@@ -230,18 +230,18 @@ class _Contact:
         return self.system.scope.model.space == "space"
 
 
-def _unit(a: Vector) -> Vector:
+def _unit(a: Numbers) -> Numbers:
     size = fifty_digits().functions["sqrt"](dot(a, a))
     if size == 0:
         raise NoValue("a direction of length 0")
     return times(1 / size, a)
 
 
-def _turned(a: Vector) -> Vector:
+def _turned(a: Numbers) -> Numbers:
     return (-a[1], a[0], 0)
 
 
-def _across(a: Vector) -> Iterator[Vector]:
+def _across(a: Numbers) -> Iterator[Numbers]:
     """Two unit vectors across a unit vector."""
     k = min(range(3), key=lambda i: abs(a[i]))
     first = _unit(cross(a, vector_of(int(i == k) for i in range(3))))

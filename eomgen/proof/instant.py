@@ -29,7 +29,7 @@ from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
     Matrix,
-    Vector,
+    Numbers,
     apply,
     cross,
     dot,
@@ -92,19 +92,19 @@ class Seen:
         w, e: spin and angular acceleration.
     """
 
-    p: Vector
-    v: Vector
-    a: Vector
+    p: Numbers
+    v: Numbers
+    a: Numbers
     R: Matrix
     R1: Matrix
     R2: Matrix
-    w: Vector
-    e: Vector
+    w: Numbers
+    e: Numbers
 
-    def velocity(self, place: Vector) -> Vector:
+    def velocity(self, place: Numbers) -> Numbers:
         return plus(self.v, cross(self.w, minus(place, self.p)))
 
-    def acceleration(self, place: Vector) -> Vector:
+    def acceleration(self, place: Numbers) -> Numbers:
         r = minus(place, self.p)
         return plus(self.a, plus(cross(self.e, r), cross(self.w, cross(self.w, r))))
 
@@ -166,7 +166,7 @@ class _Proof:
         second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
         return now, first, second
 
-    def here(self, scalars: Sequence[Scalar]) -> Vector:
+    def here(self, scalars: Sequence[Scalar]) -> Numbers:
         return vector_of(evaluate(tuple(scalars), self.way[1], fifty_digits()))
 
     def one(self, x: Scalar) -> Any:
@@ -265,7 +265,7 @@ class _Proof:
             point = self.here(center.point)
             if center.at_infinity:
                 apart = minus(j.velocity(i.p), i.velocity(i.p))
-                left: tuple[Any, ...] = (j.w[2] - i.w[2], dot(apart, point) / dot(point, point) ** 0.5)
+                left: tuple[Any, ...] = (j.w[2] - i.w[2], dot(apart, point) / _size(point))
             else:
                 place = (point[0], point[1], 0)
                 left = minus(j.velocity(place), i.velocity(place))[:2]
@@ -280,7 +280,8 @@ class _Proof:
             return None
         for three in list(combinations(mechanism.blocks, 3))[:MOST_TRIPLES]:
             points = [_unit(self.here(mechanism.centers[pair].point)) for pair in combinations(three, 2)]
-            if abs(dot(points[0], cross(points[1], points[2]))) > self.tolerance:
+            volume: Any = dot(points[0], cross(points[1], points[2]))
+            if abs(volume) > self.tolerance:
                 return f"those of {', '.join(three)}"
         return ""
 
@@ -307,7 +308,7 @@ class _Proof:
             for c, s in ((5, 0), (-3, 4)):
                 place = (x + c * radius / 5, y + s * radius / 5, 0)
                 v = seen.velocity(place)
-                if (size := dot(v, v) ** 0.5) > COMPUTED * self.size[0]:  # not the centre of rotation itself
+                if (size := _size(v)) > COMPUTED * self.size[0]:  # not the centre of rotation itself
                     yield "the inflection circle", (cross(v, seen.acceleration(place))[2] / size,), 2
         if motion.slowest is not None:
             first, last, least = motion.slowest
@@ -326,7 +327,7 @@ class _Proof:
                     return f"{what.replace('_', ' ')} of {point} in {body}"
         return "" if relative else None
 
-    def _parts(self, point: str, body: str) -> Iterator[tuple[str, int, Vector]]:
+    def _parts(self, point: str, body: str) -> Iterator[tuple[str, int, Numbers]]:
         """(part of a `Composition`, its order, the part by differences)."""
         system = self.state.system
         motion, carrier = system.motion, self.bodies[body]
@@ -361,21 +362,27 @@ class _Proof:
         return ""
 
 
-def _turning(rate: Matrix, R: Matrix) -> Vector:
+def _turning(rate: Matrix, R: Matrix) -> Numbers:
     """The spin of R' R^T, and the angular acceleration of R'' R^T: half of what is skew."""
     A = product(rate, transposed(R))
     half = fifty_digits().number(1) / 2
     return times(half, (A[2][1] - A[1][2], A[0][2] - A[2][0], A[1][0] - A[0][1]))
 
 
-def _unit(v: Vector) -> Vector:
-    return times(1 / dot(v, v) ** 0.5, v)
+def _size(v: Numbers) -> Any:
+    square: Any = dot(v, v)
+    return square**0.5
 
 
-def _least(start: Vector, end: Vector) -> Any:
+def _unit(v: Numbers) -> Numbers:
+    return times(1 / _size(v), v)
+
+
+def _least(start: Numbers, end: Numbers) -> Any:
     """The least size of v between two values, on the way from the one to the other."""
-    step = minus(end, start)
-    square = dot(step, step)
-    part = min(max(-dot(start, step) / square, 0), 1) if square else 0
-    v = plus(start, times(part, step))
-    return dot(v, v) ** 0.5
+    step: Numbers = minus(end, start)
+    square: Any = dot(step, step)
+    along: Any = dot(start, step)
+    part = min(max(-along / square, 0), 1) if square else 0
+    v: Numbers = plus(start, times(part, step))
+    return _size(v)

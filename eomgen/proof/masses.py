@@ -118,7 +118,8 @@ def _step(dimension: int, k: int) -> np.ndarray:
 
 
 def _at(cell: Cell, s: np.ndarray) -> np.ndarray:
-    return np.array([np.broadcast_to(x, s.shape[1:]) for x in cell(tuple(s))])
+    place: Sequence[Any] = cell(tuple(s))
+    return np.array([np.broadcast_to(x, s.shape[1:]) for x in place])
 
 
 def _measure(slopes: np.ndarray) -> np.ndarray:

@@ -110,8 +110,8 @@ def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node
 def _sliding(reader: Reader, x: Scalar) -> Scalar | None:
     """x while the one contact in it slides, sign^2 = 1; None where there are several, or x is long."""
     for condition in conditions_in(x)[:1]:
-        cases = [_sliding(reader, decided(x, condition, holds)) for holds in (True, False)]
-        return None if None in cases else condition.graph.select(condition, *cases)
+        if_true, if_false = (_sliding(reader, decided(x, condition, holds)) for holds in (True, False))
+        return None if if_true is None or if_false is None else condition.graph.select(condition, if_true, if_false)
     signs = [node for node in order((x,)) if node.op == "sign"]
     if text_size(x) > TRIED or len(signs) > 1:
         return None

@@ -55,7 +55,8 @@ def paths_of(model: Model) -> tuple[str, ...]:
 def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:
     """The arc lengths at the beginning and the end of every piece of a body's path."""
     joint: Any = model.bodies[body].joint
-    return joint.bounds()
+    bounds: tuple[tuple[Expression, Expression], ...] = joint.bounds()
+    return bounds
 
 
 def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:

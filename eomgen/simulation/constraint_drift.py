@@ -253,10 +253,10 @@ class DriftCorrection:
         """States between steps, one a row, on the ties too."""
         found = on_spheres(x, self.spheres)
         if self.projection is None or self.every is not None or not len(t):
-            return found
+            return np.asarray(found)
         for i in np.flatnonzero(~(np.max(self.projection.open(t, found), axis=1) <= self.atol)):
             found[i] = self.at(float(t[i]), found[i])
-        return found
+        return np.asarray(found)
 
     @property
     def remark(self) -> str:

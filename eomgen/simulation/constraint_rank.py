@@ -74,7 +74,7 @@ class ConstraintRank:
 
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         J = self.J(t, x)
-        return J / divisor(_lengths(J))
+        return np.asarray(J / divisor(_lengths(J)))
 
 
 def _lengths(J: np.ndarray) -> np.ndarray:
@@ -116,7 +116,7 @@ class Nearness:
             sizes = np.abs(self._measured(t, x))
         self.largest = largest = np.maximum(self.largest, sizes.max(axis=0, initial=0.0))
         scaled: np.ndarray = (sizes / (largest if largest.all() else np.where(largest > 0, largest, 1.0))).min(axis=1)
-        return np.minimum(scaled, 1.0)
+        return np.asarray(np.minimum(scaled, 1.0))
 
     def _measured(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         found = []

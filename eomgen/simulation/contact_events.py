@@ -231,5 +231,5 @@ def _resultant(forces: Sequence[tuple[Scalar, str]]) -> tuple[Scalar, str]:
     return sqrt(sum((force * force for force, _ in forces), start=0)), ""
 
 
-def _size(x: Any) -> Scalar:
+def _size(x: Scalar) -> Scalar:
     return function("abs", x)

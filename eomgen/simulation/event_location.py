@@ -126,7 +126,7 @@ class EventSearch:
         touch = self.events.touch * self.largest[k] if k in self.events.either else None
 
         def value(t: float, level: float = 0.0) -> float:
-            return sign * float(self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
+            return float(sign * self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
 
         for i in range(1, len(times)):
             if self.armed[k]:

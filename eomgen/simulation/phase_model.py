@@ -238,9 +238,11 @@ class PhaseModel:
             return signals[name, "gap"]
         if bound.kind == "stops":
             slowing = signals[name, "slide'"] < 0  # a speed that grows from 0 does not stop
-            return (mode.sense or 0) * signals[name, "slide"] - slowing * float(stopped_below(self.contact(name)))
+            return np.asarray(
+                (mode.sense or 0) * signals[name, "slide"] - slowing * float(stopped_below(self.contact(name)))
+            )
         if bound.kind == "slips":
-            return signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"])
+            return np.asarray(signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"]))
         return mode.push * signals[name, f"N{bound.row}" if bound.row > 1 else "N"]
 
     def contact(self, name: str) -> Contact:

@@ -185,8 +185,8 @@ def _opened(model: Model, modes: ContactModes) -> System:
 def _released(system: System, tie: str) -> System:
     model, modes = released(system, tie)
     after = system_of(model, modes)
-    dependent = redundant_rows(system.ties)
-    held = [row for row in system.ties.rows if row.tie == tie and row not in dependent]
+    dependent = {(row.tie, row.number) for row in redundant_rows(system.ties)}
+    held = [row for row in system.ties.rows if row.tie == tie and (row.tie, row.number) not in dependent]
     if freedoms(after.ties) < freedoms(system.ties) + len(held):
         raise DerivationError(
             f"'{tie}' ends, and what it held does not become free",

@@ -108,7 +108,7 @@ def _sizes(stretch: PhaseRun, until: PhaseCondition) -> np.ndarray:
     stops, after = stretch.bound is not None and stretch.bound.kind == "stops", stretch.after
     last = phase.state(after.values) if stops and after is not None else run.last  # on a surface near to 0, then 0
     t, x = np.append(run.t, run.end), np.vstack([run.x, last])
-    return np.abs(phase.evaluated(t, x, (until(phase),))[:, 0])
+    return np.asarray(np.abs(phase.evaluated(t, x, (until(phase),))[:, 0]))
 
 
 def _only_begun(stretch: PhaseRun) -> PhaseRun:

@@ -213,7 +213,8 @@ def joint_friction(system: System, link: BodyLink) -> Scalar | None:
     factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
-    return link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
+    rubbed: Scalar = link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
+    return rubbed
 
 
 def rubbing_of(system: System, component: Component) -> tuple[Scalar, Scalar]:

@@ -168,7 +168,7 @@ def _across(n: Vector, others: list[Vector]) -> Vector:
 
 def _root(system: System, link: BodyLink) -> BodyLink | None:
     """The body itself, or the nearest one that carries it, that is placed by expressions."""
-    current: Any = link
+    current: BodyLink | None = link
     while current is not None:
         if current.joint is not None and not current.joint.carries_reaction:
             return current

@@ -14,6 +14,7 @@ from eomgen.mechanics.bodies.loads import JointEffort, in_ground_axes
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.shapes import MassProperties
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
@@ -145,7 +146,7 @@ def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tupl
 
 def _over_square(magnitude: Scalar, n: Vector) -> Scalar:
     square = dot(n, n)
-    return magnitude if type(square) is int and square == 1 else magnitude / square
+    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
 
 
 def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]:

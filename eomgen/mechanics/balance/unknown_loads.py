@@ -77,7 +77,7 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
         sizes = [abs(x) for x in evaluate(left, state, fifty_digits())]
     except NoValue:
         return False
-    return max(sizes) < ELIMINATED_AT_50
+    return bool(max(sizes) < ELIMINATED_AT_50)
 
 
 def unbalanced(balance: Balance, solution: Solution) -> DerivationError:

@@ -14,6 +14,7 @@ from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, spin_between
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.shapes import MassProperties
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
@@ -36,7 +37,7 @@ def mass_properties(scope: Scope, body: str) -> MassProperties:
     return MassProperties(m, scope.vector(part.center), _inertia(scope, body, part.inertia))
 
 
-def _inertia(scope: Scope, body: str, inertia: tuple | None) -> Matrix:
+def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) -> Matrix:
     if inertia is None:
         return (ZERO, ZERO, ZERO)
     values = [scope.value(e) for e in inertia]

@@ -6,17 +6,18 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, ground_place
 from eomgen.mechanics.bodies.scope import Scope, primitive
 from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.model.forces.load import BodyPoint, Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
+from eomgen.model.parts import Coordinate
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -115,14 +116,14 @@ class SystemScene:
     motion: Motion
     where: str = ""
 
-    def value(self, expression) -> Scalar:
+    def value(self, expression: Expression) -> Scalar:
         return self.motion.scope.value(expression)
 
-    def value_at(self, expression, also: dict[str, Scalar]) -> Scalar:
+    def value_at(self, expression: Expression, also: dict[str, Scalar]) -> Scalar:
         """An expression in which further names stand for given scalars (they win over the model's)."""
         return expression.evaluate({**self.motion.scope.names, **also})
 
-    def primitive(self, expression, name: str, at: Scalar) -> Scalar | None:
+    def primitive(self, expression: Expression, name: str, at: Scalar) -> Scalar | None:
         """The integral of an expression over one name, at a value of it.
 
         None where it holds anything but that name and parameters, or has no closed form.
@@ -134,10 +135,10 @@ class SystemScene:
         F = primitive(self.value_at(expression, {name: variable}), variable)
         return None if F is None else substituted((F,), {variable: at})[0]
 
-    def vector(self, expressions) -> Vector:
+    def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
         return self.motion.scope.vector(expressions)
 
-    def ground_place(self, at) -> Vector:
+    def ground_place(self, at: Sequence[Expression] | str) -> Vector:
         return ground_place(self.motion.scope, at)
 
     @property
@@ -275,7 +276,7 @@ class SystemScene:
         return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
 
 
-def start_value(scope, coordinate) -> Scalar:
+def start_value(scope: Scope, coordinate: Coordinate) -> Scalar:
     """Where a coordinate starts, as an expression of the parameters."""
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
@@ -330,7 +331,7 @@ def _scalars(load: Load) -> tuple[Scalar, ...]:
     return (load.value,) if isinstance(load, GeneralizedForce) else load.acceleration
 
 
-def _joint_efforts(motion: Motion, link) -> list[JointEffort]:
+def _joint_efforts(motion: Motion, link: BodyLink) -> list[JointEffort]:
     """Drive, spring and damper of one joint: effort = drive - c s' - k (s - rest)."""
     if link.joint is None:
         return []
@@ -362,7 +363,7 @@ def joint_wrenches(motion: Motion, effort: JointEffort) -> list[tuple[str, Wrenc
     square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
     rotary = not all(is_zero(x) for x in w)
     direction = w if rotary else v
-    magnitude = effort.effort if type(square) is int and square == 1 else effort.effort / square
+    magnitude = effort.effort if type(square) is int and square == 1 else over(effort.effort, square)
     at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
     rows = [(link.name, at_joint.moved(link.point))]
     if link.parent >= 0:

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.bodies.kinematics import GROUND
+from eomgen.mechanics.bodies.kinematics import GROUND, Motion
 from eomgen.mechanics.bodies.loads import Loads, body_wrench, in_ground_axes
 from eomgen.mechanics.bodies.tree import Branch, Moments, MotionColumn, origin_of
-from eomgen.model.forces.load import PointForce
+from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
@@ -185,11 +185,11 @@ def applied_wrenches(loads: Loads, branches: tuple[Branch, ...]) -> dict[int, Wr
     return total
 
 
-def _plane(motion) -> bool:
+def _plane(motion: Motion) -> bool:
     return motion.scope.model.space == "plane"
 
 
-def _ground_wrench(loads: Loads, load) -> tuple[str, Wrench] | None:
+def _ground_wrench(loads: Loads, load: PointForce | Couple) -> tuple[str, Wrench] | None:
     """A load about its body's origin in ground axes."""
     motion = loads.motion
     if not isinstance(load, PointForce):

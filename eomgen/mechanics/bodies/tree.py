@@ -223,7 +223,7 @@ def _congruence(R: Matrix, J: Matrix) -> Matrix:
     entry = {(i, j): dot(half[i], R[j]) for i, j in ((first, first), (second, second), (first, second))}
     entry |= {(i, last): dot(half[i], R[last]) for i in (first, second)}
     entry[last, last] = _rest_of_trace([J[i][i] for i in range(3)], [entry[first, first], entry[second, second]])
-    return matrix_of((entry.get((i, j), entry.get((j, i))) for j in range(3)) for i in range(3))
+    return matrix_of((entry[i, j] if (i, j) in entry else entry[j, i] for j in range(3)) for i in range(3))
 
 
 def _rest_of_trace(terms: list[Scalar], known: list[Scalar]) -> Scalar:

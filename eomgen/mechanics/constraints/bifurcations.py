@@ -124,14 +124,14 @@ class _Search:
     def left(self, d: np.ndarray) -> np.ndarray:
         """Both equations, each against the size of its terms."""
         f, sizes = self._left(d)
-        return f / sizes
+        return np.asarray(f / sizes)
 
     def slopes(self, d: np.ndarray) -> np.ndarray:
         """Their derivatives by the free speeds."""
-        return self._slope(d) / self._left(d)[1][:, None]
+        return np.asarray(self._slope(d) / self._left(d)[1][:, None])
 
     def moved(self, d: np.ndarray, step: Sequence[Any]) -> np.ndarray:
-        return d + np.array(step, dtype=float)
+        return np.asarray(d + np.array(step, dtype=float))
 
     def _left(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(J u + sigma above n^T gamma, the size of the terms of each)."""

@@ -144,7 +144,7 @@ class _Gaps:
 
     def slopes(self, state: State) -> np.ndarray:
         values = [float(x) for x in evaluate(self.derivatives, state, fifty_digits())]
-        return np.array(values).reshape(len(self.gaps), len(self.free)) * self.sizes
+        return np.asarray(np.array(values).reshape(len(self.gaps), len(self.free)) * self.sizes)
 
     def moved(self, state: State, step: Sequence[Any]) -> State:
         return state | {q: state[q] + float(s) * d for q, s, d in zip(self.free, self.sizes, step, strict=True)}

@@ -238,7 +238,7 @@ def _slope(ties: Ties, state: State, free: Sequence[Node]) -> np.ndarray:
 def _slopes(J: np.ndarray) -> np.ndarray:
     """How far each column moves the gaps, none of them nothing."""
     lengths = np.linalg.norm(J, axis=0)
-    return np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0))
+    return np.asarray(np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
 
 
 def bilateral(ties: Ties, ending: Sequence[str], holds: Sequence[str]) -> Ties:

@@ -8,8 +8,8 @@ from eomgen.mechanics.bodies.loads import Applied, JointEffort, Loads, in_body_a
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.symbolic.expression.derivative import gradient, jacobian
 from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.expression.spatial import ZERO, dot, vector_of
+from eomgen.symbolic.expression.node import ScalarRow, ScalarRows
+from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, vector_of
 
 
 def generalized_forces(loads: Loads) -> ScalarRow:
@@ -84,7 +84,7 @@ def load_row(loads: Loads, load: Load) -> ScalarRow:
     return per_speed(motion, _weighted(force, position, len(symbols.q)))
 
 
-def _weighted(force, rows, size: int) -> ScalarRow:
+def _weighted(force: Vector, rows: ScalarRows, size: int) -> ScalarRow:
     """force . d(position)/dq_k for each k."""
     return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))
 

@@ -20,8 +20,8 @@ from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import ScalarRow, State
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import Owner, ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, digits_at
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -151,7 +151,7 @@ class ClosedForms:
         )
 
 
-def _round_components(graph: Graph) -> tuple[Scalar, ...]:
+def _round_components(graph: Owner) -> tuple[Scalar, ...]:
     """Components of quaternions that turn by 0, 60, 90, 120 or 180 degrees."""
     return (0, 1, HALF, HALF * graph.sqrt(2), HALF * graph.sqrt(3))
 

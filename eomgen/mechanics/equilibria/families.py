@@ -14,6 +14,7 @@ import numpy as np
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, SAME_PLACE, TINIEST, ZERO_AT_50
 
@@ -56,7 +57,7 @@ def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.nd
     return z
 
 
-def _marks(statics: StaticEquations, slopes, z: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
     """V, and the eigenvalues of K along the ties, by size."""
     n = len(statics.q)
     J = statics.slopes(statics.J, z[:n], values)

@@ -259,4 +259,4 @@ def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """The multipliers for which Q + J^T lam is least; 0 where it has no value."""
     if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
         return np.zeros(len(J))
-    return np.linalg.lstsq(J.T, -Q, rcond=RANK)[0]
+    return np.asarray(np.linalg.lstsq(J.T, -Q, rcond=RANK)[0])

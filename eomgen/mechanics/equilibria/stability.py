@@ -183,7 +183,7 @@ class _Place:
         others = [k for k in range(len(self.statics.q)) if k not in along]
         if others:
             Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=LEAST_CHANGE)[0]
-        return Z.T @ self._numbers(self._H) @ Z
+        return np.asarray(Z.T @ self._numbers(self._H) @ Z)
 
     def _exact_K(self, along: Sequence[int]) -> StiffnessRows | None:
         positive = positive_parameters(self.statics.system.scope)

@@ -74,7 +74,7 @@ class Possible:
             values = evaluate(scalars, state, fifty_digits())
         except (NoValue, ZeroDivisionError):
             raise DerivationError("the motion is singular near the start") from None
-        return max(map(abs, values)) < ZERO_AT_50
+        return bool(max(map(abs, values)) < ZERO_AT_50)
 
     @cached_property
     def states(self) -> tuple[State, ...]:

@@ -17,7 +17,7 @@ from eomgen.mechanics.equations.work import placeless_forces
 from eomgen.symbolic.expression.derivative import pullback, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus
+from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus, vector_of
 
 
 def assembled_by_wrenches(system: System) -> Assembly:
@@ -84,11 +84,11 @@ def _bias(inertia: SpatialInertia, xi: Twist, alpha: Twist) -> Wrench:
     return inertia.momentum(alpha).plus(turning)
 
 
-def _twist(entries) -> Twist:
-    return Twist(tuple(entries[:3]), tuple(entries[3:]))
+def _twist(entries: Sequence[Scalar]) -> Twist:
+    return Twist(vector_of(entries[:3]), vector_of(entries[3:]))
 
 
-def _with_armatures(motion: Motion, M, c) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+def _with_armatures(motion: Motion, M: list[list[Scalar]], c: list[Scalar]) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
     for i, j, value in armature_mass(motion):
         M[i][j] = M[i][j] + value
     added = armature_bias(motion, len(c))

@@ -127,14 +127,14 @@ class _Search:
 
     def scattered(self, rng: Random) -> np.ndarray:
         shifts = [rng.uniform(-math.pi, math.pi) if turn else rng.uniform(-1, 1) * self.reach for turn in self.turns]
-        return self.here + np.array(shifts)
+        return np.asarray(self.here + np.array(shifts))
 
     def closed(self, place: np.ndarray) -> np.ndarray | None:
         """The regular place to which Newton's method leads, angles as near to the start's as they can be."""
         found = CLOSING_IN_FLOATS.root(self, place)
         if not found.met or not self.is_regular(self.slopes(found.x)) or not self._is_upright(found.x):
             return None
-        return self.here + self.apart(found.x, self.here)
+        return np.asarray(self.here + self.apart(found.x, self.here))
 
     def left(self, place: np.ndarray) -> Sequence[float]:
         """The gaps."""
@@ -145,7 +145,7 @@ class _Search:
         return self._at(place)[1]
 
     def moved(self, place: np.ndarray, step: Sequence[float]) -> np.ndarray:
-        return place + np.array(step)
+        return np.asarray(place + np.array(step))
 
     def is_regular(self, J: np.ndarray) -> bool:
         """Whether no other branch meets this one there: slopes against those at the start."""
@@ -167,7 +167,7 @@ class _Search:
     def apart(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """The difference, whole turns left out."""
         d = one - other
-        return np.where(self.turns, (d + np.pi) % (2 * np.pi) - np.pi, d)
+        return np.asarray(np.where(self.turns, (d + np.pi) % (2 * np.pi) - np.pi, d))
 
     def same(self, one: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.max(np.abs(self.apart(one, other))) < SAME_PLACE)

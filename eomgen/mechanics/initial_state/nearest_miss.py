@@ -97,4 +97,4 @@ class _Search:
             values = np.array(evaluate(scalars, state, FLOAT), dtype=float)
         except (NoValue, ZeroDivisionError, OverflowError):
             return np.full(len(scalars), FAILED)
-        return np.nan_to_num(values, nan=FAILED, posinf=FAILED, neginf=-FAILED)
+        return np.asarray(np.nan_to_num(values, nan=FAILED, posinf=FAILED, neginf=-FAILED))

@@ -30,12 +30,13 @@ def known_parameters(scope: Scope) -> dict[Node, float]:
 
 def known_exactly(scope: Scope) -> dict[Node, Scalar]:
     """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
-    parameters, values = scope.symbols.parameters, dict[Node, Scalar]()
+    parameters, values = scope.symbols.parameters, dict[Node, Any]()
     for name, value in exact_parameters(scope.model).items():  # those that another needs come before it
         part = scope.model.parameters[name]
         if isinstance(value, float) and part is not None and part.value is not None:
-            (value,) = substituted((scope.value(part.value),), values)
-        values[parameters[name]] = value
+            (values[parameters[name]],) = substituted((scope.value(part.value),), values)
+        else:
+            values[parameters[name]] = value
     return values
 
 

@@ -229,11 +229,13 @@ def _mass(asked: Asked) -> Scalar:
     if body == "ground":
         raise DerivationError(f"'{asked.call}': the ground has no mass")
     if len(asked.call.args) == 1:
-        return mass_properties(asked.motion.scope, body).m
+        whole: Scalar = mass_properties(asked.motion.scope, body).m
+        return whole
     parts = asked.motion.scope.model.bodies[body].parts
     if parts is None:
         raise DerivationError(f"'{asked.call}': body '{body}' is not made of parts", mend=f"write mass_of({body})")
-    return made_of(asked.motion.scope, body).pieces[asked.number(1, len(parts)) - 1].mass.m
+    part: Scalar = made_of(asked.motion.scope, body).pieces[asked.number(1, len(parts)) - 1].mass.m
+    return part
 
 
 def _momentum(axis: int) -> Callable[[Asked], Scalar]:

@@ -184,7 +184,7 @@ def _applied(wrenches: _Wrenches) -> np.ndarray:
     for load in (*system.loads.placed, *weights(system.loads)):
         vectors += _about_origin(system, load)
     given = numbers.array(tuple(vectors)).reshape(-1, 6).sum(axis=0)
-    return given + sum(wrenches.of_effects(joint_effects(system)), start=np.zeros(6))
+    return np.asarray(given + sum(wrenches.of_effects(joint_effects(system)), start=np.zeros(6)))
 
 
 def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:

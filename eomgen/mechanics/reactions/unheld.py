@@ -110,4 +110,4 @@ def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
         return moved
     J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
     _, sizes, V = np.linalg.svd(J)
-    return moved @ V[int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :].T
+    return np.asarray(moved @ V[int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :].T)

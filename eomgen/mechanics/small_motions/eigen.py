@@ -66,7 +66,7 @@ def _is_wide(values: np.ndarray) -> bool:
 def _as_floats(A: Any, kind: type) -> np.ndarray:
     """The columns, each with the largest entry of size 1."""
     found = np.array([[kind(A[i, j]) for j in range(A.cols)] for i in range(A.rows)])
-    return found / abs(found).max(axis=0)
+    return np.asarray(found / abs(found).max(axis=0))
 
 
 # -- zeros ---------------------------------------------------------------------------------------------------------

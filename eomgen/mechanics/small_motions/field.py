@@ -55,7 +55,8 @@ class Numbers:
         return x
 
     def size(self, x: MatrixEntry) -> float:
-        return abs(x)
+        size: float = abs(x)
+        return size
 
     def with_values(self, more: Mapping[Node, MatrixEntry]) -> Numbers:
         number = fifty_digits().number

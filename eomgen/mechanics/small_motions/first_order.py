@@ -177,7 +177,7 @@ def _elsewhere(reference: ReferenceMotion) -> dict[Node, Any]:
 
 def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     """Of each column whether it is the same in both."""
-    return np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0)
+    return np.asarray(np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0))
 
 
 def _floats(A: Entries, columns: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -267,7 +267,10 @@ def _other_rest(
     """Rest beside what the model drives steadily, or the start without speeds."""
     first = first_order_of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())
-    ways = (lambda: relative_rest(system, first.assembly, guess), lambda: at_the_start(system, at_rest=True))
+    ways: tuple[Callable[[], ReferenceMotion], ...] = (
+        lambda: relative_rest(system, first.assembly, guess),
+        lambda: at_the_start(system, at_rest=True),
+    )
     for way in ways[0 if driven else 1 :]:
         try:
             reference = way()

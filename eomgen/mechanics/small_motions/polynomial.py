@@ -19,7 +19,8 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.terms import Terms, TooLarge, terms_plus
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.circular_equations import wave_free
@@ -55,7 +56,7 @@ class Polynomial:
         return Polynomial(tuple(simplest(-c, Work.ANSWER, positive) for c in self.coefficients))
 
 
-def graph_of(equations: LinearEquations) -> Graph:
+def graph_of(equations: LinearEquations) -> Owner:
     return equations.speeds[0].graph
 
 

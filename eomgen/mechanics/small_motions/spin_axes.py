@@ -112,7 +112,10 @@ def _over_standing_speeds(field: NumberField, system: System, e: LinearEquations
     return replace(
         e,
         speeds=tuple(system.scope.graph.symbol(labels[k] + "'") if k in labels else u for k, u in enumerate(e.speeds)),
-        **{name: matrix_product(field, front, A) for name, A in (("M", MU), ("C", C), ("K", e.K), ("B", e.B))},
+        M=matrix_product(field, front, MU),
+        C=matrix_product(field, front, C),
+        K=matrix_product(field, front, e.K),
+        B=matrix_product(field, front, e.B),
         E=matrix_product(field, e.E, U),
     )
 

@@ -122,10 +122,10 @@ class _Residuals:
     mask: np.ndarray
 
     def left(self, here: Here) -> np.ndarray:
-        return here.residuals / here.row_sizes
+        return np.asarray(here.residuals / here.row_sizes)
 
     def slopes(self, here: Here) -> np.ndarray:
-        return here.slopes[:, self.mask] * here.sizes[self.mask] / here.row_sizes[:, None]
+        return np.asarray(here.slopes[:, self.mask] * here.sizes[self.mask] / here.row_sizes[:, None])
 
     def moved(self, here: Here, step: Sequence[float]) -> Here:
         whole = np.zeros(len(self.mask))
@@ -198,7 +198,7 @@ class Here:
         w = self.sizes[-1]
         inertia = np.append(abs(floats(self.equations.M)).max(axis=1) * w * w, np.ones(len(self.still)))
         largest = (abs(self.slopes) * self.sizes).max(axis=1)
-        return np.maximum(largest, COMPUTED * inertia)
+        return np.asarray(np.maximum(largest, COMPUTED * inertia))
 
     @property
     def sizes(self) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import cache
+from typing import Any
 
 from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import Catalog
@@ -78,14 +79,19 @@ def _unit_of(catalog: Catalog, name: str) -> Unit | None:
     for table in ("parameters", "coordinates", "inputs", "unknowns"):
         part = catalog.table(table).get(name)
         if part is not None:
-            return part.unit
+            return _unit_given(part)
     return None
+
+
+def _unit_given(part: Any) -> Unit | None:
+    unit: Unit | None = part.unit
+    return unit
 
 
 def _needed(leaf: Leaf) -> Unit | None:
     """The unit of a field, from its rule or from the part whose own unit its numbers are in."""
     if leaf.path[0] == "coordinates" and leaf.path[-1] in ("start", "near", "motion"):
-        return leaf.part.unit
+        return _unit_given(leaf.part)
     unit = getattr(leaf.rule, "unit", None)
     return None if unit is None else _si(unit)
 

@@ -107,13 +107,17 @@ def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> I
 
 
 def _of_holes(composite: Composite) -> float:
-    return float(sum(placed.mass.m for placed in composite.pieces if placed.sign < 0))
+    return _float(sum(placed.mass.m for placed in composite.pieces if placed.sign < 0))
+
+
+def _float(x: Any) -> float:
+    return float(x)
 
 
 def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Finding]:
     I = composite.whole.I
-    moments = [float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
-    size = max(abs(float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
+    moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
+    size = max(abs(_float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
     if not possible(moments, size):
         told = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from typing import Any
 
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
 from eomgen.model.findings import Finding, one_of
@@ -54,9 +55,9 @@ def _points(catalog: Catalog) -> Iterator[Finding]:
                 yield Finding(path, what, "take another name, or leave it out", key=True)
 
 
-def _points_of_its_own(part) -> tuple[str, ...]:
+def _points_of_its_own(part: Any) -> tuple[str, ...]:
     if part.shape is not None:
-        return part.shape.point_names
+        return tuple(part.shape.point_names)
     heavy = any(source is not None for source in (part.mass, part.center, part.parts))
     return ("origin", "center") if heavy else ()
 

@@ -83,20 +83,20 @@ def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Findin
         axes = getattr(getattr(body, "joint", None), "axes", None)
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
             continue
-        a, b = ([value_of(component, values) for component in axis] for axis in axes)
+        a, b = (list[Any](value_of(component, values) for component in axis) for axis in axes)
         if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
             yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
 
 
-def _positive(catalog: Catalog, values: dict) -> Iterator[Finding]:
+def _positive(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     for name, part in catalog.table("parameters").items():
         if part is not None and part.positive and name in values and values[name] <= 0:
             what = f"parameter '{name}' is declared positive but is {float(values[name]):g}"
             yield Finding(("parameters", name, "value"), what)
 
 
-def _inertias(catalog: Catalog, values: dict) -> Iterator[Finding]:
+def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
     for name, body in catalog.table("bodies").items():
         if body is None or body.inertia is None:
             continue

@@ -1,5 +1,6 @@
 """Equation: a tie written as an expression."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,6 +9,7 @@ from eomgen.model.constraints.measured import Measured
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Push, Scene
 from eomgen.model.kinds import Gap, VelocityLaw
+from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
@@ -30,9 +32,9 @@ class Equation(Constraint):
         assert law is not None, "one of gap and rate is given"
         measured = {call: Measured(scene, call) for call in law.calls}
         if self.gap is None:
-            values = {call: None if x.is_velocity else x.value for call, x in measured.items()}
-            rest, slopes = scene.slopes(law, values)
-            moved = {call: k for call, k in zip(values, slopes, strict=True) if measured[call].is_velocity}
+            known = {call: None if x.is_velocity else x.value for call, x in measured.items()}
+            rest, slopes = scene.slopes(law, known)
+            moved = {call: k for call, k in zip(known, slopes, strict=True) if measured[call].is_velocity}
             return (_row(None, rest, _pushes(measured, moved)),)
         values = {call: x.value for call, x in measured.items()}
         gap, slopes = scene.slopes(law, values)
@@ -45,7 +47,7 @@ class Equation(Constraint):
         return law is not None and any(len(call.args) < 2 or str(call.args[1]) == "ground" for call in law.calls)
 
 
-def _pushes(measured: dict, slopes: dict) -> tuple[Push, ...]:
+def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, AnyScalar]) -> tuple[Push, ...]:
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
 
 

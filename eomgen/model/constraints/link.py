@@ -10,7 +10,7 @@ from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Flag, Length, TwoPoints
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ class Link(Constraint):
         first, second = (scene.place(point) for point in self.points)
         r = minus(scene.position(second), scene.position(first))
         L = self._length(scene, r)
-        d: Vector = tuple(over(x, L) for x in r)  # type: ignore[assignment]
+        d = vector_of(over(x, L) for x in r)
         pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
         return (TieRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
 

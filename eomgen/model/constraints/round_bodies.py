@@ -191,10 +191,9 @@ def _other_wave(scene: Scene, x: AnyScalar) -> AnyScalar | None:
     """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
     if type(x) is Node and x.op == "neg":
         return _other_wave(scene, x.args[0])
-    other = {"sin": cos, "cos": sin}.get(x.op) if type(x) is Node else None
-    if other is None:
+    if type(x) is not Node or x.op not in ("sin", "cos"):
         return None
-    found = other(x.args[0])
+    found: AnyScalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
     return -found if _sense(scene, found) < 0 else found
 
 

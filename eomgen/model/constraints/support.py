@@ -10,7 +10,7 @@ from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
-from eomgen.symbolic.expression.spatial import Vector, dot, minus
+from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class Support(Constraint):
         n = direction_of(scene, scene.vector(self.normal))
         place = scene.place(self.point)
         position = scene.position(place)
-        origin = tuple(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
+        origin = vector_of(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
         along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
         rubs = [(PointForce(place, t),) for t in along]
         gap = dot(n, minus(position, origin))

@@ -11,9 +11,10 @@ from eomgen.model.forces.load import BodyPoint, Scene
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, apply, cross, dot, minus, plus, times
+from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, apply, cross, dot, minus, plus, times, vector_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +103,7 @@ def on_curved(scene: Scene, track: Curved, center: Vector, ball: RollingBall) ->
     out = minus(center, scene.position(track.anchor))
     along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
     d = out if track.axis is None else minus(out, along)
-    n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
+    n = vector_of(track.side * over(x, D) for x in d)
     arm = plus(along, times(track.side * track.r, n))
     return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
 
@@ -112,7 +113,7 @@ def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> 
     D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
     rim = wheel.nearest_to_ball(scene, out, track.side)
     d = plus(out, rim)
-    n: Vector = tuple(track.side * over(x, D) for x in d)  # type: ignore[assignment]
+    n = vector_of(track.side * over(x, D) for x in d)
     reach = minus(rim, times(wheel.tube, n))
     return TrackContact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
 
@@ -145,6 +146,6 @@ def curved(scene: Scene, on: str | None, circle: Circle) -> Curved:
     return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
 
 
-def anchor_of(scene: Scene, on: str | None, at: tuple | str) -> BodyPoint:
+def anchor_of(scene: Scene, on: str | None, at: tuple[Expression, ...] | str) -> BodyPoint:
     """A place of the track: of the ground, or in the axes of the body `on`."""
     return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.model.forces.load import BodyPoint, Load, PointForce, Scene
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import is_zero
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times
+from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Reach:
         return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))
 
 
-def reach(scene: Scene, points: tuple[str, ...], along: tuple | None = None) -> Reach:
+def reach(scene: Scene, points: tuple[str, ...], along: tuple[Expression, ...] | None = None) -> Reach:
     """The line between two points: l = |p2 - p1|, or n . (p2 - p1) along a fixed direction n."""
     ends = (scene.place(points[0]), scene.place(points[1]))
     gap = minus(scene.position(ends[1]), scene.position(ends[0]))
@@ -45,10 +46,10 @@ def reach(scene: Scene, points: tuple[str, ...], along: tuple | None = None) -> 
                 f"'{points[0]}' and '{points[1]}' are always at one place: there is no line between them",
                 mend="let the force act between points that part, or give its direction by `along`",
             )
-        direction = tuple(over(x, length) for x in gap)
+        direction = vector_of(over(x, length) for x in gap)
     else:
         n = scene.vector(along)
         size = sqrt(dot(n, n))
-        direction = tuple(over(x, size) for x in n)
-        length = dot(gap, direction)  # type: ignore[arg-type]
-    return Reach(ends, length, direction, dot(rate, direction))  # type: ignore[arg-type]
+        direction = vector_of(over(x, size) for x in n)
+        length = dot(gap, direction)
+    return Reach(ends, length, direction, dot(rate, direction))

@@ -18,7 +18,7 @@ from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
-from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
 
 Scalars = tuple[Any, ...]
 Column = tuple[Any, Any, Any, Any, Any, Any]
@@ -131,7 +131,7 @@ def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: V
     if components is None:
         return default
     values = [value(c) for c in components]
-    return tuple(values + [0] * (3 - len(values)))
+    return vector_of(values + [0] * (3 - len(values)))
 
 
 def unit(axis: Vector) -> Vector:
@@ -140,7 +140,7 @@ def unit(axis: Vector) -> Vector:
     if square == 1:
         return axis
     length = sqrt(square)
-    return tuple(over(a, length) for a in axis)
+    return vector_of(over(a, length) for a in axis)
 
 
 def oriented(turns: tuple[Turned, ...] | None, value: ValueOf) -> Matrix:

@@ -93,7 +93,7 @@ def crossing(corners: list[tuple[Any, Any]]) -> bool:
 
 def _cross(a: Any, b: Any, c: Any, d: Any) -> bool:
     """Whether the segments a b and c d cross inside both."""
-    return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0
+    return bool(_turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0)
 
 
 def _turn(a: Any, b: Any, c: Any) -> Any:

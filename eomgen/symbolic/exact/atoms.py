@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from eomgen.symbolic.exact.terms import AngleSum, Key, Monomial, Terms
-from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import Owner
 
 RADIAN = -1  # the index of the angle of a plain number: sin(1)
-SortKey = tuple[Any, ...]  # sorts monomials as they are written
+SortKey = tuple[int | Monomial, ...]  # sorts monomials as they are written
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Atoms:
         opaque: what those atoms are that are no symbols.
     """
 
-    graph: Graph
+    graph: Owner
     nodes: dict[int, Node] = field(default_factory=dict)
     opaque: dict[int, Opaque] = field(default_factory=dict)
 
@@ -48,7 +48,7 @@ class Atoms:
 
     def place(self, monomial: Monomial) -> SortKey:
         """Accelerations before squares of rates before rates before the rest; then in the order of declaration."""
-        moving: tuple[list[Any], list[Any], list[Any]] = ([], [], [])
+        moving: tuple[list[tuple[int, int]], list[tuple[int, int]], list[tuple[int, int]]] = ([], [], [])
         for atom, e in monomial:
             moving[min(2, self._primes(atom))].append((atom, -e))
         still, rates, accelerations = moving

@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Callable, Collection
 
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import powers_in, reduced
@@ -22,6 +21,7 @@ from eomgen.symbolic.exact.terms import (
     terms_scaled,
     terms_times,
 )
+from eomgen.symbolic.exact.trigonometric_form import Factors
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -39,7 +39,9 @@ def with_squares(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] 
     return _rewritten(x, limit, positive, _by_parameters)
 
 
-def _rewritten(x: Scalar, limit: int, positive: Collection[Node], write: Any) -> Scalar:
+def _rewritten(
+    x: Scalar, limit: int, positive: Collection[Node], write: Callable[[Expansion, Writer, Terms], Scalar]
+) -> Scalar:
     if type(x) is not Node:
         return x
     try:
@@ -62,7 +64,7 @@ def _parted(expansion: Expansion, monomial: Monomial) -> tuple[Monomial, Monomia
 
 def _by_what_moves(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar:
     """sum of (sum of parameters) * (product of what moves)"""
-    groups: dict[tuple[Any, ...], Terms] = {}
+    groups: dict[tuple[Monomial, Factors], Terms] = {}
     for c, monomial, factors in writer.written(terms):
         still, moving = _parted(expansion, monomial)
         accumulate(groups.setdefault((moving, factors), {}), (still, ()), c)

@@ -31,7 +31,8 @@ from eomgen.symbolic.exact.terms import (
     wave,
 )
 from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -57,7 +58,7 @@ class Expansion:
         positive: symbols that stand for positive numbers: roots of their squares are taken.
     """
 
-    def __init__(self, graph: Graph, limit: int, positive: Collection[Node] = ()) -> None:
+    def __init__(self, graph: Owner, limit: int, positive: Collection[Node] = ()) -> None:
         self.graph, self.limit, self.work = graph, limit, 0
         self.positive = frozenset(x.index for x in positive)
         self.atoms = Atoms(graph)

@@ -19,7 +19,8 @@ from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomi
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
@@ -50,7 +51,7 @@ class NormalForm:
         terms: ((monomial, wave), coefficient), ascending.
     """
 
-    graph: Graph = field(compare=False)
+    graph: Owner = field(compare=False)
     terms: tuple[tuple[Key, Number], ...]
 
     @property

@@ -20,6 +20,7 @@ from eomgen.symbolic.expression.rational import Fraction
 
 MOST_AXES = 4  # angles, for other forms than that in cosines
 
+Exchange = tuple[int, int, int, tuple[int, int]]
 Element = Any  # of sympy's PolyRing
 
 
@@ -95,16 +96,14 @@ class Polynomials:
             degrees = {e[i] + e[i + 1] for e in element.monoms()}
             if len({degree % 2 for degree in degrees}) == 1:
                 top = max(degrees)
-                element = self._each(element, i, lambda c, s, top=top: (c, s, (top - c - s) // 2, (0, 1)))
+                element = self._each(element, i, _to_degree(top))
         return element
 
     def _columns(self) -> Iterable[tuple[int, AngleSum]]:
         """(place of the cosine among the generators, axis); the sine follows."""
         return ((len(self._atoms) + 2 * k, axis) for k, axis in enumerate(self._axes))
 
-    def _each(
-        self, element: Element, i: int, change: Callable[[int, int], tuple[int, int, int, tuple[int, int]]]
-    ) -> Element:
+    def _each(self, element: Element, i: int, change: Callable[[int, int], Exchange]) -> Element:
         """Every c^m s^n as c^k s^l f^j; f = 1 - s^2 for (1, -1), c^2 + s^2 for (0, 1)."""
         cosine, sine = self.ring.gens[i : i + 2]
         total = self.ring.zero
@@ -113,6 +112,10 @@ class Polynomials:
             f = one + (0 if one else cosine**2) + sign * sine**2
             total += (f**j * number).mul_monom((*exponents[:i], k, l, *exponents[i + 2 :]))
         return total
+
+
+def _to_degree(top: int) -> Callable[[int, int], Exchange]:
+    return lambda c, s: (c, s, (top - c - s) // 2, (0, 1))
 
 
 def _coprime(above: Element, below: Element) -> tuple[Element, Element]:

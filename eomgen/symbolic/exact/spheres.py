@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import product
 from math import factorial
-from typing import Any
 
 from eomgen.symbolic.exact.terms import Key, Terms
 from eomgen.symbolic.expression.exact_numbers import tidy
@@ -69,7 +68,7 @@ def _shortest(polynomial: SpherePolynomial) -> SpherePolynomial:
     return min(forms, key=lambda form: (len(form), sum(map(sum, form))))
 
 
-def _by_parts(sphere: SphereSymbols, terms: Terms, change: Callable[..., Any]) -> Terms:
+def _by_parts(sphere: SphereSymbols, terms: Terms, change: Callable[[SpherePolynomial], SpherePolynomial]) -> Terms:
     """The sum, of which `change` replaces what each product of other symbols and waves is multiplied by."""
     parts: dict[Key, SpherePolynomial] = {}
     for (monomial, w), c in terms.items():

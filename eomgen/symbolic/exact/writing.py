@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from functools import reduce
 from operator import and_
-from typing import Any
 
 from eomgen.symbolic.exact.atoms import RADIAN
 from eomgen.symbolic.exact.expansion import Expansion
@@ -15,6 +14,7 @@ from eomgen.symbolic.exact.spheres import shortest_on
 from eomgen.symbolic.exact.terms import (
     ONE,
     AngleSum,
+    Key,
     Monomial,
     Terms,
     Wave,
@@ -38,7 +38,7 @@ class Writer:
         self.atoms, self.graph, self.positive = expansion.atoms, expansion.graph, expansion.positive
         self._expansion = expansion
         self._written_atoms: dict[int, Scalar] = {}
-        self._roots: dict[tuple[Any, ...], Scalar] = {}
+        self._roots: dict[tuple[tuple[tuple[Key, Number], ...], ...], Scalar] = {}
 
     def sum(self, terms: Terms) -> Scalar:
         """The terms added up; those over one divisor share one fraction."""

@@ -7,10 +7,8 @@ sin(atan2(3, 4)) = 3/5.
 
 from __future__ import annotations
 
-from typing import Any
-
 from eomgen.symbolic.expression.exact_numbers import Number, tidy
-from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.node import Node, Owner, Scalar, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 
 _AFTER_QUARTERS = {  # name -> what it is after 0, 1, 2, 3 quarter turns
@@ -33,7 +31,7 @@ _INVERSES = {  # function -> {square of its argument: its value in units of pi}
 LARGEST_MULTIPLE = 4  # of an inverse function under a sine or cosine
 
 
-def circular(graph: Any, name: str, a: Scalar) -> Scalar:
+def circular(graph: Owner, name: str, a: Scalar) -> Scalar:
     """sin or cos (the name) of a on the graph: the argument starts with a plus, multiples of pi are in [0, 1/2).
 
     Where nothing else is in it, they are in [0, 1/4].
@@ -69,7 +67,7 @@ def circular(graph: Any, name: str, a: Scalar) -> Scalar:
     return graph.mul(sign * flip, graph.held(name, (angle,)))
 
 
-def _special(graph: Any, name: str, turn: Number) -> Scalar | None:
+def _special(graph: Owner, name: str, turn: Number) -> Scalar | None:
     """sin or cos of turn*pi at the multiples of pi/6 and pi/4, else None."""
     turn = (turn + Fraction(1, 2) if name == "cos" else Fraction(turn)) % 2
     sign = 1
@@ -87,7 +85,7 @@ def _special(graph: Any, name: str, turn: Number) -> Scalar | None:
 # -- inverse functions ------------------------------------------------------------------------------
 
 
-def inverse_circular(graph: Any, name: str, a: Scalar) -> Scalar | None:
+def inverse_circular(graph: Owner, name: str, a: Scalar) -> Scalar | None:
     """asin, acos or atan of a number whose angle is a multiple of pi/6 or pi/4, else None."""
     found = _signed_square(a)
     if found is None:
@@ -113,7 +111,7 @@ def _signed_square(a: Scalar) -> tuple[int, Number] | None:
     return None
 
 
-def _unfolds(graph: Any, atom: Node | None, c: Number) -> bool:
+def _unfolds(graph: Owner, atom: Node | None, c: Number) -> bool:
     """Whether the sine of c times the atom is known without the atom: c asin(x), with a whole c."""
     if atom is None or type(c) is not int or abs(c) > LARGEST_MULTIPLE:
         return False
@@ -123,7 +121,7 @@ def _unfolds(graph: Any, atom: Node | None, c: Number) -> bool:
     return within or atom.op == "atan"
 
 
-def _of_inverse(graph: Any, name: str, a: Scalar, atom: Node, c: int) -> Scalar:
+def _of_inverse(graph: Owner, name: str, a: Scalar, atom: Node, c: int) -> Scalar:
     """sin or cos of a = rest + c atom by the addition theorem."""
     rest = graph.add(a, graph.mul(-c, atom))
     cosine, sine = _turned(graph, atom, abs(c))
@@ -134,13 +132,13 @@ def _of_inverse(graph: Any, name: str, a: Scalar, atom: Node, c: int) -> Scalar:
     return graph.add(graph.mul(sin_rest, cosine), graph.mul(cos_rest, sine))
 
 
-def _of_slope(graph: Any, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
+def _of_slope(graph: Owner, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
     """(cos, sin) of the direction of (x, y)."""
     length = graph.sqrt(graph.add(graph.mul(x, x), graph.mul(y, y)))
     return graph.div(x, length), graph.div(y, length)
 
 
-def _of_double_slope(graph: Any, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
+def _of_double_slope(graph: Owner, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
     """(cos, sin) of twice the angle of the direction of (x, y)."""
     square = graph.mul(y, y)
     below = graph.add(graph.mul(x, x), square)
@@ -150,7 +148,7 @@ def _of_double_slope(graph: Any, y: Scalar, x: Scalar) -> tuple[Scalar, Scalar]:
     )
 
 
-def _turned(graph: Any, atom: Node, n: int) -> tuple[Scalar, Scalar]:
+def _turned(graph: Owner, atom: Node, n: int) -> tuple[Scalar, Scalar]:
     """(cos, sin) of n times the atom."""
     x = atom.args[0]
     if atom.op in ("atan", "atan2"):  # of y/x; twice the angle needs no root
@@ -159,7 +157,8 @@ def _turned(graph: Any, atom: Node, n: int) -> tuple[Scalar, Scalar]:
     else:
         other = graph.sqrt(graph.add(1, graph.neg(graph.mul(x, x))))
         point = (x, other) if atom.op == "acos" else (other, x)
-    cosine, sine = 1, 0
+    cosine: Scalar = 1
+    sine: Scalar = 0
     for _ in range(n):
         cosine, sine = (
             graph.add(graph.mul(cosine, point[0]), graph.neg(graph.mul(sine, point[1]))),

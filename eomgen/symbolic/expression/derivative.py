@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.node import argument
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
 
@@ -163,7 +164,7 @@ def _rate(x: Node, rates: Sequence[Scalar]) -> Scalar:
     """The rate of x from the rates of its arguments."""
     op = x.op
     if op == "mul":
-        a, b = x.args
+        a, b = argument(x, 0), argument(x, 1)
         return 2 * (a * rates[0]) if a is b else rates[0] * b + a * rates[1]
     if op == "add":
         return rates[0] + rates[1]
@@ -189,7 +190,7 @@ def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
     """What each argument a of x gets of x's adjoint w: (a, w dx/da)."""
     op, graph = x.op, x.graph
     if op == "mul":
-        a, b = x.args
+        a, b = argument(x, 0), argument(x, 1)
         return [(a, 2 * (a * w))] if a is b else [(a, w * b), (b, a * w)]
     if op == "add":
         return [(a, w) for a in x.args]

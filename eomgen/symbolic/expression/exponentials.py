@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.node import Node, Owner, Scalar, linear_terms
 
 LARGEST_POWER = 8  # of what stands under a logarithm
 
 
-def exponential(graph: Any, a: Scalar) -> Scalar:
+def exponential(graph: Owner, a: Scalar) -> Scalar:
     """exp(a) on the graph."""
     logarithms = {x: c for x, c in linear_terms(a).items() if x is not None and _unfolds(x, c)}
     if not logarithms:

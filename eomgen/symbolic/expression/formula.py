@@ -9,14 +9,15 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.symbolic.expression import scalar_operations
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression.scalar_operations import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled
 
+Value = TypeVar("Value")
 Instruction = tuple[str, Any]
 """("number", value) | ("name", name) | ("neg", None) | ("+" "-" "*" "/" "^", None) | ("function", (name, count))
 | ("call", Call) | ("sampled", Sampled): a function through samples, of what stands before it"""
@@ -107,7 +108,7 @@ class Expression:
         """The functions of outputs that stand in it, in the order written (those in their arguments not)."""
         return tuple(what for kind, what in self.code if kind == "call")
 
-    def evaluate(self, lookup: Mapping[str, AnyScalar], call: Callable[[Call], AnyScalar] | None = None) -> AnyScalar:
+    def evaluate(self, lookup: Mapping[str, Value], call: Callable[[Call], Value] | None = None) -> Value:
         """The value, in the arithmetic of the values given.
 
         Args:
@@ -118,7 +119,7 @@ class Expression:
             ExpressionError: an unknown name; no value there (1/0); a call where none has a meaning. It
                 carries the column.
         """
-        stack: list[AnyScalar] = []
+        stack: list[Value] = []
         pi = lookup.get("pi")
         for position, (kind, what) in enumerate(self.code):
             if kind == "number":

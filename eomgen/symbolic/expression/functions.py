@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, overload
 
-from eomgen.symbolic.expression.graph import CONSTANTS, Node, is_zero
+from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import EXACT, Fraction, known_to_sympy
 
 NAMES = {
@@ -34,6 +34,10 @@ NAMES = {
 """The functions of the model file's grammar and how many arguments each takes (min and max: two or more)."""
 
 
+@overload
+def function(name: str, *args: Scalar) -> Scalar: ...
+@overload
+def function(name: str, *args: Any) -> Any: ...
 def function(name: str, *args: Any) -> Any:
     """The function of the table NAMES at its arguments, in the arithmetic of the arguments.
 
@@ -71,18 +75,34 @@ def _sympy_function(name: str, *args: Any) -> Any:
     return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
 
 
+@overload
+def sin(a: Scalar) -> Scalar: ...
+@overload
+def sin(a: Any) -> Any: ...
 def sin(a: Any) -> Any:
     return 0 if type(a) is int and a == 0 else function("sin", a)
 
 
+@overload
+def cos(a: Scalar) -> Scalar: ...
+@overload
+def cos(a: Any) -> Any: ...
 def cos(a: Any) -> Any:
     return 1 if type(a) is int and a == 0 else function("cos", a)
 
 
+@overload
+def sqrt(a: Scalar) -> Scalar: ...
+@overload
+def sqrt(a: Any) -> Any: ...
 def sqrt(a: Any) -> Any:
     return function("sqrt", a)
 
 
+@overload
+def over(a: Scalar, b: Scalar) -> Scalar: ...
+@overload
+def over(a: Any, b: Any) -> Any: ...
 def over(a: Any, b: Any) -> Any:
     """a / b, exact when both are exact (Python's int / int would be a float)."""
     if isinstance(a, int) and isinstance(b, int):
@@ -91,6 +111,10 @@ def over(a: Any, b: Any) -> Any:
     return a / b
 
 
+@overload
+def inner(a: Iterable[Scalar], b: Iterable[Scalar]) -> Scalar: ...
+@overload
+def inner(a: Iterable[Any], b: Iterable[Any]) -> Any: ...
 def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
     """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)

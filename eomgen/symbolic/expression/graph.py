@@ -29,7 +29,7 @@ from eomgen.symbolic.expression.exact_numbers import (
 )
 from eomgen.symbolic.expression.exponentials import exponential
 from eomgen.symbolic.expression.factors import coefficient, common_of_squares, same_number
-from eomgen.symbolic.expression.node import Node, Scalar, collected, is_zero, linear_terms
+from eomgen.symbolic.expression.node import Node, Scalar, argument, collected, is_zero, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 
@@ -57,7 +57,7 @@ class Graph:
     """The owner of a set of expressions, each held once."""
 
     def __init__(self) -> None:
-        self._nodes: dict[tuple[Any, ...], Node] = {}
+        self._nodes: dict[tuple[str, tuple[Any, ...]], Node] = {}
         self._listed: tuple[Node, ...] = ()
         self._adopted: dict[Node, Node] = {}
         self.pi = self.held("pi", ())
@@ -133,7 +133,7 @@ class Graph:
         if type(a) is not Node:
             return -exact(a)
         if a.op == "neg":
-            return a.args[0]
+            return argument(a, 0)
         return a.graph.held("neg", (a,))  # a constant stays one until it is combined
 
     def add(self, a: Scalar, b: Scalar) -> Scalar:
@@ -184,9 +184,9 @@ class Graph:
             return self.mul(tidy(y.args[0] + 1), x)
         if y.op == "sub":
             if y.args[1] is x:  # x + (p - x)
-                return y.args[0]
+                return argument(y, 0)
         elif x.op == "sub" and x.args[1] is y:
-            return x.args[0]
+            return argument(x, 0)
         if x.op == "add" and type(x.args[0]) is not Node:  # (c + p) + y = c + (p + y)
             return self.add(x.args[0], self.add(x.args[1], y))
         if y.op == "add" and type(y.args[0]) is not Node:
@@ -205,9 +205,9 @@ class Graph:
                 return self.mul(tidy(cx - cy), fx)
         if x.op == "add":  # (p + y) - y
             if x.args[1] is y:
-                return x.args[0]
+                return argument(x, 0)
             if x.args[0] is y:
-                return x.args[1]
+                return argument(x, 1)
         if y.op == "add":  # x - (p + x)
             if y.args[1] is x:
                 return self.neg(y.args[0])
@@ -216,7 +216,7 @@ class Graph:
         if x.op == "sub" and x.args[0] is y:  # (y - p) - y
             return self.neg(x.args[1])
         if y.op == "sub" and y.args[0] is x:  # x - (x - p)
-            return y.args[1]
+            return argument(y, 1)
         if x.op == "add" and type(x.args[0]) is not Node:
             return self.add(x.args[0], self.add(x.args[1], self.neg(y)))
         if y.op == "add" and type(y.args[0]) is not Node:
@@ -269,13 +269,13 @@ class Graph:
                     return self.mul(self.mul(k, k), self.held("mul", (f, f)))
         if x.op == "sqrt" and y.op == "sqrt":
             if x is y:
-                return x.args[0]
+                return argument(x, 0)
             if type(x.args[0]) is not Node and type(y.args[0]) is not Node:
                 return self.sqrt(x.args[0] * y.args[0])
         if y.op == "div" and y.args[1] is x:
-            return y.args[0]
+            return argument(y, 0)
         if x.op == "div" and x.args[1] is y:
-            return x.args[0]
+            return argument(x, 0)
         if y.op == "div" and y.args[0] == 1:
             return self._quotient(x, y.args[1])
         if x.op == "div" and x.args[0] == 1:
@@ -310,9 +310,9 @@ class Graph:
         if type(x) is Node:
             if x.op == "mul":
                 if x.args[0] is y:
-                    return x.args[1]
+                    return argument(x, 1)
                 if x.args[1] is y:
-                    return x.args[0]
+                    return argument(x, 0)
                 if type(x.args[0]) is not Node:
                     return self._scale_or_number(x.args[0], self._quotient(x.args[1], y))
             if y.op == "mul":

@@ -4,9 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from heapq import heappop, heappush
-from typing import Any, final
+from typing import Any, Protocol, final
 
 from eomgen.symbolic.expression.exact_numbers import Number, tidy
+
+
+class Owner(Protocol):
+    """What a node asks of the graph that owns it."""
+
+    pi: Node
+    spheres: list[tuple[Node, ...]]
+    text_sizes: dict[Node, int]
+
+    @property
+    def nodes(self) -> tuple[Node, ...]: ...
+    def held(self, op: str, args: tuple[Any, ...]) -> Node: ...
+    def symbol(self, name: str) -> Node: ...
+    def is_constant(self, x: Scalar) -> bool: ...
+    def neg(self, a: Scalar) -> Scalar: ...
+    def add(self, a: Scalar, b: Scalar) -> Scalar: ...
+    def mul(self, a: Scalar, b: Scalar) -> Scalar: ...
+    def div(self, a: Scalar, b: Scalar) -> Scalar: ...
+    def pow(self, base: Scalar, exponent: Scalar) -> Scalar: ...
+    def sqrt(self, a: Scalar) -> Scalar: ...
+    def call(self, name: str, *args: Scalar) -> Scalar: ...
+    def select(self, condition: Scalar, if_true: Scalar, if_false: Scalar) -> Scalar: ...
+    def adopted(self, a: Scalar) -> Scalar: ...
+    def reduced(self, x: Node) -> tuple[Any, ...]: ...
 
 
 @final
@@ -20,7 +44,7 @@ class Node:
 
     __slots__ = ("args", "graph", "index", "op")
 
-    def __init__(self, graph: Any, op: str, args: tuple, index: int) -> None:
+    def __init__(self, graph: Owner, op: str, args: tuple[Any, ...], index: int) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -32,45 +56,45 @@ class Node:
         """The name of a symbol."""
         if self.op != "symbol":
             raise TypeError(f"only a symbol has a name, not '{self.op}'")
-        return self.args[0]
+        return str(self.args[0])
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: Scalar) -> Scalar:
         return self.graph.add(self, other)
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: Scalar) -> Scalar:
         return self.graph.add(other, self)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: Scalar) -> Scalar:
         return self.graph.add(self, self.graph.neg(other))
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: Scalar) -> Scalar:
         return self.graph.add(other, self.graph.neg(self))
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: Scalar) -> Scalar:
         return self.graph.mul(self, other)
 
-    def __rmul__(self, other: Any) -> Any:
+    def __rmul__(self, other: Scalar) -> Scalar:
         return self.graph.mul(other, self)
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: Scalar) -> Scalar:
         return self.graph.div(self, other)
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: Scalar) -> Scalar:
         return self.graph.div(other, self)
 
-    def __pow__(self, other: Any) -> Any:
+    def __pow__(self, other: Scalar) -> Scalar:
         return self.graph.pow(self, other)
 
-    def __rpow__(self, other: Any) -> Any:
+    def __rpow__(self, other: Scalar) -> Scalar:
         return self.graph.pow(other, self)
 
-    def __neg__(self) -> Any:
+    def __neg__(self) -> Scalar:
         return self.graph.neg(self)
 
-    def __pos__(self) -> Any:
+    def __pos__(self) -> Scalar:
         return self
 
-    def __abs__(self) -> Any:
+    def __abs__(self) -> Scalar:
         return self.graph.call("abs", self)
 
     def __bool__(self) -> bool:
@@ -79,7 +103,7 @@ class Node:
     def __repr__(self) -> str:
         """Short; `text.to_text` writes the whole expression."""
         if self.op == "symbol":
-            return self.args[0]
+            return self.name
         return f"{self.op}({', '.join(_short(a) for a in self.args)})"
 
 
@@ -96,6 +120,12 @@ ScalarRow = tuple[Scalar, ...]
 ScalarRows = Sequence[Sequence[Scalar]]
 SparseRow = dict[int, Scalar]
 """A row of linear equations, entries that are 0 left out."""
+
+
+def argument(x: Node, k: int) -> Scalar:
+    """What x is made of, at place k."""
+    found: Scalar = x.args[k]
+    return found
 
 
 def linear_terms(a: Scalar) -> dict[Node | None, Number]:

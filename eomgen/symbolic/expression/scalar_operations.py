@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from math import isqrt
+from typing import Any, overload
 
 from eomgen.symbolic.expression import functions
-from eomgen.symbolic.expression.graph import Node, Number
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import EXACT, Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
 
+AnyScalar = Any
 LARGEST_MAGNITUDE = 1000  # in bits: an exact number still fits a double
 MOST_BITS = 5_000  # of a numerator or denominator: 9^9^9 is refused, not computed
 
@@ -104,6 +105,10 @@ def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
     return (a + (pi - pi)) ** b
 
 
+@overload
+def through_samples(sampled: Sampled, t: Node, pi: Any = None) -> Scalar: ...
+@overload
+def through_samples(sampled: Sampled, t: Any, pi: Any = None) -> Any: ...
 def through_samples(sampled: Sampled, t: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
     """The value at t of a function through samples; in the graph it stays one operation."""
     if type(t) is Node:

@@ -11,11 +11,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 
-AnyScalar = Any
+AnyScalar = Scalar
 Vector = tuple[AnyScalar, AnyScalar, AnyScalar]
 Matrix = tuple[Vector, Vector, Vector]
+Numbers = tuple[Any, Any, Any]  # a vector at one state: floats, or numbers of fifty digits
 
 ZERO: Vector = (0, 0, 0)
 IDENTITY: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from eomgen.symbolic.expression.graph import CONSTANTS, Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar
+from eomgen.symbolic.expression.node import Owner
 
 FREE = frozenset(("symbol", "pi", "neg"))
 _INDEX = attrgetter("index")
@@ -44,7 +45,7 @@ def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node]
     return sorted(seen, key=_INDEX)
 
 
-def united(outputs: Sequence[Scalar]) -> tuple[Graph, list[Scalar]]:
+def united(outputs: Sequence[Scalar]) -> tuple[Owner, list[Scalar]]:
     """(graph, outputs) with the constants that have no graph of their own taken into that of the others."""
     home = next((x.graph for x in outputs if type(x) is Node and x.graph is not CONSTANTS), CONSTANTS)
     return home, [home.adopted(x) for x in outputs]

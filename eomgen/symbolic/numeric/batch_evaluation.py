@@ -70,7 +70,7 @@ class Layers:
         with np.errstate(all="ignore"):
             for op, place, arguments in self._layers:
                 known[place] = _ON_ARRAYS[op](*[known[a] for a in arguments])
-        return known[self._outputs].T
+        return np.asarray(known[self._outputs].T)
 
     @cached_property
     def _moving(self) -> list[Node]:

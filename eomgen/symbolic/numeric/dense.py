@@ -24,7 +24,7 @@ def dense_solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest:
     """
     scaled, rows, columns = balanced(A)
     if not regular:
-        return columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0]
+        return np.asarray(columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0])
     try:
         return columns * np.linalg.solve(scaled, rows * right)
     except np.linalg.LinAlgError as error:

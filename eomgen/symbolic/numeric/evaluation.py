@@ -190,7 +190,7 @@ def _whole_power(a: Any, exponent: Any) -> Any:
 def _rational_sample(t: Fraction, k: Fraction) -> Fraction:
     if sampled_of(k).pi_power:
         raise NoMeaning("pi is not rational")
-    return sampled_of(k).spline.at(t)
+    return Fraction(sampled_of(k).spline.at(t))
 
 
 RATIONAL = Arithmetic(

@@ -97,7 +97,7 @@ class _Boxes:
 
     def _may_vanish(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         low, high = self._at(self.equations, a, b)
-        return np.all((low <= 0) & (high >= 0), axis=1)
+        return np.asarray(np.all((low <= 0) & (high >= 0), axis=1))
 
     def _krawczyk(
         self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray

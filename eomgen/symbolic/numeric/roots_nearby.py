@@ -102,7 +102,7 @@ class Descent:
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""
-        return self._at(x[None, :])[1][0]
+        return np.asarray(self._at(x[None, :])[1][0])
 
     def _holds(self, state: Mapping[Node, Any]) -> bool:
         f = np.array([float(y) for y in evaluate(self.equations, state, fifty_digits())])
@@ -174,7 +174,7 @@ class Descent:
             x[done], f[done], A[done] = trial[better], new_f[better], new_A[better]
             size[done] = _size(f[done])
             mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
-        return np.isfinite(size) & (size < NEAR_ROOT)
+        return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
 
     def _scaled(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         f, A = self._at(x)
@@ -201,4 +201,4 @@ def _apart(x: np.ndarray, telling: int | None) -> list[np.ndarray]:
 
 
 def _size(f: np.ndarray) -> np.ndarray:
-    return np.sqrt(np.sum(f * f, axis=1))
+    return np.asarray(np.sqrt(np.sum(f * f, axis=1)))

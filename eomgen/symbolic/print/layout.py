@@ -83,7 +83,7 @@ def _turned(product: Product, named: Container[Node]) -> Product:
         if exponent % 2 and base not in named and base.op == "add" and _is_less_than(base.args[0], 0):
             rest = base.args[1]
             if product.coefficient < 0 or (type(rest) is Node and rest.op == "div"):
-                turned = (base.graph.neg(base), exponent)
+                turned = (base.graph.held("neg", (base,)), exponent)
                 above = (*product.numerator[:i], turned, *product.numerator[i + 1 :])
                 return Product(-product.coefficient, above, product.denominator)
     return product
@@ -95,7 +95,11 @@ def _turned_below(product: Product, named: Container[Node]) -> Product:
         if base in named or base.op != "add" or not _is_less_than(base.args[0], 0):
             continue
         if (exponent % 2 and product.coefficient < 0) or _is_negative_constant(base):
-            below = (*product.denominator[:i], (base.graph.neg(base), exponent), *product.denominator[i + 1 :])
+            below = (
+                *product.denominator[:i],
+                (base.graph.held("neg", (base,)), exponent),
+                *product.denominator[i + 1 :],
+            )
             return Product((-1) ** exponent * product.coefficient, product.numerator, below)
     return product
 

@@ -16,6 +16,7 @@ from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import selected
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
@@ -26,7 +27,7 @@ TRUTHS = (Relational, BooleanFunction, BooleanAtom)
 SUMS = frozenset(("add", "sub", "neg"))
 
 
-class RateSymbol(sympy.Symbol):
+class RateSymbol(sympy.Symbol):  # type: ignore[misc]
     """The symbol of a derivative: theta' is printed with a dot, theta'' with two."""
 
     __slots__ = ()
@@ -151,8 +152,8 @@ def from_sympy(expression: Any, symbols: Mapping[str, Node]) -> Scalar:
         DerivationError: an unknown symbol, a decimal number, or a function that the graph does not have.
     """
     expression = sympy.sympify(expression, strict=True)
-    graph = next((node.graph for node in symbols.values()), None) or Graph()
-    known: dict[Any, Any] = {}
+    graph: Owner = next((node.graph for node in symbols.values()), None) or Graph()
+    known: dict[Any, Scalar] = {}
     stack = [expression]
     while stack:
         e = stack[-1]
@@ -166,7 +167,7 @@ def from_sympy(expression: Any, symbols: Mapping[str, Node]) -> Scalar:
     return known[expression]
 
 
-def _read(e: Any, args: list[Any], graph: Graph, symbols: Mapping[str, Node]) -> Any:
+def _read(e: Any, args: list[Any], graph: Owner, symbols: Mapping[str, Node]) -> Any:
     if not e.args:
         return _read_leaf(e, graph, symbols)
     if e.is_Add:
@@ -193,7 +194,7 @@ def _read(e: Any, args: list[Any], graph: Graph, symbols: Mapping[str, Node]) ->
     raise DerivationError(f"sympy's function '{name}' has no counterpart here: {e}")
 
 
-def _read_leaf(e: Any, graph: Graph, symbols: Mapping[str, Node]) -> Scalar:
+def _read_leaf(e: Any, graph: Owner, symbols: Mapping[str, Node]) -> Scalar:
     if isinstance(e, sympy.Symbol):
         if e.name not in symbols:
             raise DerivationError(f"unknown symbol '{e.name}' in a sympy expression")
@@ -211,7 +212,7 @@ def _read_leaf(e: Any, graph: Graph, symbols: Mapping[str, Node]) -> Scalar:
     raise DerivationError(f"sympy's '{e}' has no counterpart here")
 
 
-def _read_product(e: Any, args: list[Scalar], graph: Graph) -> Scalar:
+def _read_product(e: Any, args: list[Scalar], graph: Owner) -> Scalar:
     """A product, its negative powers below one line."""
     above: Scalar = 1
     below: Scalar = 1
@@ -223,7 +224,7 @@ def _read_product(e: Any, args: list[Scalar], graph: Graph) -> Scalar:
     return graph.div(above, below)
 
 
-def _read_pieces(e: Any, args: list[tuple[Scalar, Scalar]], graph: Graph) -> Scalar:
+def _read_pieces(e: Any, args: list[tuple[Scalar, Scalar]], graph: Owner) -> Scalar:
     value, condition = args[-1]
     if type(condition) is Node or not condition:
         raise DerivationError(f"a Piecewise without a value for every case: {e}")

@@ -11,7 +11,8 @@ from eomgen.symbolic.exact.powers import axes_of, power_form
 from eomgen.symbolic.exact.terms import Monomial, Terms, TooLarge, Wave, terms_plus
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import Owner, argument
 
 PowersIn = Callable[[Expansion, Terms, Node], Iterator[Scalar]]
 """(expansion, f, atom) -> the values of the atom at which f, a polynomial in it, vanishes."""
@@ -93,10 +94,10 @@ def _values(
             yield from _by_half_angle(expansion, f, C, S, powers)
 
 
-def _inverse(graph: Graph, name: str, value: Scalar) -> Scalar:
+def _inverse(graph: Owner, name: str, value: Scalar) -> Scalar:
     """One angle with this cosine or sine: of cos(y) it is y."""
     if type(value) is Node and value.op == name:
-        return value.args[0]
+        return argument(value, 0)
     return graph.call("a" + name, value)
 
 

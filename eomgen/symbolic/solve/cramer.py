@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import SparseRow
 
+Minors = dict[tuple[tuple[int, ...], tuple[int, ...]], Scalar]
 LARGEST_BLOCK = 10  # unknowns in one determinant; its minors are 2^n
 
 
@@ -138,7 +138,7 @@ def _by_determinants(block: Block, right: Sequence[Sequence[Scalar]]) -> dict[in
     A, n = block.matrix, len(block.matrix)
     if n > LARGEST_BLOCK:
         raise DerivationError(f"{n} unknowns hang together: they are not written out one by one")
-    minors: dict[tuple[tuple[int, ...], tuple[int, ...]], Scalar] = {}
+    minors: Minors = {}
     everything = tuple(range(n))
     whole = _minor(A, everything, everything, minors)
     found = {}
@@ -157,9 +157,7 @@ def determinant(matrix: Sequence[Sequence[Scalar]]) -> Scalar:
     return _minor(matrix, every, every, {})
 
 
-def _minor(
-    A: Sequence[Sequence[Scalar]], rows: tuple[int, ...], columns: tuple[int, ...], known: dict[Any, Scalar]
-) -> Scalar:
+def _minor(A: Sequence[Sequence[Scalar]], rows: tuple[int, ...], columns: tuple[int, ...], known: Minors) -> Scalar:
     """The determinant of some rows and columns, by the first row; each one once."""
     if not rows:
         return 1

@@ -229,8 +229,8 @@ def _in_exponentials(equation: Node, x: Node) -> Scalar:
     for node in order((equation,)):
         if node.op in ("sinh", "cosh", "tanh") and depends_on(node, (x,)):
             z = x.graph.call("exp", node.args[0])
-            up, down = (z - 1 / z) / 2, (z + 1 / z) / 2
-            known[node] = up if node.op == "sinh" else down if node.op == "cosh" else up / down
+            up, down = over(z - over(1, z), 2), over(z + over(1, z), 2)
+            known[node] = up if node.op == "sinh" else down if node.op == "cosh" else over(up, down)
     return substituted((equation,), known)[0] if known else equation
 
 
