@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from functools import partial
 
 import numpy as np
@@ -15,6 +14,7 @@ from eomgen.proof.emitted_code import WORK
 from eomgen.proof.tally import Tally
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
