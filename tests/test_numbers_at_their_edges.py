@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -16,6 +15,7 @@ from eomgen.errors import ExpressionError, ModelError
 from eomgen.symbolic.exact.polynomials import _coprime
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.intervals import INTERVALS

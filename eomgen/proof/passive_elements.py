@@ -98,9 +98,9 @@ class PassiveElements:
         values = evaluate(asked, state, fifty_digits())
         pairs = list(zip(self.brakes, values[::2], values[1::2], strict=True))
         for brake, c, power in pairs:
-            if c > 0 and power > 0:
+            if c > 0 and power > ZERO_AT_50 * (1 + c):
                 return f"the damping of {brake.name} gives power"
-        if not any(power for _, _, power in pairs):
+        if not any(abs(power) > ZERO_AT_50 * (1 + abs(c)) for _, c, power in pairs):
             raise NoValue("nothing moves")
         return ""
 

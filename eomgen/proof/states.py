@@ -122,22 +122,22 @@ class States:
                 if found is None:
                     continue
                 place = self._closed(found, switch, j)
-                if not self._inside(place.state):
+                if place is None or not self._inside(place.state):
                     continue
                 visited |= {(i, s.piece(place.state) or 0) for i, s in enumerate(self.switches)}
             except (NoValue, ZeroDivisionError):
                 continue
             yield place
 
-    def _closed(self, state: State, switch: Switch, piece: int) -> TrialState:
-        """The state with its ties closed where that leaves it in its piece."""
+    def _closed(self, state: State, switch: Switch, piece: int) -> TrialState | None:
+        """The state with its ties closed; None where that takes it out of its piece: no motion comes there."""
         state = state | on_unit_spheres(self.system.scope.quaternions, state)
         ties = self.system.ties
         if all(row.identical for row in ties.rows):
             return TrialState(state, " (in one of its pieces)")
         found = closed(ties, state, movable(ties))
         if found is None or switch.piece(found) != piece:
-            return TrialState(state, " (in one of its pieces, its ties open)")
+            return None
         return TrialState(found, " (in one of its pieces)")
 
     def _at_random(self) -> Iterator[TrialState]:

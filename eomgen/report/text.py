@@ -158,6 +158,8 @@ def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
         least: the width that is left to that column.
     """
     rows = [tuple(map(cell_text, row)) for row in (grid.head, *grid.rows)]
+    if not any(rows):
+        return []
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     most = max(least, WIDTH - len(INDENT) - sum(width + 2 for k, width in enumerate(widths) if k != wrapped))
     widths[wrapped] = max(MEANING, min(widths[wrapped], most)) if wrapped else widths[wrapped]
