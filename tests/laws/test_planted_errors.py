@@ -1,0 +1,36 @@
+"""Errors planted one at a time are seen by the product itself: a sample of twenty of benchmarks/planted_errors.toml."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[2]
+COMMAND = """
+import sys
+sys.path[:0] = ["benchmarks", "."]
+from planted_errors import entries, judged, warm
+known = [planted for planted in entries() if not planted.open]
+warm()
+print(*sorted({seen for _, seen, _ in judged(known[:: len(known) // 20][:20], tests=False, verbose=False)}))
+"""
+
+
+def test_each_old_text_stands_where_the_list_says():
+    """A patch that no longer fits would plant nothing: (file, old text) is unique, and so is the name."""
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    from planted_errors import entries
+
+    assert all(planted.patched for planted in entries())
+    assert len({planted.name for planted in entries()}) == len(entries())
+
+
+def test_the_product_sees_a_sample_of_planted_errors():
+    """The verb that uses the wrong law ends in exit 3, or refuses."""
+    done = subprocess.run([sys.executable, "-c", COMMAND], cwd=ROOT, capture_output=True, text=True, timeout=900)
+    assert done.stdout.split() == ["product"], done.stdout + done.stderr
