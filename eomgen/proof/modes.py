@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,6 +32,9 @@ def mode_checks(modes: Modes) -> Iterator[Check]:
     proof = _Proof(modes)
     yield checked("every mode satisfies (lambda^2 M + lambda C + K) v = 0", proof.wrong_mode, FLOATS)
     yield checked("the eigenvalues are all there: their sums are the traces of A and A^2", proof.wrong_sums, FLOATS)
+    if modes.spectrum.oscillating:
+        name = "after a period 1/f a free motion is back, smaller by what its damping ratio says"
+        yield checked(name, proof.wrong_period, FLOATS)
     if modes.polynomial is not None:
         yield checked("the characteristic polynomial is the determinant", proof.wrong_polynomial, "50 digits")
     if proof.closed:
@@ -96,6 +100,18 @@ class _Proof:
             left = abs(pencil @ x)
             if left.max() > SAME_PLACE * abs(x).max():
                 return f"mode {k}: {left.max():.2g} is left"
+        return ""
+
+    @cached_property
+    def wrong_period(self) -> str:
+        """exp(lambda/f) = exp(-2 pi zeta/sqrt(1 - zeta^2)), by the printed f and zeta."""
+        for k, mode in enumerate(self.modes.spectrum.modes, start=1):
+            if not mode.hertz or mode.damping_ratio is None:
+                continue
+            back = np.exp(mode.eigenvalue / mode.hertz)
+            left = np.exp(-math.tau * mode.damping_ratio / math.sqrt(1 - mode.damping_ratio**2))
+            if not abs(back - left) <= SAME_PLACE * abs(left):
+                return f"mode {k}: {back:.6g} against {left:.6g}"
         return ""
 
     def _coordinates(self, shape: Any) -> np.ndarray | None:
