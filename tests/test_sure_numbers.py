@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import pytest
 from mpmath.ctx_mp import MPContext
+from slider_crank import SLIDER_CRANK
 
 import eomgen
 from eomgen.symbolic.expression.functions import cos, sqrt
@@ -17,33 +18,6 @@ from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 
 GRAPH = Graph()
 X, Y = GRAPH.symbol("x"), GRAPH.symbol("y")
-
-SLIDER_CRANK = """
-eomgen = 1
-space = "plane"
-[parameters]
-r = 0.24
-L = 0.35
-w = 110
-m = 0.9
-[coordinates]
-a = { rate = "w" }
-phi = { dependent = true }
-s = { dependent = true, near = "r + L" }
-[bodies.crank]
-points = { A = ["r", 0] }
-joint = { kind = "revolute", angle = "a" }
-[bodies.rod]
-points = { B = ["L", 0] }
-joint = { kind = "revolute", on = "crank.A", angle = "phi" }
-[bodies.piston]
-shape = { kind = "particle", mass = "m" }
-joint = { kind = "prismatic", axis = [1, 0], displacement = "s" }
-[constraints.B]
-kind = "pin"
-points = ["rod.B", "piston.center"]
-[outputs]
-"""
 
 
 def test_the_force_on_a_slider_at_nice_angles_is_mass_times_acceleration():

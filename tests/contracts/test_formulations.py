@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from maximal import free_body_accelerations
 from moving import at, equal, state_of, written
 from random_systems import random_model
 
@@ -18,7 +19,6 @@ from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.assembly import Assembly
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
-from eomgen.mechanics.formulations.free_bodies import free_body_accelerations
 from eomgen.model.unbuilt import unbuilt
 from eomgen.symbolic.numeric.evaluation import NoValue
 

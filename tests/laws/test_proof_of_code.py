@@ -77,3 +77,30 @@ def test_a_language_that_nothing_here_runs_is_unchecked(monkeypatch):
     left = {check.name: check.detail for check in certificate.checks if check.status == "unchecked"}
     assert left["cart_pole_rhs in numpy gives the symbols' numbers"] == "nothing here runs numpy"
     assert certificate.ok  # the equations hold
+
+
+HOSTILE = """
+eomgen = 1
+name = "x\\"\\"\\"\\nopen('MARK', 'w')\\n\\"\\"\\"\\"\\"*/ \\\\"
+about = "y\\n\\"\\"\\"\\nopen('MARK', 'w') \\\\"
+source = "\\"\\"\\"\\"\\nopen('MARK', 'w')"
+space = "plane"
+[parameters]
+import = { value = 2, about = "m\\nopen('MARK', 'w') */ int main(){" }
+[coordinates]
+lambda = { start = 0.3, about = "q\\nopen('MARK', 'w')" }
+[bodies.b]
+mass = 1
+inertia = "import"
+joint = { kind = "revolute", angle = "lambda", torque = 1 }
+"""
+
+
+@each_target
+def test_nothing_that_a_model_says_is_executed_when_its_files_are_run(target, tmp_path):
+    """Names and remarks of a stranger stand in headers and comments; no quote and no line end leaves them."""
+    mark = tmp_path / "mark"
+    model = eomgen.loads(HOSTILE.replace("MARK", str(mark)))
+    assert model.name.count(chr(34) * 3) and mark.name in model.name
+    assert eomgen.generate(model, (target,), name="a); import os; (").certify().ok
+    assert not mark.exists()

@@ -22,8 +22,8 @@ from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import PLANE_ROWS, SPACE_ROWS, Effect, joint_effects
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.loads import in_ground_axes, weights
+from eomgen.mechanics.equations.body_numbers import BodyNumbers
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations.free_bodies import BodyNumbers
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
