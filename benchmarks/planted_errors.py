@@ -9,6 +9,7 @@ copy of the module in memory (no file changes), and the verb and model that use 
     nobody      neither
     harmless    every number that is printed is right all the same: another way was taken, an exact form is missing
     no effect   what is printed is the same as without the patch: the entry does not reach what it should, and is mended
+    text gone   the old text stands no more in its file, or more than once: nothing is planted, and the entry is mended
 
     python benchmarks/planted_errors.py                         # all, by the product; a table
     python benchmarks/planted_errors.py --tests                 # what the product did not see also by the tests
@@ -27,6 +28,7 @@ import io
 import json
 import multiprocessing
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -54,8 +56,10 @@ class Planted:
         room: of which law it is.
         run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar".
         tests: pytest's words that should see it, where the verb does not: "tests/test_targets.py -k nan".
-        model: text of a model of its own; `run` then names it "-".
+        model: text of a model of its own, in the list its name in [models] where more than one entry has it; `run` then
+            names it "-".
         open: the product does not see it yet.
+        harmless: another way gives the right answer all the same.
     """
 
     name: str
@@ -67,10 +71,18 @@ class Planted:
     tests: str = ""
     model: str = ""
     open: bool = False
+    harmless: bool = False
 
     @property
     def module(self) -> str:
         return "eomgen." + self.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+    @property
+    def gone(self) -> str:
+        """Why nothing can be planted; "" where it can."""
+        path = ROOT / "eomgen" / self.file
+        times = path.read_text(encoding="utf-8").count(self.old) if path.exists() else 0
+        return "" if times == 1 else f"'{self.name}': the text stands {times} times in {self.file}"
 
     @property
     def patched(self) -> str:
@@ -79,9 +91,9 @@ class Planted:
         Raises:
             ValueError: the old text does not stand there exactly once.
         """
+        if self.gone:
+            raise ValueError(self.gone)
         source = (ROOT / "eomgen" / self.file).read_text(encoding="utf-8")
-        if source.count(self.old) != 1:
-            raise ValueError(f"'{self.name}': the text stands {source.count(self.old)} times in {self.file}")
         return source.replace(self.old, self.new)
 
 
@@ -130,7 +142,22 @@ class Patch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 def entries(path: Path = LIST) -> tuple[Planted, ...]:
     """The list, in its order."""
-    return tuple(Planted(**entry) for entry in tomllib.loads(path.read_text(encoding="utf-8"))["error"])
+    found = tomllib.loads(path.read_text(encoding="utf-8"))
+    models = found.get("models", {})
+    return tuple(
+        Planted(**{**entry, "model": models.get(entry.get("model"), entry.get("model", ""))})
+        for entry in found["error"]
+    )
+
+
+def sample(size: int) -> list[Planted]:
+    """Errors that the product sees, of different rooms: one of each, evenly spread over the rooms."""
+    rooms: dict[str, list[Planted]] = {}
+    for planted in entries():
+        if not (planted.open or planted.harmless):
+            rooms.setdefault(planted.room, []).append(planted)
+    middle = [of_room[len(of_room) // 2] for of_room in rooms.values()]
+    return [middle[k * len(middle) // size] for k in range(min(size, len(middle)))]
 
 
 def words_of(run: str, model: str, folder: str) -> list[str]:
@@ -189,11 +216,12 @@ def without(run: str, model: str) -> Outcome:
 
 
 def seen_by_product(planted: Planted) -> tuple[str, str]:
-    """("product" | "" | "no effect" | "broken", what was said)."""
+    """("product" | "crash" | "harmless" | "no effect" | "broken" | "text gone" | "", what was said)."""
+    if planted.gone:
+        return "text gone", planted.gone
     right = without(planted.run, planted.model)
     if right.code != 0:
         return "broken", f"exit {right.code} without the error: {right.why}"
-    assert planted.patched
     wrong = outcome(planted, planted.run, planted.model)
     if wrong.code in (70, 139):
         return "crash", f"exit {wrong.code}: {wrong.why}"
@@ -201,26 +229,56 @@ def seen_by_product(planted: Planted) -> tuple[str, str]:
         return "product", f"exit {wrong.code}: {wrong.why}"
     if wrong.out == right.out:
         return "no effect", ""
-    answers = planted.run.startswith("solve ")
-    return ("harmless", "") if answers and _same_numbers(wrong.out, right.out) else ("", "")
+    return ("harmless", "") if _same_answers(wrong.out, right.out) else ("", "")
 
 
-def _same_numbers(one: str, other: str) -> bool:
-    """Whether the quantities of two results have the same numbers, whatever their forms."""
+def _same_answers(one: str, other: str) -> bool:
+    """Whether every answer of the first result is right by the other: numbers to 1e-9, formulas missing or equal."""
     with contextlib.suppress(ValueError):
-        a, b = (_numbers(json.loads(text)) for text in (one, other))
-        return a.keys() == b.keys() and all(abs(a[k] - b[k]) <= 1e-9 * (1 + abs(b[k])) for k in b) and bool(a)
+        a, b = (_leaves(_answers(json.loads(text))) for text in (one, other))
+        return bool(b) and a.keys() == b.keys() and all(_right(a[k], b[k], k.endswith(".exact")) for k in b)
     return False
 
 
-def _numbers(found: Any, name: str = "") -> dict[str, float]:
-    """Every `value` in a result for machines, by its place; the certificate is none of it."""
+def _answers(found: dict[str, Any]) -> Any:
+    """The outputs; of a run its end and its phases."""
+    return found.get("outputs") or {key: found[key] for key in ("end", "phases") if key in found}
+
+
+def _leaves(found: Any, name: str = "") -> dict[str, Any]:
+    """Numbers and formulas of the outputs, by their places; the way to them and their proof are no answers."""
     if isinstance(found, dict):
-        parts = ((f"{name}.{k}", x) for k, x in found.items() if k not in ("certificate", "steps", "taken"))
-        return {k: x for key, part in parts for k, x in _numbers(part, key).items()}
-    if isinstance(found, list):
-        return {k: x for i, part in enumerate(found) for k, x in _numbers(part, f"{name}[{i}]").items()}
-    return {name: float(found)} if name.endswith(".value") and isinstance(found, (int, float)) else {}
+        parts = ((f"{name}.{k}", x) for k, x in found.items() if k not in ("certificate", "steps", "method"))
+    elif isinstance(found, list):
+        parts = ((f"{name}[{i}]", x) for i, x in enumerate(found))
+    else:
+        return {name: found}
+    return {k: x for key, part in parts for k, x in _leaves(part, key).items()}
+
+
+def _right(found: Any, right: Any, formula: bool) -> bool:
+    if isinstance(found, float) and isinstance(right, (int, float)):
+        return abs(found - right) <= 1e-9 * (1 + abs(right))
+    return found == right or (formula and (found is None or _equal_formulas(found, right)))
+
+
+def _equal_formulas(one: str | None, other: str | None) -> bool:
+    """Whether two texts are worth the same at three states, every name a number between 1/2 and 1."""
+    import math
+    import random
+
+    if one is None or other is None:
+        return False
+    texts = [re.sub("'+", lambda m: "_" * len(m[0]), x).replace("^", "**") for x in (one, other)]
+    functions = {**vars(math), "abs": abs, "max": max, "min": min}
+    names = sorted({name for x in texts for name in re.findall(r"[A-Za-z_]\w*(?![\w(])", x)} - {"pi"})
+    rng = random.Random(1)
+    states = [{**functions, **{name: rng.uniform(0.5, 1) for name in names}} for _ in range(3)]
+    try:
+        pairs = [[eval(x, dict(state)) for x in texts] for state in states]
+    except (ArithmeticError, ValueError, TypeError, NameError, SyntaxError):
+        return False
+    return all(abs(a - b) <= 1e-9 * (1 + abs(b)) for a, b in pairs)
 
 
 def seen_by_tests(planted: Planted) -> bool:

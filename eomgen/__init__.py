@@ -13,6 +13,7 @@
     eomgen.inertia(model, about="O")          # Inertia: masses, mass centres, tensors, principal moments and axes
     eomgen.linearize(model)                   # Linearization: M, C, K, state matrix, modes, stability
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
+    with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
 and `forces` (eomgen.joints.Revolute). Mistakes are exceptions of the family EomgenError: ModelError holds every problem
@@ -69,6 +70,7 @@ _HOMES = {
     "simulation.result": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),
     "questions.velocities": ("kinematics",),
+    "symbolic.numeric.work": ("OutOfPatience", "patience"),
 }
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)

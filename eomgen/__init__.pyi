@@ -51,6 +51,8 @@ from eomgen.report.linearize.result import linearize as linearize
 from eomgen.report.statics.result import Statics as Statics
 from eomgen.report.statics.result import statics as statics
 from eomgen.simulation.result import Trajectory as Trajectory
+from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
+from eomgen.symbolic.numeric.work import patience as patience
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
 from eomgen.version import __version__ as __version__

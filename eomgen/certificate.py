@@ -1,4 +1,4 @@
-"""System, Assembly -> Certificate: what was checked about the equations, by which arithmetic, and whether it holds.
+"""Equations of motion -> Certificate: what was checked about the equations, by which arithmetic, and whether it holds.
 
 Independent routes must agree: energies and their derivatives (Lagrange), twists and wrenches
 (projection), recursion over the tree. What they share is checked by itself: twists against
@@ -10,34 +10,49 @@ from __future__ import annotations
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.balance.friction import rubs
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
+from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.numeric.work import doing
 
 
 @growing()
-def certify(system: System, assembly: Assembly, rhs: RightHandSide | None = None) -> Certificate:
+@doing("the proof of the equations")
+def certify(
+    equations: EquationsOfMotion,
+    rhs: RightHandSide | None = None,
+    derived: EquationsOfMotion | None = None,
+    *,
+    printed: Printed | None = None,
+) -> Certificate:
     """Check the equations of a system.
 
     Args:
-        assembly: the equations that a user gets.
+        equations: those that a user gets.
         rhs: emitted code to be compared with the symbols.
+        derived: the same by the way in which a derivation is written.
+        printed: a derivation as it is printed.
     """
-    trials = Trials(system, assembly)
-    claims = [identities.rates(system, assembly), *identities.routes(system, assembly)]
-    claims += [identities.mass_matrix(assembly), identities.energy(system, assembly)]
-    if assembly.J:
-        claims.append(identities.closing_rows(system, assembly))
+    trials = Trials(equations)
+    claims = [identities.rates(equations), *identities.routes(equations)]
+    claims += [identities.mass_matrix(equations), identities.energy(equations)]
+    if derived is not None:
+        claims.append(identities.derivation(equations, derived))
+    if equations.J:
+        claims.append(identities.closing_rows(equations))
     checks = [*identities.compared(claims, trials.states), trials.twists()]
-    if system.elimination is not None:
+    if trials.given:
+        checks.append(trials.given_motions())
+    if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
     checks.append(trials.free_bodies())
-    if rubs(system):
+    if rubs(equations.system):
         checks.append(trials.friction())
-    checks += [*trials.contacts(), *trials.passive_elements(), *trials.balance()]
+    checks += [*trials.tensors(), *trials.contacts(), *trials.elements(), *trials.balance()]
+    checks += [] if printed is None else trials.printed(printed)
     if rhs is not None:
         checks.append(trials.code(rhs))
     return Certificate(tuple(checks))

@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.cli_common import Verbs, deliver, reading
+from eomgen.cli_common import Source, Verbs, deliver, deliver_several, reading
+from eomgen.cli_options import (
+    CERTIFY,
+    FOLLOW,
+    FORMAT,
+    JSON,
+    MODEL,
+    OUTPUT,
+    PLOT,
+    folder,
+    form_asked,
+    with_form,
+    with_picture,
+    with_values,
+)
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
@@ -17,58 +32,12 @@ if TYPE_CHECKING:
     from eomgen.report.document import Document
     from eomgen.report.result import Result
 
-FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".json": "json"}
-"""ending of a file -> the form of what is written into it"""
-
-MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
-JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
-OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
-FORMAT = click.option(
-    "--format",
-    "format_",
-    type=click.Choice(["text", "latex", "markdown", "json"]),
-    help="Form of the result.  [default: by the ending of -o, else text]",
-)
-PLOT = click.option("--plot", type=click.Path(dir_okay=False), help="Draw it as .png, .svg or .pdf.")
-CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
-FOLLOW = click.option(
-    "--follow",
-    multiple=True,
-    metavar="NAME=FILE",
-    help="Drive a coordinate or an input through the samples of a CSV file.",
-)
-
-
-def _common(function: Callable[..., int]) -> Callable[..., int]:
-    """Options of every result of a model."""
-    return MODEL(JSON(OUTPUT(FORMAT(function))))
-
-
-def _drawn(function: Callable[..., int]) -> Callable[..., int]:
-    """Options of what has a picture and a proof, too."""
-    return _common(PLOT(CERTIFY(function)))
-
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
     from eomgen.verbs.csv_inputs import following
 
     return following(declared, follow) if follow else declared
-
-
-def _form(wants_json: bool, format_: str | None, output: str | None = None) -> str:
-    """The form that is asked, else that of the ending of the file.
-
-    Raises:
-        UsageError: no form has that ending.
-    """
-    if wants_json or format_:
-        return "json" if wants_json else str(format_)
-    ending = Path(output or "").suffix.lower()
-    if ending not in FORMATS:
-        known = ", ".join(filter(None, FORMATS))
-        raise click.UsageError(f"'{output}' ends in no form that is known here: {known}; or say --format")
-    return FORMATS[ending]
 
 
 def _write(
@@ -79,13 +48,31 @@ def _write(
     output: str | None,
     format_: str | None,
     follow: tuple[str, ...] = (),
+    strict: bool = False,
     **options: Any,
 ) -> int:
     """The document of a verb, in the form that is asked."""
-    form = _form(wants_json, format_, output)
-    with reading(model) as declared:
-        document = made(_followed(declared, follow), **options)
-    return deliver(document, form, output)
+    form = form_asked(wants_json, format_, output)
+    with reading(model) as source:
+        document = _asked(made, source, options, follow)
+    return deliver(document, form, output, strict=strict)
+
+
+def _asked(
+    made: Callable[..., Document],
+    source: Source,
+    options: dict[str, Any],
+    follow: tuple[str, ...] = (),
+    **more: Any,
+) -> Document:
+    """The document of a verb for what was typed, in the units of the file; what was taken, and warnings, are in it."""
+    from eomgen.verbs.assignments import typed
+
+    valued, rest = typed(_followed(source.model, follow), options)
+    if "time" in rest:  # a motion holds to the starts that are typed
+        rest["start"] = valued.start
+    document = replace(made(valued.model, **rest, **more), taken=valued.taken)
+    return source.warned(document, valued.model)
 
 
 def _write_result(found: Callable[..., Result], *, plot: str | None, certify: bool, **options: Any) -> int:
@@ -110,29 +97,52 @@ def main() -> None:
 
 @main.command("new")
 @click.argument("name")
+@click.option("--example", metavar="EXAMPLE", help="Begin with this one of `eomgen examples`.")
 @JSON
-def new_command(name: str, wants_json: bool) -> int:
+def new_command(name: str, example: str | None, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
     from eomgen.verbs.new import new_document as made
 
-    return deliver(made(name), _form(wants_json, None))
+    return deliver(made(name, example), form_asked(wants_json, None))
+
+
+@main.command("examples")
+@JSON
+@OUTPUT
+def examples_command(wants_json: bool, output: str | None) -> int:
+    """List the models that ship."""
+    from eomgen.verbs.examples import examples_document as shipped
+
+    return deliver(shipped(), form_asked(wants_json, None, output), output)
 
 
 @main.command("check")
-@_common
-def check_command(**options: Any) -> int:
-    """Validate a model; count its degrees of freedom.
+@click.argument("models", nargs=-1, required=True, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
+@JSON
+@OUTPUT
+@FORMAT
+@with_values
+def check_command(
+    models: tuple[str, ...], wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
+) -> int:
+    """Validate models; count their degrees of freedom.
 
     By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
     integrable; how the loops close at the start, and in which other ways they could.
     """
     from eomgen.verbs.check import check_document
 
-    return _write(check_document, **options)
+    if len(models) == 1:
+        options |= {"wants_json": wants_json, "output": output, "format_": format_}
+        return _write(check_document, model=models[0], strict=strict, **options)
+    form = form_asked(wants_json, format_, output)
+    if form == "latex":
+        raise click.UsageError("several models make no LaTeX document; take one, or another --format")
+    return deliver_several(models, lambda source: _asked(check_document, source, options), form, output, strict=strict)
 
 
 @main.command("derive")
-@_common
+@with_form
 @click.option(
     "--method",
     type=click.Choice(["lagrange", "projection", "kinetostatic"]),
@@ -140,6 +150,7 @@ def check_command(**options: Any) -> int:
     show_default=True,
     help="By energies, by projection, or body by body with every reaction.",
 )
+@click.option("--units", is_flag=True, help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @CERTIFY
 def derive_command(**options: Any) -> int:
@@ -150,7 +161,7 @@ def derive_command(**options: Any) -> int:
 
 
 @main.command("solve")
-@_common
+@with_form
 @FOLLOW
 @CERTIFY
 def solve_command(**options: Any) -> int:
@@ -161,7 +172,7 @@ def solve_command(**options: Any) -> int:
 
 
 @main.command("reactions")
-@_common
+@with_form
 @click.option(
     "--at", metavar="EQUATION", help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".'
 )
@@ -180,7 +191,7 @@ def reactions_command(**options: Any) -> int:
 
 
 @main.command("statics")
-@_drawn
+@with_picture
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
 def statics_command(**options: Any) -> int:
@@ -196,7 +207,7 @@ def statics_command(**options: Any) -> int:
 
 
 @main.command("kinematics")
-@_drawn
+@with_picture
 @click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
 @click.option(
@@ -217,7 +228,7 @@ def kinematics_command(**options: Any) -> int:
 
 
 @main.command("inertia")
-@_drawn
+@with_picture
 @click.option("--body", "bodies", multiple=True, metavar="NAME", help="Only this body.  [default: each, and the whole]")
 @click.option("--about", metavar="POINT", help="About this point too.")
 @click.option("--axis", metavar="A,B", help="About the axis through two points, or x, y, z through the point.")
@@ -233,7 +244,7 @@ def inertia_command(**options: Any) -> int:
 
 
 @main.command("linearize")
-@_drawn
+@with_picture
 @click.option(
     "--about",
     type=click.Choice(["equilibrium", "start", "steady"]),
@@ -259,8 +270,7 @@ def linearize_command(**options: Any) -> int:
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
 @PLOT
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
-@click.option("--set", "given", multiple=True, metavar="NAME=VALUE", help="Another value of a parameter.")
-@click.option("--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate or rate.")
+@with_values
 @click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of the run.")
 @click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
 @click.option(
@@ -288,6 +298,7 @@ def linearize_command(**options: Any) -> int:
     "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
 )
 @FOLLOW
+@click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", metavar="NAME", help="What runs the equations, as of codegen --list.  [default: the fastest]")
 @CERTIFY
@@ -303,6 +314,7 @@ def simulate_command(
     project_every: int | None,
     baumgarte: tuple[float, float] | None,
     follow: tuple[str, ...],
+    strict: bool,
     **options: Any,
 ) -> int:
     """Integrate the motion from the start values.
@@ -319,10 +331,10 @@ def simulate_command(
         raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
     rates = baumgarte or RATES
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
-    with reading(model) as declared:
-        document = simulated(_followed(declared, follow), output=output, **options)
+    with reading(model) as source:
+        document = _asked(simulated, source, options, follow, output=output)
     asked = wants_json or format_ is not None
-    return deliver(document, _form(wants_json, format_), on_stderr=output is not None and not asked)
+    return deliver(document, form_asked(wants_json, format_), on_stderr=output is not None and not asked, strict=strict)
 
 
 @main.command("codegen")
@@ -332,8 +344,9 @@ def simulate_command(
     "--target", "targets", multiple=True, default=("c",), show_default=True, help="Language; several: each in DIR/NAME."
 )
 @click.option("--list", "wants_list", is_flag=True, help="The languages that there are, and no code.")
-@click.option("-o", "--output", metavar="DIR", type=click.Path(file_okay=False), help="Where to.")
+@click.option("-o", "--output", metavar="DIR", type=click.Path(file_okay=False), callback=folder, help="Where to.")
 @FOLLOW
+@with_values
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
 @CERTIFY
@@ -355,20 +368,25 @@ def codegen_command(
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
     certify: bool,
+    strict: bool,
+    **options: Any,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
     from eomgen.verbs.codegen import codegen_document as generated
     from eomgen.verbs.codegen import languages
 
     if wants_list:
-        return deliver(languages(), _form(wants_json, None))
+        return deliver(languages(), form_asked(wants_json, None))
     if model is None or output is None:
         raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")
     stem = "model" if model == "-" else Path(model).stem
     names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
-    with reading(model) as declared:
-        document = generated(
-            _followed(declared, follow),
+    with reading(model) as source:
+        document = _asked(
+            generated,
+            source,
+            options,
+            follow,
             stem=stem,
             origin=Path(model).name,
             targets=tuple(dict.fromkeys(targets)),
@@ -378,7 +396,7 @@ def codegen_command(
             baumgarte=baumgarte,
             certify=certify,
         )
-    return deliver(document, _form(wants_json, None))
+    return deliver(document, form_asked(wants_json, None), strict=strict)
 
 
 @main.command("schema")
@@ -388,7 +406,8 @@ def schema_command(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
     from eomgen.verbs.schema import schema_document as written
 
-    return deliver(written(), _form(wants_json, None), output)
+    form_asked(wants_json, None, output)  # refuses other endings; of .json the text is one already
+    return deliver(written(), form_asked(wants_json, None), output)
 
 
 @main.command("doctor")
@@ -398,4 +417,4 @@ def doctor_command(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
     from eomgen.verbs.doctor import doctor_document as examined
 
-    return deliver(examined(), _form(wants_json, None), output)
+    return deliver(examined(), form_asked(wants_json, None, output), output)

@@ -1,7 +1,6 @@
-"""What every verb of the command line shares: how it is run, how its errors are told, where its result goes.
+"""What every verb of the command line shares: how it is run, where its model comes from, where its result goes.
 
-Results go to stdout, everything else to stderr. Exit codes: 0 ok, 1 the model is wrong, 2 usage,
-3 derivation or run failed, 4 an optional tool is missing.
+Results go to stdout, everything else to stderr.
 """
 
 from __future__ import annotations
@@ -9,28 +8,76 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing
+from eomgen import files
+from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
+from eomgen.errors import EomgenError, UsageError
+from eomgen.symbolic.expression.habits import other_words
+from eomgen.symbolic.numeric.work import doing, patience
 from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     from eomgen.model.parts import Model
     from eomgen.report.document import Document
 
-INTERRUPTED = 130  # as a shell has it for Ctrl-C
-CLOSED_PIPE = 141  # as a shell has it for a reader that went away
 LATER = ("verify", "sweep")
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
 
 
+class Verb(click.Command):
+    """One verb; where it works on a model, only as long as a user waits."""
+
+    def __init__(self, *given: Any, **options: Any) -> None:
+        super().__init__(*given, **options)
+        if any(each.name in ("model", "models") for each in self.params):
+            self.params.append(_patience_option())
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with patience(ctx.params.pop("patience", None)), doing(f"`{self.name}`"):
+            return super().invoke(ctx)
+
+
+def _patience_option() -> click.Option:
+    return click.Option(
+        ["--patience"],
+        metavar="SECONDS",
+        default="30",
+        show_default=True,
+        envvar="EOMGEN_PATIENCE",
+        callback=_seconds,
+        help="How long to wait; none: as long as it takes.",
+    )
+
+
+def _seconds(context: click.Context, option: click.Parameter, text: str) -> float | None:
+    """The seconds of --patience; None for none.
+
+    Raises:
+        UsageError: it is no positive number.
+    """
+    if text == "none":
+        return None
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds < threading.TIMEOUT_MAX:
+        raise click.UsageError(f"--patience {text}: a positive number of seconds is needed, or none")
+    return seconds
+
+
 class Verbs(click.Group):
     """The group of all verbs: what goes wrong in any of them becomes a message and an exit code."""
+
+    command_class = Verb
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         name = args[0]
@@ -56,35 +103,9 @@ class Verbs(click.Group):
         sys.exit(self._run(words, name, complete_var, extra))
 
     def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
-        wants_json = "--json" in words or "--format json" in " ".join(words).replace("=", " ")
         os.environ.setdefault(*ONE_THREAD)
-        try:
-            return super().main(words, name, complete_var, standalone_mode=False, **extra) or 0
-        except click.ClickException as error:
-            error.show()
-            return _told(error.exit_code, (Problem("", error.format_message()),), wants_json)
-        except EomgenError as error:
-            return self._failed(error.exit_code, _problems(error), wants_json)
-        except _Placed as error:
-            return self._failed(error.exit_code, error.problems, wants_json)
-        except ModuleNotFoundError as error:
-            if (error.name or "").split(".")[0] == "eomgen":
-                raise
-            missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
-            return self._failed(missing.exit_code, _problems(missing), wants_json)
-        except (click.Abort, KeyboardInterrupt):
-            return INTERRUPTED
-
-    def _failed(self, code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
-        click.echo("\n\n".join(str(problem) for problem in problems), err=True)
-        return _told(code, problems, wants_json)
-
-
-class _Placed(Exception):
-    """What went wrong with a model, at its places in the file."""
-
-    def __init__(self, exit_code: int, problems: tuple[Problem, ...]) -> None:
-        self.exit_code, self.problems = exit_code, problems
+        run = super().main
+        return guarded(lambda: run(words, name, complete_var, standalone_mode=False, **extra) or 0, words)
 
 
 def _unknown_verb(name: str, verbs: list[str]) -> str:
@@ -92,62 +113,107 @@ def _unknown_verb(name: str, verbs: list[str]) -> str:
 
     if name in LATER:
         return f"'{name}' comes with a later version."
-    near = difflib.get_close_matches(name, verbs, n=1)
+    near = other_words(name, verbs) or difflib.get_close_matches(name, verbs, n=1)
     return f"There is no command '{name}'." + (f" Did you mean '{near[0]}'?" if near else "")
 
 
-def _problems(error: EomgenError) -> tuple[Problem, ...]:
-    if isinstance(error, ModelError):
-        return error.problems
-    return (Problem(error.where, error.what, mend=error.mend),)
+@dataclass(frozen=True)
+class Source:
+    """A model, and the text that it was read from."""
+
+    model: Model
+    data: bytes
+    name: str
+
+    def warned(self, document: Document, model: Model) -> Document:
+        """The document of a model made of it; what is hardly meant in that is told at its place in the text."""
+        from eomgen.model.reader import located, warned
+
+        own = tuple(located(problem, self.data, self.name) for problem in document.cautions)
+        return replace(document, cautions=(*warned(model, self.data, self.name), *own))
 
 
-def _told(code: int, problems: tuple[Problem, ...], wants_json: bool) -> int:
-    """The problems for machines, where they are asked for."""
-    if wants_json:
-        error = {"exit_code": code, "problems": [problem.as_dict() for problem in problems]}
-        _say(json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, ensure_ascii=False, indent=1) + "\n")
-    return code
+def deliver(
+    document: Document, form: str, output: str | None = None, *, on_stderr: bool = False, strict: bool = False
+) -> int:
+    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code.
 
-
-def _say(text: str) -> None:
-    """On stdout; a reader that went away ends the program quietly."""
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left in the buffer goes nowhere
-        sys.exit(CLOSED_PIPE)
-
-
-def deliver(document: Document, form: str, output: str | None = None, *, on_stderr: bool = False) -> int:
-    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code."""
+    Args:
+        strict: warnings end in exit 1.
+    """
     from eomgen.report import rendered
-    from eomgen.verbs.outcome import write_text
 
     result = rendered(document, form)
     if on_stderr:
-        click.echo(result, err=True, nl=False)
-    elif output is None:
-        _say(result)
+        sys.stderr.write(result)
     else:
-        write_text(output, result)
-    for line in (*document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong):
+        put(result, output)
+    taken = [f"taken: {each}" for each in document.taken]
+    for line in (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong):
         if line:
-            click.echo(line, err=True)
-    return 3 if document.wrong else 0
+            say(line)
+    return _code(document, strict)
+
+
+def _code(document: Document, strict: bool) -> int:
+    failed = INTERRUPTED if document.interrupted else 3 if document.wrong else 0
+    return failed or int(strict and bool(document.warnings))
+
+
+def deliver_several(
+    paths: Sequence[str],
+    made: Callable[[Source], Document],
+    form: str,
+    output: str | None = None,
+    *,
+    strict: bool = False,
+) -> int:
+    """A result of each of several models, one after the other, in JSON a list; the largest exit code.
+
+    A model that is wrong is told, and the next one follows.
+    """
+    from eomgen.report import rendered
+
+    code, results = 0, []
+    for path in paths:
+        try:
+            with reading(path) as declared:
+                document = made(declared)
+            results.append(rendered(document, form))
+            code = max(code, _code(document, strict))
+            for problem in document.warnings:
+                say(f"warning: {problem}")
+        except Placed as error:
+            say("\n\n".join(map(str, error.problems)) + "\n")
+            code = max(code, error.exit_code)
+            if form == "json":
+                results.append(failure(error.exit_code, error.problems))
+    if form == "json":
+        models = [{"path": path, **json.loads(each)} for path, each in zip(paths, results, strict=True)]
+        results = [json.dumps({"schema_version": SCHEMA_VERSION, "models": models}, indent=1) + "\n"]
+    put("\n".join(results), output)
+    return code
+
+
+def put(text: str, output: str | None = None) -> None:
+    """A text into a file, or to stdout."""
+    if output is not None:
+        files.write(output, text)
+    else:
+        sys.stdout.write(text)
 
 
 @contextmanager
-def reading(path: str) -> Iterator[Model]:
+def reading(path: str) -> Iterator[Source]:
     """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
-    from eomgen.model.reader import load, loads, located
+    from eomgen.model.reader import LARGEST, bytes_at, loads, located
 
-    data = sys.stdin.buffer.read() if path == "-" else None
+    if path == "-" and sys.stdin is None:
+        raise UsageError("there is no model on stdin: it is closed", mend="name a file")
+    data = sys.stdin.buffer.read(LARGEST + 1) if path == "-" else bytes_at(path)
+    name, title = ("<stdin>", "model") if path == "-" else (path, Path(path).stem)
     try:
-        yield load(path) if data is None else loads(data, "<stdin>")
-    except EomgenError as error:
-        text = data if data is not None else Path(path).read_bytes() if os.access(path, os.R_OK) else b""
-        name = path if data is None else "<stdin>"
-        problems = tuple(located(problem, text, name) for problem in _problems(error))
-        raise _Placed(error.exit_code, problems) from error
+        yield Source(loads(data, name, title), data, name)
+    except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
+        problems = tuple(located(problem, data, name) for problem in problems_of(error))
+        raise Placed(error.exit_code, problems) from error

@@ -17,15 +17,17 @@ from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless
+from eomgen.mechanics.formulations import derived_by
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
-from eomgen.report.derivation import derivation_of
+from eomgen.proof.printed import Printed
+from eomgen.report.derivation import derivation_of, printed_formulas
 from eomgen.report.document import Document
 from eomgen.report.latex import equations_latex
 from eomgen.report.payload import equations_payload
@@ -35,13 +37,16 @@ from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.gc_pause import growing
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import text_size
 
 FEW = 200  # operations of a matrix that a person reads
 
 
-@dataclass(frozen=True)
+SHOWN = 6  # coordinates of a line
+
+
+@dataclass(frozen=True, repr=False)
 class Equations(Result):
     """The equations of motion of a model: q' = N u + nu, M a = forcing + J^T lam, J a + gamma = 0.
 
@@ -50,18 +55,26 @@ class Equations(Result):
 
     Args:
         model: the model.
-        method: by which the derivation is written: "lagrange" or "projection". The equations are the same functions
-            by every method, and are held in their shortest form, the recursion over the tree.
-        system: motion, loads and ties.
+        method: by which they are derived: one of `formulations.METHODS`. `derived` has them by the method's own way;
+            `graph` the same functions in their shortest form, the recursion over the tree, which code runs.
         graph: the equations as graph scalars.
         assumptions: what had to be assumed of contacts: "floor assumed closed: h has no value".
     """
 
     model: Model
     method: str
-    system: System
-    graph: Assembly
+    graph: EquationsOfMotion
     assumptions: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        names = self.coordinates[:SHOWN] + ("...",) * (len(self.coordinates) > SHOWN)
+        size = f"{len(self.speeds)} equations of motion, {len(self.graph.J)} closing rows"
+        return f"<equations of {self.model.name!r} ({self.method}): {size}; coordinates {', '.join(names) or 'none'}>"
+
+    @property
+    def system(self) -> System:
+        """Motion, loads and ties."""
+        return self.graph.system
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -79,6 +92,18 @@ class Equations(Result):
     def inputs(self) -> tuple[str, ...]:
         return tuple(self.graph.symbols.inputs)
 
+    @cached_property
+    def symbols(self) -> dict[str, Any]:
+        """{name: sympy symbol} of t, parameters, inputs, q, u, a and multipliers; they are real.
+
+        equations.M.subs({equations.symbols["m"]: 2})
+        """
+        from eomgen.symbolic.print.sympy_form import symbol
+
+        own = self.graph.symbols
+        named = (own.t, *own.parameters.values(), *own.inputs.values(), *own.q, *own.u, *own.a, *own.lam)
+        return {node.name: symbol(node.name) for node in named}
+
     N = cached_property(lambda self: _matrix(self.graph.N, len(self.speeds)))
     nu = cached_property(lambda self: _column(self.graph.nu))
     M = cached_property(lambda self: _matrix(self.graph.M, len(self.speeds)))
@@ -93,15 +118,20 @@ class Equations(Result):
     V = cached_property(lambda self: _expression(self.graph.V))
 
     @cached_property
+    def derived(self) -> EquationsOfMotion:
+        """The equations by the method's own way, friction left out: what the derivation writes."""
+        return derived_by(self.method, self.system)
+
+    @cached_property
     def program(self) -> Program:
         """The right-hand side as a straight-line program.
 
         Raises:
             ModelError: a free coordinate moves no mass.
         """
-        refuse_massless(self.system, self.graph)
+        refuse_massless(self.graph)
         with growing():
-            return right_hand_side(self._explicit, self.system.inputs)
+            return right_hand_side(self._explicit)
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -115,8 +145,8 @@ class Equations(Result):
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
-        refuse_massless(self.system, self.graph)
-        return reactions_program(self.reaction_values, self._explicit, self.system.inputs)
+        refuse_massless(self.graph)
+        return reactions_program(self.reaction_values, self._explicit)
 
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:
@@ -125,16 +155,25 @@ class Equations(Result):
         return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
 
     @property
-    def _explicit(self) -> Assembly:
+    def _explicit(self) -> EquationsOfMotion:
         """The equations of motion as code has them: explicit where that is shorter, finite where nothing slides."""
-        assembly = with_accelerations(self.system, self.graph)
-        if not assembly.friction or assembly.accelerations is None:
-            return assembly
-        return replace(assembly, accelerations=with_rest(self.system, assembly.accelerations))
+        equations = with_accelerations(self.graph)
+        if not equations.friction or equations.accelerations is None:
+            return equations
+        return replace(equations, accelerations=with_rest(self.system, equations.accelerations))
 
-    def certify(self, target: str | None = "numpy") -> Certificate:
-        """Check the equations by independent routes, and the code that `target` emits against the symbols."""
-        return certify(self.system, self.graph, compiled(self.program, target))
+    def certify(self, target: str | None = "numpy", printed: Printed | None = None) -> Certificate:
+        """Check the equations by independent routes, and the code that `target` emits against the symbols.
+
+        Args:
+            printed: the derivation as it is printed, to be read back.
+        """
+        derived = None if self.method == "lagrange" else self.derived
+        return certify(self.graph, compiled(self.program, target), derived, printed=printed)
+
+    def proven(self, document: Document) -> Document:
+        """A derivation with its proof: the equations', and of its own formulas as they are printed."""
+        return document.proven(self.certify(printed=Printed(*printed_formulas(document))))
 
     def rhs(self, target: str | None = None) -> RightHandSide:
         """The right-hand side `rhs(t, x, p, inputs=())`, x = q then u.
@@ -174,7 +213,7 @@ class Equations(Result):
     @cached_property
     def derivation(self) -> Document:
         """The derivation, step by step."""
-        return self._with_assumptions(derivation_of(self.system, self.graph, self.method))
+        return self._with_assumptions(derivation_of(self.graph, self.method))
 
     def _with_assumptions(self, derivation: Document) -> Document:
         """What had to be assumed stands first."""
@@ -182,16 +221,17 @@ class Equations(Result):
         first = (Step("assumptions", "Assumptions", told),) if told else ()
         return replace(derivation, steps=(*first, *derivation.steps))
 
+    @doing("the derivation, step by step")
     def written(self, *, full: bool) -> Document:
         """The document; `full`: everything is printed, however long."""
         if not full:
             return replace(self.derivation, entries=self.entries)
-        derivation = derivation_of(self.system, self.graph, self.method, full=True)
+        derivation = derivation_of(self.graph, self.method, full=True)
         return replace(self._with_assumptions(derivation), entries=self.entries)
 
     def entries(self) -> dict[str, Any]:
         """What `derive --json` carries."""
-        payload = equations_payload(self.system, self.graph, self.method)
+        payload = equations_payload(self.graph, self.method)
         return {**payload, "assumptions": list(self.assumptions)}
 
     def _repr_latex_(self) -> str:

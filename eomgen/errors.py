@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import dataclass
+
+HIDDEN = re.compile(  # controls, marks that turn the direction of writing, what has no width, halves of characters
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
+    "\ud800-\udfff\U000e0000-\U000e007f]"
+)
+
+
+def visible(text: str) -> str:
+    """The text, characters that steer a terminal or turn its direction as \\u001b: a JSON text remains one."""
+    return HIDDEN.sub(lambda found: json.dumps(found[0])[1:-1].replace("\x7f", "\\u007f"), text)
 
 
 class EomgenError(Exception):
@@ -22,7 +34,7 @@ class EomgenError(Exception):
 
     def __str__(self) -> str:
         head = f"{self.where}: {self.what}" if self.where else self.what
-        return f"{head}\nmend: {self.mend}" if self.mend else head
+        return visible(f"{head}\nmend: {self.mend}" if self.mend else head)
 
 
 @dataclass(frozen=True)
@@ -47,7 +59,7 @@ class Problem:
             lines.append(self.excerpt)
         if self.mend:
             lines.append(f"mend: {self.mend}")
-        return "\n".join(lines)
+        return visible("\n".join(lines))
 
     def as_dict(self) -> dict[str, str | int | None]:
         """For machines, its place taken apart: file, line and column where there are any."""
@@ -115,6 +127,12 @@ class NotYet(DerivationError):
 
 class RunFailed(EomgenError):
     """A simulation or an emitted program failed."""
+
+
+class WriteFailed(EomgenError):
+    """A result could not be written: a disk that is full, a stream that is closed, a folder of somebody else."""
+
+    exit_code = 74  # as sysexits.h has it for input and output
 
 
 class ToolMissing(EomgenError):

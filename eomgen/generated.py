@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from eomgen import pipeline
+from eomgen import files, pipeline
 from eomgen.certificate import certify
-from eomgen.codegen.files import Emitted, texts_of, write_files
+from eomgen.codegen.files import Emitted, texts_of
 from eomgen.codegen.names import identifier
 from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description
@@ -19,10 +19,12 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
+from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__
 
 
@@ -83,14 +85,14 @@ class Generated:
         """The files, all of them or none.
 
         Raises:
-            RunFailed: the folder cannot be written; nothing is then left behind.
+            WriteFailed: the folder cannot be written; nothing is then left behind.
         """
-        return write_files(self.texts, Path(directory))
+        return files.write_all(directory, self.texts)
 
     def certify(self) -> Certificate:
         """The equations by independent routes; every function's text, run here, against the symbols."""
         equations = pipeline.derive(self.model)
-        return certify(equations.system, equations.graph) + self._checks(equations)
+        return certify(equations.graph) + self._checks(equations)
 
     def _checks(self, plain: Equations) -> Iterator[Check]:
         """Of every function in every language.
@@ -102,10 +104,10 @@ class Generated:
         values = {}
         if self.reactions is not None:
             values = self.equations.reaction_values
-        judged = {RHS: Judged(PhaseMotion(self.equations.system, self.equations.graph), values)}
+        judged = {RHS: Judged(PhaseMotion(self.equations.graph), values)}
         judged[REACTIONS] = judged[RHS]
         if self.inverse is not None:
-            judged[INVERSE] = Judged(PhaseMotion(plain.system, plain.graph), {}, self.inverse[1].outputs)
+            judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
         for target in self.targets:
             for emitted in (self.motion, self.reactions, self.inverse):
                 if emitted is not None:
@@ -139,6 +141,7 @@ class Generated:
         return (program, replace(told, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
 
 
+@doing("the code")
 def generate(
     model: ModelOrPath,
     targets: Sequence[str] = ("c",),
@@ -147,6 +150,8 @@ def generate(
     origin: str | None = None,
     actuated: Sequence[str] | None = None,
     baumgarte: tuple[float, float] | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
 ) -> Generated:
     """The right-hand side and the reactions as code that compiles as it is; `.write(DIR)` writes it.
 
@@ -155,10 +160,11 @@ def generate(
         name: of the functions and files.
         actuated: inverse dynamics too, of these coordinates, speeds, inputs or joints; () for all speeds.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a language that there is none.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     for target in targets:
         target_named(target)  # refuses what is none before anything is derived
     equations = pipeline.derive(model)

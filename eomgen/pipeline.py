@@ -1,4 +1,4 @@
-"""Model -> Equations -> RightHandSide -> Trajectory: the whole motion on one screen."""
+"""Model, contact modes -> motion -> inertia | loads | ties -> Equations -> code -> Trajectory: all on one screen."""
 
 from __future__ import annotations
 
@@ -9,39 +9,49 @@ from typing import Any
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.formulations import METHODS
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import with_inputs
+from eomgen.model.replaced import Values, with_inputs, with_values
 from eomgen.model.unknowns import refuse_motion
 from eomgen.questions.run import run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
-
-METHODS = ("lagrange", "projection", "kinetostatic")
+from eomgen.symbolic.numeric.work import doing
 
 
 @growing()
-def derive(model: ModelOrPath, method: str = "lagrange", contacts: ContactModes | None = None) -> Equations:
+@doing("the equations of motion")
+def derive(
+    model: ModelOrPath,
+    method: str = "lagrange",
+    contacts: ContactModes | None = None,
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Equations:
     """The equations of motion of a model; no certificate is made.
 
     Args:
-        method: by which the derivation is written, one of METHODS.
+        method: by which way they are derived, one of METHODS: energies, wrenches along the motions that are free, or
+            these with every body cut free first.
         contacts: how the contacts are that can end, rub or stick, by tie or body on a path, what is not named closed;
             None: as they are at the start. What had to be assumed of them is among the equations' `assumptions`.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
         DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
             held by nothing, or a force acts at no place.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
@@ -49,22 +59,27 @@ def derive(model: ModelOrPath, method: str = "lagrange", contacts: ContactModes 
     system = system_of(model, at_start.modes)
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
-    assembly = with_friction(system, recursive.assembled_by_recursion(system))
-    return Equations(model, method, system, assembly, at_start.assumptions)
+    equations = equations_of_motion(system)
+    return Equations(model, method, equations, at_start.assumptions)
 
 
-def inverse_dynamics(model: ModelOrPath, actuated: Sequence[str] = ()) -> InverseDynamics:
+def inverse_dynamics(
+    model: ModelOrPath,
+    actuated: Sequence[str] = (),
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> InverseDynamics:
     """The forces and torques that given accelerations take; see `Equations.inverse_dynamics`."""
-    model = model_at(model)
-    return derive(model).inverse_dynamics(actuated)
+    return derive(model, parameters=parameters, start=start).inverse_dynamics(actuated)
 
 
 def simulate(
     model: ModelOrPath,
     *,
     time: float,
-    parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
     inputs: Mapping[str, Any] | None = None,
     rtol: float = RUN,
     atol: float = RUN,
@@ -72,32 +87,31 @@ def simulate(
     samples: int | Sequence[float] | None = None,
     method: str = "DOP853",
     stabilization: str = "projection",
-    until: str | None = None,
+    until: WrittenEquation | str | None = None,
 ) -> Trajectory:
     """The motion from the start values of the model.
 
     Args:
         time: how long [s].
-        parameters: values that replace the model's.
-        start: start values and speeds (`theta`, `theta'`) that replace the model's.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
         inputs: values that replace the model's: numbers, expressions of t, or `eomgen.samples(times, values)`.
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves.
         method: DOP853, RK45, RK23; Radau, BDF, LSODA for stiff systems.
         stabilization: what keeps ties closed: "projection", "baumgarte" or "none".
-        until: an equation such as "theta = pi/2" or "reaction_n(wall) = 0": the end, where it first holds.
+        until: an equation such as "theta = 90 deg" or "reaction_n(wall) = 0": the end, where it first holds.
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    model = model_at(model)
+    valued = with_values(model_at(model), parameters, start)
+    model = valued.model
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     equations = derive(with_inputs(model, inputs or {}))
     found = run(
         equations,
         time=time,
-        parameters=parameters,
-        start=start,
+        start=valued.start,
         target=target,
         samples=samples,
         how=how,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
+from forked import needs_sh
 from hand_made import cart_pole, pendulum
 
 from eomgen.codegen import build, rhs
@@ -26,7 +27,7 @@ def own_cache(tmp_path, monkeypatch):
 def test_a_program_is_compiled_once(own_cache, monkeypatch):
     """The same text is found in the cache; another text is compiled."""
     compiled(right_hand_side(pendulum()), "c")
-    monkeypatch.setattr(build.subprocess, "run", lambda *a, **k: pytest.fail("compiled again"))
+    monkeypatch.setattr(build, "_ran", lambda command: pytest.fail("compiled again"))
     assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
     assert [path.suffix for path in own_cache.iterdir()] == [".so"]
 
@@ -56,6 +57,7 @@ def test_a_damaged_library_is_made_anew(own_cache, monkeypatch, size):
 
 @needs_cc
 @pytest.mark.parametrize("what", ["may be written", "belongs to another", "is another program"])
+@needs_sh
 def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatch, what):
     """A file that others may write, or own, or have given another program's name, is compiled anew."""
     path = cached(own_cache, monkeypatch)
@@ -69,13 +71,14 @@ def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatc
         assert not build._is_whole(other)
     old = path.stat().st_mtime_ns if path.exists() else 0
     ran = []
-    real = build.subprocess.run
-    monkeypatch.setattr(build.subprocess, "run", lambda *a, **k: (ran.append(a), real(*a, **k))[1])
+    real = build._ran
+    monkeypatch.setattr(build, "_ran", lambda command: (ran.append(command), real(command))[1])
     assert build.library(TEXT).twice is not None
     assert len(ran) == 1 and not path.stat().st_mode & 0o022
 
 
 @needs_cc
+@needs_sh
 def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(own_cache, monkeypatch):
     """0777 becomes 0700; where the folder is another's, one of this process is taken."""
     cached(own_cache, monkeypatch)
@@ -89,6 +92,7 @@ def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(
 @pytest.mark.parametrize(
     ("command", "said"), [('cc "', "No closing quotation"), ("{}/junk", "makes no library"), ("{}/dies", "failed")]
 )
+@needs_sh
 def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypatch, capsys, command, said):
     """CC with an open quote, one that writes no library, one that is killed: a line on stderr, then numpy."""
     for name, text in (("junk", 'while [ "$1" != "-o" ]; do shift; done; echo junk > "$2"'), ("dies", "kill -SEGV $$")):
@@ -114,7 +118,7 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
 def test_several_at_once_compile_into_one_cache(own_cache):
     """Renaming is atomic: everyone gets a whole library."""
     results: list = []
-    program = right_hand_side(cart_pole(), {"F": 0})
+    program = right_hand_side(cart_pole(F=0))
     threads = [threading.Thread(target=lambda: results.append(compiled(program, "c"))) for _ in range(4)]
     for thread in threads:
         thread.start()
@@ -137,6 +141,7 @@ def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
 
 
 @needs_cc
+@needs_sh
 def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):
     """CC is obeyed, with its options; one that fails is an error for "c", and said on stderr otherwise."""
     monkeypatch.setenv("CC", f"{build.compiler()} -DNOTHING")

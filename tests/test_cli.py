@@ -7,6 +7,7 @@ import os
 import resource
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import click
@@ -20,6 +21,10 @@ from eomgen.cli_common import LATER
 from eomgen.codegen.build import compiler
 from eomgen.codegen.targets import ALL
 from eomgen.proof.check import Certificate, Check
+from eomgen.report import rendered
+from eomgen.report.document import Document
+from eomgen.report.quantity import Quantity
+from eomgen.report.statements import Found, Listing, Step
 from eomgen.version import __version__
 
 pytestmark = pytest.mark.slow
@@ -34,6 +39,7 @@ SEED = str(MODELS / "seeds" / "ch22_p1.toml")
 OSCILLATIONS = (MODELS / "seeds" / "ch22_p3.toml").read_text() + 'omega3 = "frequency(3)"\n'  # it has two
 VERBS = [
     "new",
+    "examples",
     "check",
     "derive",
     "solve",
@@ -243,7 +249,7 @@ def test_output_goes_into_a_file_whole_its_folder_made(tmp_path):
 
 
 def test_a_file_that_cannot_be_written_is_said_and_nothing_is_left(tmp_path):
-    """A folder that is a file: exit 3, no traceback."""
+    """A folder that is a file: exit 74, no traceback."""
     (tmp_path / "file").write_text("precious")
     for name, *words in (
         ("x.txt", "solve", SEED),
@@ -251,7 +257,7 @@ def test_a_file_that_cannot_be_written_is_said_and_nothing_is_left(tmp_path):
         ("x.csv", "simulate", PENDULUM, "--time", "0.1"),
     ):
         result = run(*words, "-o", str(tmp_path / "file" / name))
-        assert result.exit_code == 3
+        assert result.exit_code == 74
         assert "cannot be" in result.stderr
     assert (tmp_path / "file").read_text() == "precious"
     assert len(list(tmp_path.iterdir())) == 1
@@ -308,6 +314,13 @@ def test_the_same_bytes_come_out_of_every_run():
     assert len(outputs) == 1
 
 
+def test_an_answer_is_typeset_in_the_order_of_its_text():
+    """f*e*d*c*b*a: f e d c b a in every run, whatever the hashes of the names are."""
+    listing = Listing((Found("P", Quantity("f*e*d*c*b*a + g")),))
+    text = rendered(Document("model", steps=(Step("", "", (listing,)),)), "latex")
+    assert "f e d c b a + g" in text
+
+
 # -- the verbs -------------------------------------------------------------------------------------
 
 
@@ -323,6 +336,32 @@ def test_the_starter_model_derives_solves_and_simulates(tmp_path, monkeypatch):
     result = run("new", "mine")
     assert (result.exit_code, Path("mine.toml").read_text()) == (2, "precious")
     assert "is there already" in result.stderr
+
+
+def test_each_example_that_ships_can_be_the_beginning_of_ones_own(tmp_path, monkeypatch):
+    """examples names every file of models/; new --example gives its bytes; a name that is none is answered."""
+    monkeypatch.chdir(tmp_path)
+    found = json.loads(run("examples", "--json").stdout)["examples"]
+    assert [Path(each["path"]) for each in found] == sorted(MODELS.rglob("*.toml"))
+    assert all(each["title"] for each in found)
+    assert len(run("examples").stdout.splitlines()) == len(found)
+    for name, of in (("a", "double_pendulum"), ("b", "seeds/ch22_p1"), ("c", "ch22_p1.toml")):
+        assert run("new", name, "--example", of).exit_code == 0
+        source = MODELS / (of if "pendulum" in of else "seeds/ch22_p1")
+        assert Path(f"{name}.toml").read_bytes() == source.with_suffix(".toml").read_bytes()
+    wrong = run("new", "d", "--example", "duble_pendulum")
+    assert wrong.exit_code == 2 and "did you mean 'double_pendulum'?" in wrong.stderr
+    assert run("new", "a", "--example", "double_pendulum").exit_code == 2
+
+
+def test_the_citation_and_the_sdist_are_of_this_version():
+    """CITATION.cff has the version; what the sdist is to hold is there."""
+    assert f"version: {__version__}\n" in (ROOT / "CITATION.cff").read_text()
+    built = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
+    held = [*built["sdist"]["include"], *built["wheel"]["force-include"]]
+    assert all((ROOT / path).exists() for path in held) and built["wheel"]["force-include"] == {
+        "models": "eomgen/examples"
+    }
 
 
 def test_check_tells_the_degrees_of_freedom_both_ways():
@@ -351,13 +390,48 @@ def test_the_ending_of_the_file_chooses_the_format(ending, mark, tmp_path):
     assert path.read_text().startswith("#")
 
 
-@pytest.mark.parametrize("verb", ["check", "derive", "solve", "reactions", "kinematics", "inertia", "linearize"])
+@pytest.mark.parametrize("verb", VERBS[2:])
 def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
-    """derive -o w.html: exit 2, the endings that there are, no file; --format says which form all the same."""
-    path = tmp_path / "w.html"
-    result = run(verb, SEED, "-o", str(path))
-    assert result.exit_code == 2 and not path.exists()
-    assert ".txt, .tex, .md, .json" in result.stderr
+    """derive -o w.html: exit 2, the endings that there are, no file, with and without --format."""
+    for ending in (".html", ".pdf", ".docx", ".xlsx", ".PDF"):
+        path = tmp_path / f"w{ending}"
+        words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
+        has_form = verb not in ("schema", "doctor", "codegen", "simulate")
+        for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
+            assert result.exit_code == 2 and not list(tmp_path.iterdir())
+            endings = {"simulate": ".csv, .npz", "codegen": "-o names the folder"}
+            assert endings.get(verb, ".txt, .tex, .md, .json") in result.stderr
+
+
+@pytest.mark.parametrize("verb", ["statics", "kinematics", "inertia", "linearize", "simulate"])
+def test_a_picture_has_an_ending_of_a_picture(verb, tmp_path):
+    """--plot x.html: exit 2 before any work, the endings that there are."""
+    result = run(verb, SEED, "--plot", str(tmp_path / "x.html"))
+    assert result.exit_code == 2 and ".png, .svg, .pdf" in result.stderr and not list(tmp_path.iterdir())
+
+
+def test_a_folder_of_code_may_have_any_name_but_that_of_a_file(tmp_path):
+    """codegen -o run.c is refused; -o run, build-1.2, or a folder that is there are not."""
+    (tmp_path / "there.c").mkdir()
+    for name, code in (("run.c", 2), ("run", 0), ("build-1.2", 0), ("there.c", 0)):
+        words = ("codegen", PENDULUM, "--target", "numpy", "--no-certify", "-o", str(tmp_path / name))
+        assert run(*words).exit_code == code
+
+
+def test_check_takes_several_files(tmp_path):
+    """Each is told, the wrong ones too, in order; the exit code is the largest; JSON is one object."""
+    bad = tmp_path / "bad.toml"
+    bad.write_text(FALL.replace("k*x^3", "kk*x^3"))
+    good = run("check", PENDULUM).stdout
+    result = run("check", PENDULUM, str(bad), SEED)
+    assert result.exit_code == 1 and result.stdout == f"{good}\n{run('check', SEED).stdout}"
+    assert f"{bad}:11:" in result.stderr
+    found = json.loads(run("check", PENDULUM, str(bad), "--json").stdout)["models"]
+    assert [each["path"] for each in found] == [PENDULUM, str(bad)]
+    assert found[0]["degrees_of_freedom"] == 2 and found[1]["error"]["exit_code"] == 1
+    run("check", PENDULUM, SEED, "-o", str(tmp_path / "all.txt"))
+    assert (tmp_path / "all.txt").read_text() == result.stdout
+    assert run("check", PENDULUM, SEED, "--format", "latex").exit_code == run("check").exit_code == 2
 
 
 @pytest.mark.parametrize("words", [("solve", SEED), ("reactions", SEED), ("simulate", PENDULUM, "--time", "0.1")])
@@ -386,7 +460,7 @@ def test_derive_shows_its_certificate_in_every_format():
 def test_a_certificate_that_fails_is_shown_with_the_result_and_exit_code_3(format, monkeypatch):
     """The result is still there, and marked."""
     failing = Certificate((Check("two and two are four", "fails", "fingers", "five"),))
-    monkeypatch.setattr(equations, "certify", lambda *_: failing)
+    monkeypatch.setattr(equations, "certify", lambda *_, **__: failing)
     result = run("derive", SEED, "--format", format)
     assert result.exit_code == 3
     assert "FAILS" in result.stderr
@@ -401,7 +475,7 @@ def test_what_could_not_be_checked_is_a_warning_and_no_failure(monkeypatch):
     """`ok` is null, exit 0; the warning stands on stderr and in the JSON; with a proof there is none."""
     unchecked = Certificate((Check("it is so", "unchecked", "looking", "it is dark"),))
     proven = json.loads(run("derive", SEED, "--json").stdout)
-    monkeypatch.setattr(equations, "certify", lambda *_: unchecked)
+    monkeypatch.setattr(equations, "certify", lambda *_, **__: unchecked)
     result = run("derive", SEED, "--json")
     data = json.loads(result.stdout)
     assert (result.exit_code, data["certificate"]["ok"], proven["warnings"]) == (0, None, [])
@@ -580,8 +654,6 @@ def test_check_says_how_a_structure_stands(model, more, line):
 def test_the_schema_fits_the_models():
     """What `eomgen schema` prints is a JSON Schema that every model of models/ fits."""
     jsonschema = pytest.importorskip("jsonschema")
-    import tomllib
-
     schema = json.loads(run("schema").stdout)
     validator = jsonschema.Draft202012Validator(schema)
     validator.check_schema(schema)

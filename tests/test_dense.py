@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from maximal import dense_solution
 
 import eomgen
 from eomgen.symbolic.numeric import dense, modular
-from eomgen.symbolic.numeric.dense import dense_solution, independent, scaled_condition
+from eomgen.symbolic.numeric.dense import independent, scaled_condition
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 
 SMALLEST = 1e-11

@@ -116,12 +116,22 @@ forces.w = { kind = "gravity", acceleration = [0, "-g"] }
 """
 
 
-@pytest.mark.parametrize("condition", ["x' = 0", "speed(bob.center) = 0", "y = 0"])
+@pytest.mark.parametrize("condition", ["x' = 0", "speed(bob.center) = 0", "y = 0", "x = -L"])
 def test_a_root_of_any_order_is_found_to_all_digits(condition):
-    """Let go level, the bob is so again after 2 K(1/sqrt 2) sqrt(L/g): x' has a triple root there, |v| an edge."""
+    """Let go level, it is so after 2 K(1/sqrt 2) sqrt(L/g): x' has a triple root, x one of order 4, |v| an edge."""
     half = 2 * ellipk(0.5) * np.sqrt(0.8 / 9.81)
     found = eomgen.simulate(eomgen.loads(LEVEL), time=2, until=condition, rtol=1e-11, atol=1e-11, target="numpy")
     assert found.status == "event" and found.phases[-1].end == pytest.approx(half, abs=1e-11)
+
+
+def test_two_roots_that_the_run_tells_apart_are_not_taken_for_one():
+    """cos w t = -(1 - d) just before the turn, at (pi - sqrt(2 d))/w; the error of x divides by w sqrt(2 d)."""
+    w = 4.0
+    for d in (1e-2, 1e-4, 1e-6):
+        events = Events(lambda t, x, d=d: x[:, :1] + 1 - d, np.array([1e-9]), (0,))
+        oscillates = lambda t, x: np.array([x[1], -w * w * x[0]])  # noqa: E731
+        found = march(oscillates, (0.0, 3.0), np.array([1.0, 0.0]), how=Stepping(rtol=1e-12, atol=1e-12), events=events)
+        assert found.end == pytest.approx(np.arccos(-(1 - d)) / w, abs=1e-11 / np.sqrt(2 * d))
 
 
 def test_no_step_is_too_long_for_a_condition():

@@ -178,19 +178,19 @@ def test_an_error_says_what_where_and_how_to_mend_it(text, what, column, mend):
 )
 def test_a_hostile_text_is_refused_at_once(text):
     """Length, depth, powers and digits are bounded: no text costs more than a moment."""
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ExpressionError):
         parse(text).evaluate({"x": 3})
-    assert time.perf_counter() - start < 0.05
+    assert time.process_time() - start < 0.05
 
 
 def test_a_power_beyond_all_size_costs_no_time():
     """9^9^9 has 369 million digits; it is refused by the size of its factors."""
-    start = time.perf_counter()
+    start = time.process_time()
     for _ in range(20):
         with pytest.raises(ExpressionError, match="too large"):
             parse("9^9^9")
-    assert (time.perf_counter() - start) / 20 < 1e-3
+    assert (time.process_time() - start) / 20 < 1e-3
 
 
 def test_what_has_no_value_says_where():
@@ -316,7 +316,7 @@ def test_an_arm_of_250_expressions_is_read_in_a_moment():
     texts = [
         f"{a}{n}*{b}/2 - {n}.25*pi" for n in range(50) for a, b in (("I", "m"), ("c", "l"), ("q", "x"), ("a", "b"))
     ]
-    start = time.perf_counter()
+    start = time.process_time()
     for text in texts:
         parse(text)
-    assert time.perf_counter() - start < 0.05
+    assert time.process_time() - start < 0.05

@@ -201,8 +201,8 @@ def test_the_order_in_which_bodies_are_declared_changes_nothing(order):
     results = []
     for names in (tuple(BODIES), order):
         system = written(AROUND.format(bodies="".join(BODIES[name] for name in names)))
-        assembly = recursive.assembled_by_recursion(system)
-        results.append(at([*(x for row in assembly.M for x in row), *assembly.forcing], state_of(system)))
+        equations = recursive.assembled_by_recursion(system)
+        results.append(at([*(x for row in equations.M for x in row), *equations.forcing], state_of(system)))
         parents = [link.parent for link in system.motion.links]
         assert all(parent < i for i, parent in enumerate(parents)), "parents come before children"
     assert results[1] == pytest.approx(results[0], rel=1e-13)

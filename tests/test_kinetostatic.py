@@ -39,7 +39,7 @@ def _is_short_tree(name: str) -> bool:
     """Nothing closes, nothing is eliminated, something reacts, and everything is printed."""
     e = equations(name, "kinetostatic")
     tree = not e.graph.J and e.system.free is None and bool(e.reactions.components)
-    return tree and name not in LONG and short_accelerations(e.system, e.graph) is not None
+    return tree and name not in LONG and short_accelerations(e.graph) is not None
 
 
 TREES = tuple(name for name, method in by_every_method() if method == "kinetostatic" and _is_short_tree(name))
@@ -111,7 +111,7 @@ def letters(derived: Equations) -> Lettered:
 
 def along_motion(derived: Equations) -> dict[Node, Scalar]:
     """The accelerations of the equations of motion."""
-    found = short_accelerations(derived.system, derived.graph)
+    found = short_accelerations(derived.graph)
     assert found is not None
     return dict(zip(derived.graph.symbols.a, found, strict=True))
 

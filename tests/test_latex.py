@@ -102,7 +102,7 @@ def test_documents_are_balanced(name):
 def test_a_document_compiles_as_it_stands_and_fits_its_pages(name, method, full, tmp_path):
     """pdflatex ends without an error, whatever stands in the user's names and remarks, and no line is too wide"""
     derived = equations(name, method)
-    derivation = derivation_of(derived.system, derived.graph, method, full=full)
+    derivation = derivation_of(derived.graph, method, full=full)
     (tmp_path / "a.tex").write_text(rendered(derivation, "latex"))
     run = subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "a.tex"],

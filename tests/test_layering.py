@@ -10,6 +10,7 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
     ("version", "errors"),
+    ("files",),
     ("symbolic",),
     ("model",),
     ("mechanics",),
@@ -23,6 +24,8 @@ CHAIN = (
     ("pipeline",),
     ("generated",),
     ("verbs", "notebook"),
+    ("edge",),
+    ("cli_options",),
     ("cli_common",),
     ("cli",),
     ("__main__",),

@@ -3,9 +3,11 @@
 import pickle
 from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
+import eomgen
 from eomgen.errors import MissingValues, ModelError
 from eomgen.model.forces import Distributed, Gravity
 from eomgen.model.joints import Placed, Revolute
@@ -199,3 +201,13 @@ def test_no_kind_waits_for_a_later_version():
         constraints={"g": {"kind": "guide", "point": "bar.end", "along": [1, 0, 0]}},
     )
     assert unbuilt(waiting) == unbuilt_ties(waiting) == ()
+
+
+@pytest.mark.parametrize("name", ["simple_pendulum", "stewart_platform", "gerber_beam"])
+def test_a_model_and_its_equations_show_themselves_in_one_line(name):
+    """In a session: what it is and how large, not all of it."""
+    model = eomgen.load(Path(__file__).parent.parent / "models" / f"{name}.toml")
+    shown = [repr(model)] if name == "gerber_beam" else [repr(model), repr(eomgen.derive(model))]
+    for text in shown:
+        assert "\n" not in text and len(text) < 300 and model.name in text
+    assert str(len(model.bodies)) in shown[0]

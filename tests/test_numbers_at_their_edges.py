@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-import random
 
 import numpy as np
 import pytest
-from sympy.polys.domains import QQ
-from sympy.polys.rings import ring
 
 import eomgen
 from eomgen.errors import ExpressionError, ModelError
-from eomgen.symbolic.exact.polynomials import _coprime
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
@@ -93,32 +89,3 @@ def test_exact_numbers_beyond_all_doubles_are_infinite_in_doubles_and_right_in_t
     assert np.all(np.isinf(evaluate((x * 10**400,), {x: np.ones(2)}, ARRAYS)[0]))
     low, high = INTERVALS.number(-(10**400))
     assert low == -math.inf and high < -1e308
-
-
-def test_negative_powers_are_cleared_before_a_common_divisor_is_sought():
-    """above/below stays what it is, and the two are polynomials without a common divisor."""
-    rng = random.Random(0)
-    R, *x = ring([f"x{i}" for i in range(4)], QQ)
-
-    def laurent(terms, low):
-        found = {}
-        for j in range(terms):
-            e = [rng.choice((0, 0, 1, 2)) for _ in x]
-            if low and j % 2:
-                e[rng.choice((1, 2))] = low
-            found[tuple(e)] = QQ(rng.randrange(1, 999))
-        return R.from_dict(found)
-
-    above, below = laurent(5, 0), laurent(6, -2)
-    up, down = _coprime(above, below)
-    assert all(e >= 0 for part in (up, down) for powers in part.monoms() for e in powers)
-    values = [Fraction(rng.randint(1, 9), rng.randint(1, 9)) for _ in x]
-
-    def at(part):
-        return sum(
-            Fraction(int(c.numerator), int(c.denominator))
-            * math.prod(v**e for v, e in zip(values, powers, strict=True))
-            for powers, c in part.terms()
-        )
-
-    assert at(above) * at(down) == at(up) * at(below)

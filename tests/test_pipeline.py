@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import sympy
@@ -77,3 +79,12 @@ def test_inputs_are_replaced_by_expressions_numbers_and_samples():
 def test_inputs_that_cannot_be_replaced(inputs, error, words):
     with pytest.raises(error, match=words):
         eomgen.simulate(eomgen.loads(BEAM), time=1, inputs=inputs)
+
+
+def test_the_symbols_of_equations_are_those_in_its_matrices():
+    """Numbers in place of every free symbol of M and the forcing: none is left."""
+    equations = eomgen.derive(Path(__file__).parent.parent / "models" / "double_pendulum.toml")
+    left = equations.M.row_join(equations.forcing)
+    assert left.subs(dict.fromkeys(equations.symbols.values(), 2)).free_symbols == set()
+    assert left.free_symbols <= set(equations.symbols.values())
+    assert equations.symbols["theta1'"] in equations.forcing.free_symbols

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -134,7 +135,7 @@ def test_what_moves_no_mass_and_is_not_tied_has_no_acceleration():
 
 def test_statements_come_after_what_they_need():
     """Every argument of a statement is an argument of the program, hoisted, or assigned before."""
-    program = right_hand_side(cart_pole(), {"F": 0})
+    program = right_hand_side(cart_pole(F=0))
     known = {program.symbols.t, *program.states, *program.symbols.parameters.values()}
     known |= set(program.symbols.inputs.values()) | {s.node for s in program.hoisted}
     for statement in program.statements:
@@ -156,14 +157,14 @@ def test_what_parameters_alone_determine_is_hoisted():
 
 def test_the_cheaper_of_two_ways_is_taken():
     """Explicit accelerations are used where they cost less than the factorization, and only there."""
-    given = cart_pole()
+    given = cart_pole(F=0)
     s = given.symbols
     cheap, dear = (s.q[0], s.q[1]), tuple(sin(cos(sin(q + 1) + 1) * q) / (q + 2) for q in s.q + s.u)[:2]
-    without = right_hand_side(given, {"F": 0}).count.total
-    shorter = right_hand_side(type(given)(**{**vars(given), "accelerations": cheap}), {"F": 0})
+    without = right_hand_side(given).count.total
+    shorter = right_hand_side(replace(given, accelerations=cheap))
     assert shorter.outputs[2:] == cheap and shorter.count.total < without
     longer = tuple(dear[0] ** 7 * dear[1] ** 5 + sin(x * dear[0]) * cos(x + dear[1]) for x in s.q)
-    assert right_hand_side(type(given)(**{**vars(given), "accelerations": longer}), {"F": 0}).count.total == without
+    assert right_hand_side(replace(given, accelerations=longer)).count.total == without
 
 
 def test_a_large_system_is_solved_in_a_loop_and_a_small_one_written_out():
@@ -247,10 +248,10 @@ def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
 @pytest.mark.parametrize("made", [pendulum, lambda: spring_row(20), tied_pendulum], ids=["written out", "solve", "tie"])
 def test_what_holds_accelerations_takes_those_of_the_right_hand_side(made):
     """f(q, u, a) along the motion = f with the a that the right-hand side returns, by the same kind of solution."""
-    assembly = made()
-    symbols = assembly.symbols
+    equations = made()
+    symbols = equations.symbols
     outputs = tuple(3 * a + x * u for a, x, u in zip(symbols.a, symbols.q, symbols.u, strict=True))
-    rhs, along = right_hand_side(assembly), program_in_motion(outputs, assembly)
+    rhs, along = right_hand_side(equations), program_in_motion(outputs, equations)
     kinds = [[type(s) for s in program.statements if type(s) is Solve] for program in (rhs, along)]
     assert kinds[0] == kinds[1]
     for v in vectors(rhs):

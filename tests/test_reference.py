@@ -15,7 +15,7 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.model import constraints, forces, joints, shapes
-from eomgen.model.checks.outputs import FUNCTIONS
+from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.part import slots_of
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
 from eomgen.symbolic.expression.functions import NAMES

@@ -112,7 +112,7 @@ def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
 def test_a_full_derivation_of_a_large_model_reads_back_as_its_equations_of_motion(name):
     """M a + c = Q through all of z1, z2, ..., each printed once, before its use"""
     derived = equations(name)
-    full = derivation_of(derived.system, derived.graph, "lagrange", full=True)
+    full = derivation_of(derived.graph, "lagrange", full=True)
     text = rendered(full, "text")
     assert "too long" not in text
     assert all(len(line) <= WIDTH for line in text.splitlines())

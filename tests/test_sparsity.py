@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_made import assembly, spring_row, symbols
+from hand_made import equations_of, spring_row, symbols
 
 import eomgen
 from eomgen.codegen.kernel_reader import solve_bordered
@@ -15,7 +15,7 @@ from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.vectors import vectors
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import is_zero
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.slow
 each_target = pytest.mark.parametrize("target", [target.name for target in ALL])
 
 
-def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> Assembly:
+def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> EquationsOfMotion:
     """A plate of three coupled coordinates on legs of two each; two rows tie each leg to it, `twice` says all twice."""
     names = [f"p{i}" for i in range(3)] + [f"l{i}{j}" for i in range(legs) for j in range(2)]
     s = symbols(" ".join(names), "m", ties=2 * legs * (2 if twice else 1))
@@ -46,7 +46,7 @@ def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False
     rows += [[3 * x for x in row] for row in rows] if twice else []
     gamma = [sum((x * u * u for x, u in zip(row, s.u, strict=True) if not is_zero(x)), start=0) for row in rows]
     force = [-x - u / 3 for x, u in zip(q, s.u, strict=True)]
-    return assembly(s, M, [0] * n, force, J=rows, gamma=gamma)
+    return equations_of(s, M, [0] * n, force, J=rows, gamma=gamma)
 
 
 CASES = {
@@ -58,7 +58,7 @@ CASES = {
 each_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
 
 
-def at(made: Assembly, t: float, x: tuple[float, ...], p: tuple[float, ...]):
+def at(made: EquationsOfMotion, t: float, x: tuple[float, ...], p: tuple[float, ...]):
     """M, J, forcing and -gamma as arrays."""
     values = [*(e for row in made.M for e in row), *(e for row in made.J for e in row), *made.forcing, *made.gamma]
     found = compiled(program_of(values, made.symbols), "numpy")(t, x, p)
@@ -136,7 +136,7 @@ def pieces(program: Program) -> int:
     return sum(function.apart for function in lowered(program, C, "dx").bodies)
 
 
-def long_row(n: int) -> Assembly:
+def long_row(n: int) -> EquationsOfMotion:
     """A full row of springs whose forces are long: solved in a loop, with more before it than C has in a function."""
     made = spring_row(n)
     q, u = made.symbols.q, made.symbols.u
@@ -145,7 +145,7 @@ def long_row(n: int) -> Assembly:
         x = sin(x + i) * cos(q[i % n]) + u[i % n] / 7
         forces.append(x)
     forcing = tuple(f + sum(forces[i::n], start=0) for i, f in enumerate(made.forcing))
-    return assembly(made.symbols, made.M, [0] * n, forcing)
+    return equations_of(made.symbols, made.M, [0] * n, forcing)
 
 
 @each_target

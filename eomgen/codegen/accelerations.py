@@ -14,8 +14,7 @@ import numpy as np
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.constraints.freedom import rank_of_ties
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE
 
@@ -28,18 +27,19 @@ class Accelerations:
     lam: dict[str, float | None]
 
 
-def closing_accelerations(system: System, assembly: Assembly, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
+def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
     """The accelerations and multipliers at one state; none has a single value where branches meet.
 
     Args:
         p: the parameters' values.
     """
+    system = equations.system
     symbols, rows = system.symbols, [row.label for row in system.ties.closing]
     names = [f"{u.name}'" for u in symbols.u]
     if not names:
         return Accelerations({}, {})
-    outputs = (*symbols.a, *symbols.lam, *(entry for row in assembly.J for entry in row))
-    program = program_of(outputs, symbols, inputs=system.inputs, solve=bordered(assembly))
+    outputs = (*symbols.a, *symbols.lam, *(entry for row in equations.J for entry in row))
+    program = program_of(outputs, symbols, inputs=system.inputs, solve=bordered(equations))
     values = compiled(program, "numpy")(t, x, p)
     a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
     left = _left(J.reshape(len(rows), len(names)))

@@ -11,22 +11,28 @@ import os
 import platform
 import shlex
 import shutil
+import signal
 import stat
 import subprocess
 import sys
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import platformdirs
 
 from eomgen.errors import RunFailed, ToolMissing
+from eomgen.files import beside
 
 FLAGS = ("-std=c99", "-O2", "-shared", "-fPIC")
 FLAGS_OF_LONG_TEXT = ("-std=c99", "-O1", "-shared", "-fPIC")
 FLAGS_OF_ONE_LOOK = ("-std=c99", "-O0", "-shared", "-fPIC")  # what is called a few times only is made soonest
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
-PATIENCE = 300  # seconds
+PATIENCE = 20  # seconds: under what a verb has in all, so that numpy still has its time
+MOST_SAID = 2000  # characters of a compiler
+MOST_KEPT, LARGEST, OLDEST = 1000, 2**28, 90 * 86_400.0  # libraries; bytes together; seconds since the last use
 
 
 def compiler() -> str | None:
@@ -53,13 +59,27 @@ def library(text: str, *, quickly: bool = False) -> ctypes.CDLL:
     for path in folder.glob(f"{name}-*.so"):
         if _is_whole(path):
             with suppress(OSError):  # another machine's: made anew below
-                return ctypes.CDLL(str(path))
+                found = ctypes.CDLL(str(path))
+                os.utime(path)
+                return found
     path = _compile(text, [*command, *flags], folder, name)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
         path.unlink(missing_ok=True)
         raise RunFailed(f"the C compiler makes no library: {error}", shlex.join(command)) from None
+
+
+def function_of(made: ctypes.CDLL, name: str) -> Any:
+    """A function of a library.
+
+    Raises:
+        RunFailed: it is not in it.
+    """
+    try:
+        return getattr(made, name)
+    except AttributeError:
+        raise RunFailed(f"the C compiler makes a library without the function '{name}'", str(_command()[0])) from None
 
 
 def _digest(content: bytes) -> str:
@@ -91,28 +111,69 @@ def _others_write(path: Path) -> bool:
 def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
     """Compile beside the target and rename: another process sees all of the library or nothing."""
     try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix="making-") as place:
-            source, made = Path(place) / "program.c", Path(place) / "program.so"
+        with beside(folder) as place:
+            source, made = place / "program.c", place / "program.so"
             source.write_text(text, encoding="utf-8")
-            done = subprocess.run(
-                [*command, "-o", str(made), str(source), "-lm"],
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=PATIENCE,
-                check=False,
-            )
-            if done.returncode != 0 or not made.exists():
-                said = done.stderr.strip()[:2000] or f"it ended with {done.returncode}"
-                raise RunFailed(f"the C compiler failed: {said}", command[0])
+            code, said = _ran([*command, "-o", str(made), str(source), "-lm"])
+            if code != 0 or not made.is_file():
+                raise RunFailed(
+                    f"the C compiler failed: {said or f'it ended with {code}, and made nothing'}", command[0]
+                )
             made.chmod(0o700)  # whatever the umask
             path = folder / _named(name, made)
             os.replace(made, path)
+            _let_go(folder, path)
             return path
-    except subprocess.TimeoutExpired:
-        raise RunFailed(f"the C compiler did not come back within {PATIENCE} s") from None
     except OSError as error:
         raise ToolMissing(f"nothing can be compiled: {error}", command[0]) from None
+
+
+def _ran(command: list[str]) -> tuple[int, str]:
+    """(the exit code, what it said) of a compiler; it and all that it has started end with this call.
+
+    Raises:
+        RunFailed: it does not come back.
+    """
+    started = subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    try:
+        said = started.communicate(timeout=PATIENCE)[1]
+        return started.returncode, said.strip()[:MOST_SAID]
+    except subprocess.TimeoutExpired:
+        raise RunFailed(f"the C compiler did not come back within {PATIENCE} s", command[0]) from None
+    finally:
+        if started.poll() is None:
+            _end(started)
+
+
+def _end(started: subprocess.Popen[str]) -> None:
+    """Kill a process with its children (on Windows without these)."""
+    with suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(started.pid, signal.SIGKILL)
+        else:
+            started.kill()
+    started.wait()
+    if started.stderr is not None:
+        started.stderr.close()
+
+
+def _let_go(folder: Path, new: Path) -> None:
+    """Takes away the libraries that nobody has used for long, and the oldest where there are too many or too large."""
+    with suppress(OSError):  # another process does the same
+        found = sorted(((path.stat(), path) for path in folder.glob("*.so")), key=lambda each: -each[0].st_mtime)
+        size = 0
+        for kept, (about, path) in enumerate(found):
+            size += about.st_size
+            if path != new and (kept >= MOST_KEPT or size > LARGEST or time.time() - about.st_mtime > OLDEST):
+                path.unlink()
 
 
 def _command() -> list[str]:
@@ -137,9 +198,20 @@ def _command() -> list[str]:
     raise ToolMissing("no C compiler", mend="install cc or `pip install ziglang`, set CC, or take --target numpy")
 
 
+def cache_folder() -> Path | None:
+    """Where compiled code is kept; None for a user without a home."""
+    try:
+        place = Path(platformdirs.user_cache_dir("eomgen"))
+    except RuntimeError:
+        return None
+    return place if place.is_absolute() else None
+
+
 def _cache() -> Path:
     """The user's cache folder, closed to others; one of this process where that is another's or not writable."""
-    place = Path(platformdirs.user_cache_dir("eomgen"))
+    place = cache_folder()
+    if place is None:
+        return _own_folder()
     try:
         place.mkdir(parents=True, exist_ok=True, mode=0o700)
         if not _is_ours(place):

@@ -1,18 +1,14 @@
-"""Program -> files that others can use as they are: all of them, or none."""
+"""Program -> the texts of files that others can use as they are."""
 
 from __future__ import annotations
 
 import json
-import os
-import tempfile
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 from eomgen.codegen.names import identifier
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import Description
-from eomgen.errors import RunFailed
 from eomgen.version import SCHEMA_VERSION
 
 Emitted = tuple[Program, Description]
@@ -47,18 +43,6 @@ def texts_of(
                 texts |= {f"{folder}{file}": text for file, text in files.items()}
         texts[f"{folder}test_vectors.json"] = answers
     return texts
-
-
-def write_files(texts: Mapping[str, str], directory: Path) -> list[Path]:
-    """The files in their folder, which is made if it is not there; their paths.
-
-    Raises:
-        RunFailed: the folder cannot be written; nothing is then left behind.
-    """
-    try:
-        return _written(texts, directory)
-    except OSError as error:
-        raise RunFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
 
 
 def vectors_text(
@@ -111,16 +95,3 @@ def _listed(description: Description, indent: str) -> list[str]:
     ]
     listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
     return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]
-
-
-def _written(texts: Mapping[str, str], directory: Path) -> list[Path]:
-    """Everything is written aside first and moved into place last."""
-    directory.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=directory, prefix=".eomgen-") as aside:
-        for name, text in texts.items():
-            (Path(aside) / name).parent.mkdir(exist_ok=True)
-            (Path(aside) / name).write_text(text, encoding="utf-8")
-        for name in texts:
-            (directory / name).parent.mkdir(exist_ok=True)
-            os.replace(Path(aside) / name, directory / name)
-    return [directory / name for name in texts]

@@ -1,4 +1,4 @@
-"""Assembly -> Program: a right-hand side as a list of statements, which every target can write down.
+"""Equations of motion -> Program: a right-hand side as a list of statements, which every target can write down.
 
 Equations that need a linear solve carry it as one statement, `Solve`; an inverse is never formed.
 """
@@ -14,7 +14,7 @@ from eomgen.codegen import factorization
 from eomgen.codegen.lowered import INT, Table
 from eomgen.codegen.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -138,60 +138,60 @@ class Program:
         return self.states + self.accelerations
 
 
-def right_hand_side(assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
+def right_hand_side(equations: EquationsOfMotion) -> Program:
     """The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations.
 
     M a = forcing, or with closing rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
 
-    Args:
-        assembly: the equations of motion.
-        inputs: the model's own expression of each input, in t and parameters.
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
     """
-    return program_in_motion((*kinematic_rates(assembly), *assembly.symbols.a), assembly, inputs)
+    return program_in_motion((*kinematic_rates(equations), *equations.symbols.a), equations)
 
 
-def program_in_motion(outputs: ScalarRow, assembly: Assembly, inputs: Mapping[str, Scalar] | None = None) -> Program:
+def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Program:
     """Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations.
 
     Args:
-        outputs: expressions in the assembly's symbols, accelerations among them.
+        outputs: expressions in the symbols of the equations, accelerations among them.
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
     """
-    if assembly.J and not assembly.friction:
-        return program_of(outputs, assembly.symbols, inputs=inputs, solve=bordered(assembly))
-    candidates = [_explicit(outputs, assembly, a, inputs) for a in _explicit_accelerations(assembly)]
-    if not candidates or not (assembly.friction or _is_short(assembly)):
-        solve = _ordered(assembly.M, (), assembly.forcing, assembly.symbols.a)
+    if equations.J and not equations.friction:
+        return _program(outputs, equations, bordered(equations))
+    candidates = [_explicit(outputs, equations, a) for a in _explicit_accelerations(equations)]
+    if not candidates or not (equations.friction or _is_short(equations)):
+        solve = _ordered(equations.M, (), equations.forcing, equations.symbols.a)
         if all(solve.operations < program.count.total for program in candidates):
-            candidates.append(program_of(outputs, assembly.symbols, inputs=inputs, solve=solve))
+            candidates.append(_program(outputs, equations, solve))
     return min(candidates, key=lambda program: program.count.total)
 
 
-def _explicit_accelerations(assembly: Assembly) -> list[ScalarRow]:
+def _explicit_accelerations(equations: EquationsOfMotion) -> list[ScalarRow]:
     """a written out: as the formulation gives them, and by a factorization that is not too long."""
-    found = [] if assembly.accelerations is None else [assembly.accelerations]
-    if not assembly.friction and _is_short(assembly):
-        found.append(factorization.factor_solution(assembly.M, assembly.forcing))
+    found = [] if equations.accelerations is None else [equations.accelerations]
+    if not equations.friction and _is_short(equations):
+        found.append(factorization.factor_solution(equations.M, equations.forcing))
     return found
 
 
-def _is_short(assembly: Assembly) -> bool:
-    return factorization.operation_count(assembly.M) <= UNROLLED_AT_MOST
+def _is_short(equations: EquationsOfMotion) -> bool:
+    return factorization.operation_count(equations.M) <= UNROLLED_AT_MOST
 
 
-def _explicit(outputs: ScalarRow, assembly: Assembly, a: ScalarRow, inputs: Mapping[str, Scalar] | None) -> Program:
-    known = dict(zip(assembly.symbols.a, a, strict=True))
-    return program_of(substituted(outputs, known), assembly.symbols, inputs=inputs)
+def _explicit(outputs: ScalarRow, equations: EquationsOfMotion, a: ScalarRow) -> Program:
+    return _program(substituted(outputs, dict(zip(equations.symbols.a, a, strict=True))), equations)
 
 
-def kinematic_rates(assembly: Assembly) -> ScalarRow:
+def _program(outputs: ScalarRow, equations: EquationsOfMotion, solve: Solve | None = None) -> Program:
+    return program_of(outputs, equations.symbols, inputs=equations.inputs, solve=solve)
+
+
+def kinematic_rates(equations: EquationsOfMotion) -> ScalarRow:
     """q' = N u + nu"""
-    u = assembly.symbols.u
+    u = equations.symbols.u
     rates = []
-    for row, value in zip(assembly.N, assembly.nu, strict=True):
+    for row, value in zip(equations.N, equations.nu, strict=True):
         for entry, speed in zip(row, u, strict=True):
             if not is_zero(entry):
                 value = value + entry * speed
@@ -199,11 +199,11 @@ def kinematic_rates(assembly: Assembly) -> ScalarRow:
     return tuple(rates)
 
 
-def bordered(assembly: Assembly) -> Solve:
+def bordered(equations: EquationsOfMotion) -> Solve:
     """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
-    symbols = assembly.symbols
-    right = (*assembly.forcing, *(-g for g in assembly.gamma))
-    return _ordered(assembly.M, assembly.J, right, symbols.a + symbols.lam)
+    symbols = equations.symbols
+    right = (*equations.forcing, *(-g for g in equations.gamma))
+    return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam)
 
 
 def _ordered(M: Sequence[ScalarRow], J: Sequence[ScalarRow], right: ScalarRow, unknowns: tuple[Node, ...]) -> Solve:

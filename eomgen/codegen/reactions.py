@@ -1,4 +1,4 @@
-"""Reactions, Assembly -> Program: every reaction that has a single value, as a function of (t, x, p, inputs)."""
+"""Reactions, equations of motion -> Program: every reaction that has a single value, along the motion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eomgen.codegen.program import Program, program_in_motion
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import named_reactions
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -49,13 +49,10 @@ def determinate(reactions: Reactions) -> dict[str, Scalar]:
     return found
 
 
-def reactions_program(
-    values: Mapping[str, Scalar], assembly: Assembly, inputs: Mapping[str, Scalar] | None = None
-) -> tuple[tuple[str, ...], Program]:
+def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion) -> tuple[tuple[str, ...], Program]:
     """(names, the program of their values), the accelerations from the same equations as in the right-hand side.
 
     Args:
         values: as of `determinate`.
-        inputs: the model's own expression of each input, in t and parameters.
     """
-    return tuple(values), program_in_motion(tuple(values.values()), assembly, inputs)
+    return tuple(values), program_in_motion(tuple(values.values()), equations)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.build import library
+from eomgen.codegen.build import function_of, library
 
 TEXT = """#include <stddef.h>
 
@@ -50,7 +50,7 @@ class Address:
 
 @functools.cache
 def _function() -> Any:
-    function = library(TEXT).trial
+    function = function_of(library(TEXT), "trial")
     address, size, real = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
     function.argtypes = [address, size, size, *[address] * 5, real, real, *[address] * 3]
     function.restype = None

@@ -12,8 +12,9 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.expressions import Expression, as_expression, parse_equation
+from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.rational import EXACT
+from eomgen.symbolic.expression.typed import parse_typed_equation
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
@@ -44,8 +45,10 @@ class FormulaRule:
         sign: "" any, "nonnegative", or "positive".
         scope: which names may stand in it.
         words: texts that stand for themselves (`length = "start"`).
-        also: names that mean something here only (`r` of `between`).
+        also: names that mean something here only (`r` of `between`), rates with a prime, and in which unit.
         functions: of the motion, that may be called: x(bead.center).
+        usually: what a value below zero does that it hardly should.
+        same_as, works_on: the field of the part that names a coordinate: the value is one of it, or does work on it.
     """
 
     unit: str | None = None
@@ -53,7 +56,11 @@ class FormulaRule:
     scope: str = PARAMETERS
     words: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
+    also_in: str = "1"
     functions: tuple[str, ...] = ()
+    usually: str = ""
+    same_as: str = ""
+    works_on: str = ""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if isinstance(raw, Mapping):
@@ -135,11 +142,16 @@ class OutputRule:
 
 @dataclass(frozen=True)
 class WrittenEquation:
-    """left = right, as it was written."""
+    """left = right, as it was written.
+
+    Args:
+        units: those that were typed beside the sides, of which plain numbers are not in SI yet; None: all is in SI.
+    """
 
     left: Expression
     right: Expression
     text: str
+    units: tuple[Unit | None, Unit | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -155,7 +167,8 @@ class EquationRule:
             found.append(Finding(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
             return None
         try:
-            return WrittenEquation(*parse_equation(raw), text=raw)
+            (left, one), (right, other) = parse_typed_equation(raw)
+            return WrittenEquation(left, right, raw, (one, other))
         except ExpressionError as error:
             found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
@@ -196,19 +209,22 @@ class VectorRule:
         length: how many (None: as the space says).
         point: a ground point's name may stand for it.
         nonzero: a direction, so not all of it may be 0.
+        downward: its last component, where it is the only one, is hardly above zero.
     """
 
     item: FormulaRule = FormulaRule()
     length: int | None = None
     point: bool = False
     nonzero: bool = False
+    downward: bool = False
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
         if self.point and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):
             also = " or the name of a point of the ground" if self.point else ""
-            found.append(Finding(path, f"a list of components{also} is needed here, not {shown(raw)}"))
+            what = f"a list of components{also} is needed here, not {shown(raw)}"
+            found.append(Finding(path, what, 'write one for each axis: [1, 0], [0, "-g"]'))
             return None
         items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
         return None if None in items else tuple(items)
@@ -294,7 +310,8 @@ class TextRule:
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> str | None:
         if not isinstance(raw, str) or isinstance(raw, Decimal):
-            found.append(Finding(path, f"a text is needed here, not {shown(raw)}"))
+            mend = "write " + " or ".join(f'"{word}"' for word in self.options) if self.options else ""
+            found.append(Finding(path, f"a text is needed here, not {shown(raw)}", mend))
             return None
         if self.options and raw not in self.options:
             listed = ", ".join(f"'{word}'" for word in self.options)

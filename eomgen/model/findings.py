@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Any
 
 from eomgen.model.positions import DocumentPath
+from eomgen.symbolic.expression.habits import other_words
 
 
 class Decimal(str):
@@ -26,6 +27,8 @@ class Finding:
         column, length: the culprit within the text of an expression (None: all of it).
         key: the culprit is the key itself, not its value.
         raw: what could not be read (names in it count as used).
+        instead: of a key, for which one it was read.
+        beside: column and length of a second culprit in the same text.
     """
 
     path: DocumentPath
@@ -35,6 +38,8 @@ class Finding:
     length: int | None = None
     key: bool = False
     raw: Any = field(default=None, compare=False, repr=False)
+    instead: str = ""
+    beside: tuple[int, int] | None = None
 
 
 LONGEST_WORD, MOST_WORDS = 40, 1000  # beyond them nothing is compared: a hostile file must not cost minutes
@@ -43,10 +48,17 @@ MOST_OFFERS = 50
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """ "did you mean 'forearm'?", or "" where nothing is near."""
+    found = meant(word, known)
+    if len(found) > 1:
+        return f"one of {', '.join(found)}"
+    return f"did you mean '{found[0]}'?" if found else ""
+
+
+def meant(word: str, known: Iterable[str]) -> tuple[str, ...]:
+    """What a word may stand for: what it is called here, else what is nearest."""
     words = [] if len(word) > LONGEST_WORD else sorted(islice(known, MOST_WORDS))
     close = get_close_matches(word, words, n=1, cutoff=0.6)
-    close = close or [name for name in words if name.lower() == word.lower()]
-    return f"did you mean '{close[0]}'?" if close else ""
+    return other_words(word, words) or tuple(close or [name for name in words if name.lower() == word.lower()][:1])
 
 
 def article(kind: str) -> str:
@@ -103,10 +115,16 @@ def whereabouts(path: DocumentPath, what: str = "") -> str:
 
 def unknown_keys(
     raw: Mapping[str, Any], known: Iterable[str], path: DocumentPath, found: list[Finding], what: str
-) -> None:
-    """Every key of a table that nobody reads is a finding."""
+) -> dict[str, str]:
+    """Every key of a table that nobody reads is a finding; {what one may have meant that is not there: the key}."""
     strange = [key for key in raw if key not in known]
+    read: dict[str, str] = {}
     listed = ", ".join(f"'{name}'" for name in known)
     for k, key in enumerate(strange):
         mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
-        found.append(Finding((*path, key), f"unknown key '{key}' in {what}", mend, key=True, raw=raw[key]))
+        guess = meant(str(key), known)[:1] if k < MOST_OFFERS else ()
+        instead = guess[0] if guess and guess[0] not in (*raw, *read) else ""
+        read |= {instead: key} if instead else {}
+        told = f"unknown key '{key}' in {what}"
+        found.append(Finding((*path, key), told, mend, key=True, raw=raw[key], instead=instead))
+    return read

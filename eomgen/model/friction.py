@@ -8,7 +8,7 @@ from eomgen.model.kinds import Friction
 from eomgen.model.part import Part, PartRule
 from eomgen.symbolic.expression.expressions import Expression
 
-Viscosity = Annotated[Expression, FormulaRule(None, "nonnegative")]  # -c N v: s/m
+Viscosity = Annotated[Expression, FormulaRule("s/m", "nonnegative")]  # -c N v
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,6 +24,9 @@ ValueOf = Callable[[Expression], Any]
 """What an expression is worth, in the arithmetic of whoever asks."""
 VectorFormula = tuple[Expression, ...]
 
+RESISTS = "it drives away from its rest"
+TAKES = "it gives energy"
+
 Formula = Annotated[Expression, FormulaRule()]
 Mass = Annotated[Expression, FormulaRule("kg", "nonnegative")]
 Length = Annotated[Expression, FormulaRule("m", "positive")]
@@ -33,10 +36,11 @@ ConstantAngle = Annotated[Expression, FormulaRule("rad")]
 Opening = Annotated[Expression, FormulaRule("rad", "positive")]
 RestAngle = Annotated[Expression, FormulaRule("rad", "", TIME)]
 InertiaTensor = Annotated[VectorFormula, AxialRule(FormulaRule("kg*m^2"), (3, 6))]
-RotorInertia = Annotated[Expression, FormulaRule(None, "nonnegative")]
+RotorInertia = Annotated[Expression, FormulaRule("kg*m^2", "nonnegative")]
+SlideInertia = Annotated[Expression, FormulaRule("kg", "nonnegative")]
 RestLength = Annotated[Expression, FormulaRule("m", "", TIME)]
-LinearStiffness = Annotated[Expression, FormulaRule("N/m", "", TIME)]
-AngularStiffness = Annotated[Expression, FormulaRule("N*m", "", TIME)]
+LinearStiffness = Annotated[Expression, FormulaRule("N/m", "", TIME, usually=RESISTS)]
+AngularStiffness = Annotated[Expression, FormulaRule("N*m", "", TIME, usually=RESISTS)]
 Pure = Annotated[Expression, FormulaRule("1")]
 Friction = Annotated[Expression, FormulaRule("1", "nonnegative")]
 
@@ -46,14 +50,17 @@ PLACES = ("x", "y", "z", "angle")
 VELOCITIES = ("vx", "vy", "vz", "omega", "omega_x", "omega_y", "omega_z")
 Gap = Annotated[Expression, FormulaRule(None, "", CONFIGURATION, functions=PLACES)]
 Energy = Annotated[Expression, FormulaRule("J", "", CONFIGURATION)]
-Law = Annotated[Expression, FormulaRule(None, "", MOTION)]
+LinearDamping = Annotated[Expression, FormulaRule("N*s/m", "", MOTION, usually=TAKES)]
+AngularDamping = Annotated[Expression, FormulaRule("N*m*s", "", MOTION, usually=TAKES)]
+WorkingForce = Annotated[Expression, FormulaRule(None, "", MOTION, works_on="coordinate")]
 ForceFormula = Annotated[Expression, FormulaRule("N", "", MOTION)]
 Torque = Annotated[Expression, FormulaRule("N*m", "", MOTION)]
 RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
-Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"))]
+Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"), also_in="m")]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
 MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic",))]
+MotionOfCoordinate = Annotated[Expression, TimeLawRule(None, "", TIME, same_as="coordinate", ways=("cubic",))]
 RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic", "linear"))]
 
 Place = Annotated[VectorFormula, VectorRule(FormulaRule("m"))]
@@ -65,7 +72,7 @@ SpaceDirection = Annotated[VectorFormula, VectorRule(FormulaRule(None), length=3
 ForceVector = Annotated[VectorFormula, VectorRule(FormulaRule("N", "", MOTION))]
 LineLoad = Annotated[VectorFormula, VectorRule(FormulaRule("N/m", "", MOTION))]
 TwoLineLoads = Annotated[tuple[VectorFormula, ...], ListRule(VectorRule(FormulaRule("N/m", "", MOTION)), 2, 2)]
-Acceleration = Annotated[VectorFormula, VectorRule(FormulaRule("m/s^2", "", TIME))]
+Acceleration = Annotated[VectorFormula, VectorRule(FormulaRule("m/s^2", "", TIME), downward=True)]
 CoupleFormula = Annotated[VectorFormula, AxialRule(FormulaRule("N*m", "", MOTION))]
 Size = Annotated[VectorFormula, VectorRule(FormulaRule("m", "positive"), length=3)]
 PlaneSize = Annotated[VectorFormula, VectorRule(FormulaRule("m", "positive"), length=2)]

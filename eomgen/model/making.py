@@ -7,9 +7,11 @@ from typing import Any
 from eomgen.errors import ModelError, Problem
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import Finding
 from eomgen.model.part import Made, altered, read_part, slots_of
 from eomgen.model.table import Table
+from eomgen.model.typed import Typing, typing_of
 
 MOST_FINDINGS = 200  # of one model: more say nothing new
 
@@ -49,9 +51,25 @@ def resolved(model: Made) -> Made:
     return altered(model, **_resolved_tables(model))
 
 
-def _resolved_tables(model: Any) -> dict[str, Table[Any]]:
+def _resolved_tables(model: Any) -> dict[str, Any]:
     bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
-    return {"bodies": bodies, "forces": Table({name: _resolved_force(force) for name, force in model.forces.items()})}
+    forces = {name: _resolved_force(force) for name, force in model.forces.items()}
+    in_si, in_own = typing_of(model)
+    outputs = {name: _settled(output, in_si, ("at",)) for name, output in model.outputs.items()}
+    given = None if model.given is None else _settled(model.given, in_own, ("velocity", "acceleration"))
+    return {"bodies": bodies, "forces": Table(forces), "outputs": Table(outputs), "given": given}
+
+
+def _settled(part: Any, typing: Typing, keys: tuple[str, ...]) -> Any:
+    """A part whose equations are in SI."""
+
+    def in_si(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(map(in_si, value))
+        return typing.equation(value)[0] if isinstance(value, WrittenEquation) else value
+
+    changes = {key: in_si(getattr(part, key)) for key in keys}
+    return part if all(value is None for value in changes.values()) else altered(part, **changes)
 
 
 def _resolved_force(force: Any) -> Any:

@@ -1,10 +1,19 @@
-"""A coordinate or its rate in SI -> its value as its user writes it: 28.6 deg, 90 deg/s."""
+"""What is in SI -> as its user writes it: 28.6 deg, 90 deg/s; the unit of every name and function."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
+from eomgen.model.catalog import Catalog
+from eomgen.model.dimensions import Names, inferred
+from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model
+from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit
+from eomgen.symbolic.expression.expressions import single_call
+from eomgen.symbolic.expression.units import Unit, parse_unit
+
+ALWAYS = {"t": "s", "energy": "J"}
 
 
 def in_own_unit(model: Model, name: str, value: float, digits: int = 9) -> str:
@@ -15,3 +24,50 @@ def in_own_unit(model: Model, name: str, value: float, digits: int = 9) -> str:
     if unit is None or (unit.factor == 1 and unit.pi_power == 0):
         return f"{value:.{digits}g}"
     return f"{float(unit.from_si(value, math.pi)):.{digits}g} {unit.text}{'/s' * rate}"
+
+
+def units_of(model: Model, names: Iterable[str]) -> dict[str, Unit]:
+    """The unit of each name or function of the motion that has one: as the file declares it, else that of SI.
+
+    Args:
+        names: coordinates, rates, speeds, `t`, `energy`, "reaction_x(A)", "omega(bar)".
+    """
+    known = inferred(Catalog(model, ())).names
+    found = {name: _unit(known, name) for name in names}
+    return {name: unit for name, unit in found.items() if unit is not None}
+
+
+def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, str]]:
+    """The unit of every name, of the equation of motion along each speed, and of every output; "?" is not known.
+
+    An equation of motion is W per unit of its speed: its terms times the speed are powers.
+    """
+    found = inferred(Catalog(model, ()))
+    known, reduced = found.names, found.names.inference.reduced
+
+    def told(dimension: Dimension) -> str:
+        dimension = reduced(dimension)
+        return "?" if dimension.unknowns else str(dimension)
+
+    walk = Walk(known.of, known.inference, known.of_call, known.parameters, known.moves, mends=False)
+    outputs = {name: part.unit.text if part.unit else told(walk.of(part.value)) for name, part in model.outputs.items()}
+    names = {name: known.declared[name].text if name in known.declared else told(x) for name, x in found.found.items()}
+    power = dimension_of_unit(parse_unit("W"))
+    return {"names": names, "equations": {u: told(power.times(known.of(u), -1)) for u in speeds}, "outputs": outputs}
+
+
+def _unit(known: Names, name: str) -> Unit | None:
+    if name in ALWAYS:
+        return parse_unit(ALWAYS[name])
+    call = single_call(name)
+    if call is not None and call.name in FUNCTIONS and not FUNCTIONS[call.name].per:
+        return parse_unit(FUNCTIONS[call.name].unit)
+    declared = known.declared.get(name.rstrip("'"))
+    if declared is not None:
+        if declared.text == "1":
+            return None
+        for _ in range(len(name) - len(name.rstrip("'"))):
+            declared = declared.rate
+        return declared
+    dimension = known.inference.reduced((known.of_call(call) or Dimension()) if call else known.of(name))
+    return parse_unit(str(dimension)) if dimension and not dimension.unknowns else None

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, TypeVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, in_si
-from eomgen.model.findings import Finding, nearest, shown, unknown_keys, whereabouts
+from eomgen.model.findings import Finding, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.habits import other_words
 
 Made = TypeVar("Made")
 
@@ -148,19 +149,31 @@ def read_part(
     inline = next((slot for slot in slots if slot.inline), None)
     own = [slot for slot in slots if slot is not inline]
     keys = (*known, *(slot.key for slot in own))
-    values = {}
+    values, instead = {}, {}
     if inline is not None:
         rest = {key: value for key, value in raw.items() if key not in keys}
         values[inline.name] = inline.rule.read(rest, path, found, beside=keys)
     else:
-        unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)))
+        instead = unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)))
+        raw = {**raw, **{key: raw[given] for key, given in instead.items()}}
     for slot in own:
-        if slot.key in raw:
+        if slot.key in instead:
+            values[slot.name] = _read_instead(slot, raw[slot.key], (*path, slot.key), found)
+        elif slot.key in raw:
             values[slot.name] = slot.rule.read(raw[slot.key], (*path, slot.key), found)
         elif slot.required:
             found.append(Finding(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'"))
             values[slot.name] = None
     return part_of_values(cls, _in_si(cls, values, raw))
+
+
+def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    """A value under a key that was mistyped, so that what follows from it is no error; a table tells its own."""
+    wrong: list[Finding] = []
+    value = slot.rule.read(raw, path, wrong)
+    if isinstance(raw, Mapping):
+        found += wrong
+    return None if wrong and not isinstance(raw, Mapping) else value
 
 
 def altered(part: Made, **changes: Any) -> Made:
@@ -197,6 +210,14 @@ class SeamRule:
             return None
         kinds = {member.kind: member for member in self.members}
         kind = raw.get("kind")
+        given = next((key for key in raw if other_words(str(key), ("kind",)) and key not in beside), None)
+        if kind is None and given is not None:
+            found.append(
+                Finding(
+                    (*path, given), f"unknown key '{given}' in {whereabouts(path, self.what)}", "write kind", key=True
+                )
+            )
+            return self.read({**{k: x for k, x in raw.items() if k != given}, "kind": raw[given]}, path, found, beside)
         if kind is None:
             what = f"{whereabouts(path, self.what)} has no 'kind'"
             found.append(Finding(path, what, f"one of {', '.join(kinds)}", raw=raw))
@@ -204,8 +225,26 @@ class SeamRule:
         if not isinstance(kind, str) or kind not in kinds:
             mend = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
             found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend, raw=raw))
-            return None
+            return self._as_meant(kinds, str(kind), raw, path, found, beside)
         return read_part(kinds[kind], raw, path, found, known=("kind", *beside))
+
+    def _as_meant(
+        self,
+        kinds: Mapping[str, Any],
+        kind: str,
+        raw: Mapping[str, Any],
+        path: DocumentPath,
+        found: list[Finding],
+        beside: tuple[str, ...],
+    ) -> Any:
+        """A member whose kind was mistyped, read as the one that its keys fit, with its other errors; else None."""
+        for guess in meant(kind, kinds)[:1]:
+            wrong: list[Finding] = []
+            value = read_part(kinds[guess], raw, path, wrong, known=("kind", *beside))
+            if not any(each.key or each.path == path for each in wrong):
+                found += wrong
+                return value
+        return None
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         return leaves_of(value, path)

@@ -234,7 +234,7 @@ Constraints = Annotated[Table[Constraint], TableRule(SeamRule("constraint", cons
 Forces = Annotated[Table[Force], TableRule(SeamRule("force", forces.ALL), "force")]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Model(Part):
     """A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order.
 
@@ -264,6 +264,12 @@ class Model(Part):
     def __post_init__(self) -> None:
         finish(self)
 
+    def __repr__(self) -> str:
+        tables = ("bodies", "trusses", "coordinates", "constraints", "forces", "parameters", "outputs")
+        sizes = [f"{len(getattr(self, name))} {name}" for name in tables if getattr(self, name)]
+        where = "in space" if self.space == "space" else "in the plane"
+        return f"<model {self.name!r} {where}: {', '.join(sizes) or 'nothing in it'}>"
+
     def body_points(self, body: str) -> tuple[str, ...]:
         """The names of a body's points: `origin`, its shape's or mass centre's, its own."""
         part = self.bodies[body]
@@ -272,7 +278,7 @@ class Model(Part):
             names += part.shape.point_names
         elif part.mass is not None or part.center is not None or part.parts is not None:
             names.append("center")
-        return tuple(dict.fromkeys([*names, *part.points]))
+        return tuple(dict.fromkeys([*names, *(part.points or ())]))
 
     @property
     def named_points(self) -> tuple[str, ...]:

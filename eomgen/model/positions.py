@@ -71,7 +71,9 @@ class Index:
             if path in self.values:
                 return self.values[path]
             path = path[:-1]
-        return Span(0, 0)
+        first = _BLANK.match(self.text)
+        start = first.end() if first is not None and first.end() < len(self.text) else 0
+        return Span(start, start)
 
     def within(self, path: DocumentPath, column: int, length: int) -> Span:
         """The span of some characters of the string that is the value at a path."""

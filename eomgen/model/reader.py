@@ -2,14 +2,19 @@
 
 import re
 import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
+from eomgen.files import read
 from eomgen.model.findings import TABLES, Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
+from eomgen.model.replaced import Values, with_values
+from eomgen.model.warnings import warnings_of
 
 LARGEST = 1_000_000  # bytes
 WIDEST = 100  # characters of a source line that an error shows
@@ -23,26 +28,41 @@ def load(path: str | FilePath) -> Model:
     Raises:
         ModelError: the file cannot be read, or the model is wrong; every problem at once.
     """
-    try:
-        with open(path, "rb") as file:
-            data = file.read(LARGEST + 1)
-    except OSError as error:
-        raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
-    return _loads(data, str(path), FilePath(path).stem)
+    return loads(bytes_at(path), str(path), FilePath(path).stem)
 
 
-def model_at(model: ModelOrPath) -> Model:
-    """A model, or the one in the file at a path.
+def bytes_at(path: str | FilePath) -> bytes:
+    """What stands in a file, as far as a model may be long.
 
     Raises:
-        ModelError: as `load`.
+        ModelError: it cannot be read.
     """
-    return model if isinstance(model, Model) else load(model)
+    try:
+        return read(path, LARGEST)
+    except OSError as error:
+        if "\n" in str(path):
+            raise ModelError("this is no path but the text of a model", "", "read it by eomgen.loads") from error
+        raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
 
 
-def loads(text: str | bytes, name: str = "<text>") -> Model:
-    """The model that a text declares; `name` stands for the file in error messages.
+def model_at(model: ModelOrPath, parameters: Values | None = None, start: Values | None = None) -> Model:
+    """A model, or the one in the file at a path; with other values of parameters and starts.
 
+    Args:
+        parameters, start: numbers in SI, "45 deg", (45, "deg"), quantities of pint, or expressions in SI.
+    Raises:
+        ModelError: as `load`.
+        UsageError: a name that there is not, a value that cannot be, a unit that does not fit.
+    """
+    return with_values(model if isinstance(model, Model) else load(model), parameters, start).model
+
+
+def loads(text: str | bytes, name: str = "<text>", title: str = "model") -> Model:
+    """The model that a text declares.
+
+    Args:
+        name: stands for the file in error messages.
+        title: the name of a model that gives itself none.
     Raises:
         ModelError: the model is wrong; every problem at once.
     """
@@ -50,7 +70,7 @@ def loads(text: str | bytes, name: str = "<text>") -> Model:
         data = text.encode() if isinstance(text, str) else text
     except UnicodeEncodeError as error:
         raise ModelError("the text is not UTF-8", name, "save it as UTF-8") from error
-    return _loads(data, name, "model")
+    return _loads(data, name, title)
 
 
 def located(problem: Problem, data: bytes, name: str) -> Problem:
@@ -61,6 +81,12 @@ def located(problem: Problem, data: bytes, name: str) -> Problem:
     index = index_of(_text(data, name))
     key = path if path in index.keys else path[:2]
     return _problem(Finding(path, problem.what, problem.mend), index.nearest(key, key=True), index, name)
+
+
+def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
+    """What is allowed in a model and hardly meant, at its places in the text that the model was read from."""
+    index = index_of(_text(data, name))
+    return _problems(list(warnings_of(model)), index, name)
 
 
 def _loads(data: bytes, name: str, title: str) -> Model:
@@ -137,11 +163,27 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
         offset = sum(len(line) + 1 for line in lines[: int(place.group(1)) - 1]) + int(place.group(2)) - 1
     else:
         offset = max(0, len(index.text.rstrip()) - 1) if place is not None else 0
-    mend = _toml_mend(what, index.text[offset : offset + 1])
+    mend = _toml_mend(what, index.text, offset)
+    if _YAML.match(index.text):
+        what, mend = "this looks like YAML", 'write: name = "crane", and [bodies.boom] for a table'
     return _problem(Finding((), f"not TOML: {what}", mend), Span(offset, offset + 1), index, name)
 
 
-def _toml_mend(what: str, culprit: str) -> str:
+_YAML = re.compile(r"(?:\s|#[^\n]*\n|---)*[A-Za-z_]\w*:(?:\s|$)")
+_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\b")
+
+
+def _toml_mend(what: str, text: str, offset: int) -> str:
+    before, culprit = text[:offset], text[offset : offset + 1]
+    line = text[before.rfind("\n") + 1 :].split("\n", 1)[0]
+    if found := _COMMA.search(line):
+        return f"write a decimal point: {found[1]}.{found[2]}"
+    if culprit in ("\n", "#") and before.rfind("{") > max(before.rfind("}"), before.rfind("\n[")):
+        return "a table in braces stands in one line; or write it as one with a head, like [bodies.boom.joint]"
+    if culprit in ("/", ";"):
+        return "a remark begins with #" if culprit == "/" else "leave it out: a line ends by itself"
+    if line.lstrip().startswith("[["):
+        return "a table has a name and single brackets: [bodies.boom]"
     if culprit.isalpha() and not culprit.isascii():
         return f'as a key a name with such letters stands in quotes: "{culprit}" = 1'
     if "value" in what.lower():
@@ -162,10 +204,23 @@ def _version(raw: dict[str, Any]) -> list[Finding]:
 
 def _problems(found: list[Finding], index: Index, name: str) -> tuple[Problem, ...]:
     """Each finding at its place, in the order of the file."""
+    found = _as_written(found)
     placed = sorted(((_span(finding, index), finding) for finding in found), key=lambda pair: pair[0].start)
     problems = tuple(dict.fromkeys(_problem(finding, span, index, name) for span, finding in placed[:MOST_FINDINGS]))
     more = len(placed) - MOST_FINDINGS
     return (*problems, Problem(name, f"and {more} more problems")) if more > 0 else problems
+
+
+def _as_written(found: list[Finding]) -> list[Finding]:
+    """The findings, their paths through the keys that stand in the file, where some were read for others."""
+    written = {(*f.path[:-1], f.instead): f.path for f in found if f.instead}
+    return [replace(f, path=_through(f.path, written)) for f in found] if written else found
+
+
+def _through(path: DocumentPath, written: Mapping[DocumentPath, DocumentPath]) -> DocumentPath:
+    for k in range(1, len(path) + 1):
+        path = (*written.get(path[:k], path[:k]), *path[k:])
+    return path
 
 
 def _span(finding: Finding, index: Index) -> Span:
@@ -176,13 +231,21 @@ def _span(finding: Finding, index: Index) -> Span:
 
 def _problem(finding: Finding, span: Span, index: Index, name: str) -> Problem:
     line, column = index.line_and_column(span.start)
-    return Problem(f"{name}:{line}:{column}", finding.what, _excerpt(index.line(line), column, span), finding.mend)
+    beside = None if finding.beside is None else index.within(finding.path, *finding.beside)
+    excerpt = _excerpt(index, span, beside)
+    return Problem(f"{name}:{line}:{column}", finding.what, excerpt, finding.mend)
 
 
-def _excerpt(source: str, column: int, span: Span) -> str:
-    """The source line (the part of it around the culprit) and the carets under it."""
+def _excerpt(index: Index, span: Span, beside: Span | None = None) -> str:
+    """The source line (the part of it around the culprit) and the carets under it, under both where there are two."""
+    line, column = index.line_and_column(span.start)
+    source = index.line(line)
     first = 0 if len(source) <= WIDEST else max(0, column - 1 - WIDEST // 2)
-    shown = source[first : first + WIDEST].replace("\t", " ")
-    at = column - 1 - first
-    carets = max(1, min(span.end - span.start, len(shown.rstrip()) - at))
-    return f"    {shown.rstrip()}\n    {' ' * at}{'^' * carets}"
+    shown = source[first : first + WIDEST].replace("\t", " ").rstrip()
+    marks = [" "] * len(shown)
+    for each in (span, *([beside] if beside is not None and index.line_and_column(beside.start)[0] == line else [])):
+        at = index.line_and_column(each.start)[1] - 1 - first
+        carets = max(1, min(each.end - each.start, len(shown) - at))
+        marks += [" "] * (at + carets - len(marks))
+        marks[max(at, 0) : at + carets] = "^" * (at + carets - max(at, 0))
+    return f"    {shown}\n    {''.join(marks).rstrip()}"

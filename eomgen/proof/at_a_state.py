@@ -15,19 +15,21 @@ import numpy as np
 
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.errors import DerivationError, EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.instant.outputs import COMPONENTS, Quantities
+from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import BALANCE
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -41,23 +43,22 @@ class NumericState:
     """A system in one phase, at a state.
 
     Args:
-        assembly: its equations of motion.
+        equations: its equations of motion.
         parameters: their values, exact constants.
         numbers: t, q and u.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     parameters: Mapping[Node, Scalar]
     numbers: Mapping[Node, float]
 
     @cached_property
     def values(self) -> dict[Node, Any]:
         """t, q, u, parameters and inputs with 50 digits."""
-        digits, inputs = fifty_digits(), self.system.symbols.inputs
+        digits, inputs = fifty_digits(), self.equations.symbols.inputs
         known = dict(zip(self.parameters, evaluate(tuple(self.parameters.values()), {}, digits), strict=True))
         known |= {node: precise(float(x)) for node, x in self.numbers.items()}
-        own = evaluate(tuple(self.system.inputs[name] for name in inputs), known, digits)
+        own = evaluate(tuple(self.equations.inputs[name] for name in inputs), known, digits)
         return known | dict(zip(inputs.values(), own, strict=True))
 
     @cached_property
@@ -67,20 +68,9 @@ class NumericState:
         Raises:
             NoValue: they are not determined there.
         """
-        symbols, assembly = self.assembly.symbols, self.assembly
-        a = exact_accelerations(assembly, self.values)
-        found = dict(zip(symbols.a, a, strict=True))
-        if not assembly.J:
-            return found
-        n = len(a)
-        entries = (*(x for row in (*assembly.M, *assembly.J) for x in row), *assembly.forcing)
-        wide = np.array(evaluate(entries, self.values, fifty_digits()), dtype=object)
-        M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
-        needed = (M @ np.array(a, dtype=object) - wide[-n:]).astype(float)
-        sizes = np.linalg.norm(J, axis=1)
-        scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
-        lam = scaled / np.where(sizes > 0, sizes, 1.0)
-        return found | {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}
+        a = exact_accelerations(self.equations, self.values)
+        found = dict(zip(self.equations.symbols.a, a, strict=True))
+        return found | least_multipliers(self.equations, self.values | found)
 
     def worth(self, formula: Expression) -> float:
         """The formula there.
@@ -89,38 +79,17 @@ class NumericState:
             NoValue: it has none.
             MissingValues, DerivationError: it holds what is not known of the state.
         """
-        quantities = Quantities(self.system)
+        quantities = Quantities(self.equations.system)
 
         def value(call: Call) -> Scalar:
-            found = self.reactions.get(str(call)) if call.name in ASKING_REACTIONS else None
+            found = self.reactions.get(str(call)) if FUNCTIONS[call.name].source == BALANCE else None
             return quantities.value(call) if found is None else Fraction(found)
 
-        return self.number(formula.evaluate(self.system.scope.names, value))
-
-    def by_differences(self, call: Call) -> tuple[float, float]:
-        """(a component of a point's velocity or acceleration, the central difference of its place or velocity).
-
-        The second is taken along the motion, q + h q', u + h a, t + h, with h = 1e-15 and 50 digits.
-        """
-        order, axis = COMPONENTS[call.name]
-        before = replace(call, name=("", "v")[order - 1] + "xyz"[axis])
-        quantities, digits = Quantities(self.system), fifty_digits()
-        h = digits.number(1) / 10**15
-        ways = [evaluate((quantities.value(before),), self._later(sign * h), digits)[0] for sign in (1, -1)]
-        return self.number(quantities.value(call)), float((ways[0] - ways[1]) / (2 * h))
-
-    def _later(self, h: Any) -> dict[Node, Any]:
-        """The values h later, to first order."""
-        symbols, scope = self.assembly.symbols, self.system.scope
-        known = self.values | self.unknowns
-        rates = evaluate(scope.rates, known, fifty_digits())
-        moved = {q: known[q] + h * rate for q, rate in zip(symbols.q, rates, strict=True)}
-        moved |= {u: known[u] + h * known[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
-        return known | moved | {symbols.t: known[symbols.t] + h}
+        return self.number(formula.evaluate(self.equations.system.scope.names, value))
 
     def number(self, scalar: Scalar) -> float:
         """A function of the state, of accelerations and multipliers."""
-        symbols, known = self.assembly.symbols, self.values
+        symbols, known = self.equations.symbols, self.values
         if depends_on(scalar, (*symbols.a, *symbols.lam)):
             known = known | self.unknowns
         return float(evaluate((scalar,), known, fifty_digits())[0])
@@ -129,31 +98,31 @@ class NumericState:
     def reactions(self) -> dict[str, float]:
         """Every reaction that has a single value, by the name by which outputs ask for it."""
         try:
-            columns = ReactionColumns(reactions_of(self.system), self._rhs)
+            columns = ReactionColumns(reactions_of(self.equations.system), self._rhs)
             found = columns.along(np.array([self.t]), self.x[None, :], self.p)[0]
-        except (DerivationError, EomgenError):
+        except DerivationError:
             return {}
         return {name: float(x) for name, x in zip(columns.names, found, strict=True) if np.isfinite(x)}
 
     @property
     def t(self) -> float:
-        return float(self.numbers[self.assembly.symbols.t])
+        return float(self.numbers[self.equations.symbols.t])
 
     @property
     def x(self) -> np.ndarray:
         """(q, u)"""
-        symbols = self.assembly.symbols
+        symbols = self.equations.symbols
         return np.array([self.numbers[node] for node in (*symbols.q, *symbols.u)], dtype=float)
 
     @property
     def p(self) -> np.ndarray:
         values = evaluate(tuple(self.parameters.values()), {}, fifty_digits())
         known = dict(zip(self.parameters, values, strict=True))
-        return np.array([float(known.get(node, np.nan)) for node in self.assembly.symbols.parameters.values()])
+        return np.array([float(known.get(node, np.nan)) for node in self.equations.symbols.parameters.values()])
 
     @cached_property
     def _rhs(self) -> RightHandSide:
-        return compiled(right_hand_side(with_accelerations(self.system, self.assembly), self.system.inputs), "numpy")
+        return compiled(right_hand_side(with_accelerations(self.equations)), "numpy")
 
     def beside(self) -> tuple[NumericState, NumericState]:
         """Two states so near that doubles of several steps might mistake them for it."""
@@ -161,6 +130,21 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
+
+
+def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
+    """Of J^T lam = M a - forcing the multipliers of least size, at a state of the motion."""
+    if not equations.J:
+        return {}
+    n, symbols = len(equations.M), equations.symbols
+    entries = (*(x for row in (*equations.M, *equations.J) for x in row), *equations.forcing)
+    wide = np.array(evaluate(entries, state, fifty_digits()), dtype=object)
+    M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
+    needed = (M @ np.array([state[a] for a in symbols.a], dtype=object) - wide[-n:]).astype(float)
+    sizes = np.linalg.norm(J, axis=1)
+    scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
+    lam = scaled / np.where(sizes > 0, sizes, 1.0)
+    return {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}
 
 
 def read_back(system: System, text: str) -> Scalar:

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
@@ -52,26 +51,25 @@ class TriedState:
 class PhaseMotion:
     """The equations of one phase."""
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
 
     def values(self, at: TriedState) -> dict[Node, Any]:
         """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
-        symbols = self.assembly.symbols
+        symbols = self.equations.symbols
         nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
         numbers = (at.t, *at.x, *at.p)
         found = {node: precise(float(value)) for node, value in zip(nodes, numbers, strict=True)}
         own = [name for name in symbols.inputs if name not in at.inputs]
-        values = evaluate(tuple(self.system.inputs[name] for name in own), found, fifty_digits())
+        values = evaluate(tuple(self.equations.inputs[name] for name in own), found, fifty_digits())
         given = {symbols.inputs[name]: precise(float(x)) for name, x in at.inputs.items()}
         return found | given | {symbols.inputs[name]: x for name, x in zip(own, values, strict=True)}
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:
         """What stands in the equations: rates, M, J, forcing, gamma, row after row."""
-        assembly = self.assembly
-        matrices = (x for row in (*assembly.M, *assembly.J) for x in row)
-        return (*self.system.scope.rates, *matrices, *assembly.forcing, *assembly.gamma)
+        equations = self.equations
+        matrices = (x for row in (*equations.M, *equations.J) for x in row)
+        return (*self.equations.system.scope.rates, *matrices, *equations.forcing, *equations.gamma)
 
     def numbers(self, at: TriedState) -> RunNumbers:
         """The coefficients at a state.
@@ -79,9 +77,9 @@ class PhaseMotion:
         Raises:
             NoValue: some have none there.
         """
-        found = np.array([float(x) for x in evaluate(self.scalars, self.values(at), fifty_digits())])
-        n, k = len(self.assembly.M), len(self.assembly.J)
-        rates, M, J, forcing, gamma = np.split(found, np.cumsum([len(self.system.scope.rates), n * n, k * n, n]))
+        found = np.array(floats_of(evaluate(self.scalars, self.values(at), fifty_digits())))
+        n, k = len(self.equations.M), len(self.equations.J)
+        rates, M, J, forcing, gamma = np.split(found, np.cumsum([len(self.equations.N), n * n, k * n, n]))
         return RunNumbers(rates, M.reshape(n, n), J.reshape(k, n), forcing, gamma)
 
 
@@ -96,7 +94,13 @@ class RunNumbers:
     gamma: np.ndarray
 
     def left(self, dx: np.ndarray) -> tuple[float, str]:
-        """(what dx leaves of the equations, against the largest of their terms; in which); nan where it is none."""
+        """(what dx leaves of the equations, against the largest of their terms; in which); nan where it is none.
+
+        Raises:
+            NoValue: a coefficient is beyond doubles.
+        """
+        if not all(np.all(np.isfinite(x)) for x in (self.rates, self.M, self.J, self.forcing, self.gamma)):
+            raise NoValue("a coefficient of the equations is beyond doubles")
         rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
         sizes = 1 + np.max(np.abs(self.rates), initial=0.0)
         parts = {"q' = N u + nu": np.max(np.abs(rates - self.rates), initial=0.0) / sizes}
@@ -126,19 +130,25 @@ class RunNumbers:
     def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
         """Of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), with the lam that leaves least.
 
-        A term counts as no smaller than that of an acceleration of 1 m/s^2 or rad/s^2.
+        A term counts as no smaller than that of an acceleration of 1 m/s^2 or rad/s^2; nan where a has no value.
+
+        Raises:
+            NoValue: the terms are beyond doubles.
         """
         weights = np.diag(self.M)
         weights = 1 / np.sqrt(np.where(weights > 0, weights, np.max(weights, initial=0.0) or 1.0))
         needed = weights * (self.M @ a - self.forcing - acting)
         terms = weights * (np.abs(self.M) @ (1 + np.abs(a)) + np.abs(self.forcing) + np.abs(acting))
-        if not np.all(np.isfinite(needed)):
+        if not np.all(np.isfinite(a)):
             return float("nan")
         if len(self.J):
             J = of_one_length(self.J * weights)
             lam = np.linalg.lstsq(J.T, needed, rcond=COMPUTED)[0]
             needed, terms = needed - J.T @ lam, terms + np.abs(J.T) @ np.abs(lam)
-        return float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
+        left = float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
+        if np.isnan(left):
+            raise NoValue("the terms of the equations are beyond doubles")
+        return left
 
 
 def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:

@@ -1,4 +1,4 @@
-"""System, Assembly -> claims that are identities: the same functions by independent routes, exactly.
+"""Equations of motion -> claims that are identities: the same functions by independent routes, exactly.
 
 Energies and their derivatives (Lagrange), twists and wrenches (projection), recursion over the tree.
 """
@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics import formulations
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.bodies.inertia import kinetic_energy
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import powered_forces, summed
-from eomgen.mechanics.formulations import lagrange
-from eomgen.mechanics.formulations.lagrange import energies_along, free_rates
-from eomgen.mechanics.formulations.projection import wrenches_along
+from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
@@ -25,9 +24,7 @@ from eomgen.symbolic.exact.equality import Verdict, equal_at_real_states, equal_
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
-
-ROUTES = (("Lagrange's equations", energies_along), ("projection of Newton-Euler", wrenches_along))
-
+from eomgen.symbolic.expression.node import ScalarRow
 
 Pairs = list[tuple[Scalar, Scalar]]
 
@@ -62,86 +59,102 @@ def _checked(claim: Claim, verdict: Verdict | None, states: States | None) -> Ch
     return checked(claim.name, differs, how)
 
 
-def rates(system: System, assembly: Assembly) -> Claim:
-    """q' = N u + nu are the rates in which everything else is differentiated."""
-    u = assembly.symbols.u
+def rates(equations: EquationsOfMotion) -> Claim:
+    """q' = N u + nu are the rates in which everything else is differentiated; x' and x'' in formulas are they."""
+    u, scope = equations.symbols.u, equations.system.scope
     rows = [
         sum((n * w for n, w in zip(row, u, strict=True)), start=bias)
-        for row, bias in zip(assembly.N, assembly.nu, strict=True)
+        for row, bias in zip(equations.N, equations.nu, strict=True)
     ]
-    pairs = list(zip(rows, system.scope.rates, strict=True))
-    return Claim("N u + nu are the rates of the coordinates", pairs, [q.name for q in assembly.symbols.q])
+    pairs, labels = list(zip(rows, scope.rates, strict=True)), [q.name for q in equations.symbols.q]
+    for name, rate, second in zip(labels, rows, scope.with_accelerations(tuple(rows)), strict=True):
+        pairs += [(scope.names[f"{name}'"], rate), (scope.names[f"{name}''"], second)]
+    return Claim(
+        "N u + nu are the rates of the coordinates", pairs, [*labels, *(x for q in labels for x in (q + "'", q + "''"))]
+    )
 
 
-def routes(system: System, assembly: Assembly) -> Iterable[Claim]:
+def routes(equations: EquationsOfMotion) -> Iterable[Claim]:
     """The equations along a motion with any accelerations a: against energies, wrenches and inverse dynamics.
 
     M a is linear in a, so that at random a a wrong entry of M shows with the chance with which it shows by itself.
     """
-    symbols, friction = assembly.symbols, assembly.friction or (0,) * len(assembly.Q)
+    system = equations.system
+    symbols, friction = equations.symbols, equations.friction or (0,) * len(equations.Q)
     speeds = [u.name for u in symbols.u]
-    Ma = tuple(inner(row, symbols.a) for row in assembly.M)
-    Q = tuple(x - f for x, f in zip(assembly.Q, friction, strict=True))
+    Ma = tuple(inner(row, symbols.a) for row in equations.M)
+    Q = tuple(x - f for x, f in zip(equations.Q, friction, strict=True))
     labels = [f"{word} [{name}]" for word in ("M a", "c", "Q") for name in speeds]
-    for title, along in ROUTES:
-        pairs = [
-            pair
-            for own, other in zip((Ma, assembly.c, Q), along(system), strict=True)
-            for pair in zip(own, other, strict=True)
-        ]
-        yield Claim(f"M a, c and Q agree with those by {title}", pairs, labels)
-    left = [x - b + f for x, b, f in zip(Ma, assembly.forcing, friction, strict=True)]
+    for way in formulations.ALL:
+        if way.along is not None:
+            pairs = _paired((Ma, equations.c, Q), way.along(system))
+            yield Claim(f"M a, c and Q agree with those by {way.title}", pairs, labels)
+    left = [x - b + f for x, b, f in zip(Ma, equations.forcing, friction, strict=True)]
     pairs = [*zip(left, inverse_residual(system), strict=True)]
-    pairs += [(b, x - y) for b, x, y in zip(assembly.forcing, assembly.Q, assembly.c, strict=True)]
+    pairs += [(b, x - y) for b, x, y in zip(equations.forcing, equations.Q, equations.c, strict=True)]
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
     yield Claim("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
-    if friction != (0,) * len(assembly.Q):
-        other = with_friction(system, lagrange.assembled_by_energies(system)).friction
+    if friction != (0,) * len(equations.Q):
+        other = with_friction(formulations.LAGRANGE.assemble(system)).friction
         yield Claim("friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds)
 
 
-def mass_matrix(assembly: Assembly) -> Claim:
+def derivation(equations: EquationsOfMotion, derived: EquationsOfMotion) -> Claim:
+    """The entries of M, c and Q by which a derivation is written are those of the equations that are held."""
+    friction, speeds = equations.friction or (0,) * len(equations.Q), [u.name for u in equations.symbols.u]
+    Q = tuple(x - f for x, f in zip(equations.Q, friction, strict=True))
+    pairs = _paired((*equations.M, equations.c, Q), (*derived.M, derived.c, derived.Q))
+    labels = [f"{row} [{name}]" for row in (*(f"M [{name}]" for name in speeds), "c", "Q") for name in speeds]
+    return Claim("M, c and Q of the derivation are those of the equations", pairs, labels)
+
+
+def _paired(own: Iterable[ScalarRow], other: Iterable[ScalarRow]) -> Pairs:
+    return [pair for rows in zip(own, other, strict=True) for pair in zip(*rows, strict=True)]
+
+
+def mass_matrix(equations: EquationsOfMotion) -> Claim:
     """M a is the derivative of dT/du along a, and M and its transpose are the same."""
-    u, a = assembly.symbols.u, assembly.symbols.a
-    slope = tangent(gradient(assembly.T, u), dict(zip(u, a, strict=True)))
-    pairs = [*zip((inner(row, a) for row in assembly.M), slope, strict=True)]
+    u, a = equations.symbols.u, equations.symbols.a
+    slope = tangent(gradient(equations.T, u), dict(zip(u, a, strict=True)))
+    pairs = [*zip((inner(row, a) for row in equations.M), slope, strict=True)]
     pairs += [
-        (row[j], assembly.M[j][i])
-        for i, row in enumerate(assembly.M)
+        (row[j], equations.M[j][i])
+        for i, row in enumerate(equations.M)
         for j in range(i)
-        if row[j] is not assembly.M[j][i]
+        if row[j] is not equations.M[j][i]
     ]
     labels = [f"M a [{x.name}]" for x in u] + ["M or its transpose"] * (len(pairs) - len(u))
     return Claim("M is symmetric and is the second derivative of T", pairs, labels)
 
 
-def energy(system: System, assembly: Assembly) -> Claim:
+def energy(equations: EquationsOfMotion) -> Claim:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
     With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself. Where dependent
     rates follow from ties that move by themselves, what `_carried_power` says comes in addition.
     """
-    scope, symbols = system.scope, assembly.symbols
-    power = given_power(system, assembly)
+    scope, symbols = equations.system.scope, equations.symbols
+    power = given_power(equations)
     for k, u in enumerate(symbols.u):
-        inertia = sum((assembly.M[k][j] * a for j, a in enumerate(symbols.a)), start=assembly.c[k])
-        power = power + u * (inertia - assembly.Q[k])
-    H = energy_function(assembly)
+        inertia = sum((equations.M[k][j] * a for j, a in enumerate(symbols.a)), start=equations.c[k])
+        power = power + u * (inertia - equations.Q[k])
+    H = energy_function(equations)
     left = scope.with_accelerations((H,))[0]
     return Claim("the energy theorem holds along every motion", [(left, power)], ["dH/dt"])
 
 
-def energy_function(assembly: Assembly) -> Scalar:
+def energy_function(equations: EquationsOfMotion) -> Scalar:
     """H = u . dT/du - T + V, which is T + V where nothing moves by itself."""
-    momenta = gradient(assembly.T, assembly.symbols.u)
-    return sum((p * u for p, u in zip(momenta, assembly.symbols.u, strict=True)), start=assembly.V - assembly.T)
+    momenta = gradient(equations.T, equations.symbols.u)
+    return sum((p * u for p, u in zip(momenta, equations.symbols.u, strict=True)), start=equations.V - equations.T)
 
 
-def given_power(system: System, assembly: Assembly) -> Scalar:
+def given_power(equations: EquationsOfMotion) -> Scalar:
     """dH/dt but for the ties' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
-    speeds = assembly.symbols.u
-    powered = summed([powered_forces(system.loads), assembly.friction or (0,) * len(speeds)], len(speeds))
-    power = tangent((assembly.V - assembly.T,), _own_motion(system.scope))[0] + _carried_power(system)
+    system = equations.system
+    speeds = equations.symbols.u
+    powered = summed([powered_forces(system.loads), equations.friction or (0,) * len(speeds)], len(speeds))
+    power = tangent((equations.V - equations.T,), _own_motion(system.scope))[0] + _carried_power(system)
     return sum((u * Q for u, Q in zip(speeds, powered, strict=True)), start=power)
 
 
@@ -169,18 +182,18 @@ def _own_motion(scope: Any) -> dict[Node, Scalar]:
     return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True))}
 
 
-def closing_rows(system: System, assembly: Assembly) -> Claim:
+def closing_rows(equations: EquationsOfMotion) -> Claim:
     """J u + sigma = dphi/dt where there is a gap, and J a + gamma its derivative."""
-    scope, symbols = system.scope, assembly.symbols
+    scope, symbols = equations.system.scope, equations.symbols
     pairs, labels = [], []
-    for i, phi in enumerate(assembly.phi):
-        row = sum((x * u for x, u in zip(assembly.J[i], symbols.u, strict=True)), start=assembly.sigma[i])
-        pairs.append((row, system.ties.closing[i].velocity))
+    for i, phi in enumerate(equations.phi):
+        row = sum((x * u for x, u in zip(equations.J[i], symbols.u, strict=True)), start=equations.sigma[i])
+        pairs.append((row, equations.system.ties.closing[i].velocity))
         labels.append(f"J u + sigma of row {i + 1}")
         if phi is not None:
             pairs.append((row, scope.time_derivative((phi,))[0]))
             labels.append(f"the gap of row {i + 1}")
-        second = sum((x * a for x, a in zip(assembly.J[i], symbols.a, strict=True)), start=assembly.gamma[i])
+        second = sum((x * a for x, a in zip(equations.J[i], symbols.a, strict=True)), start=equations.gamma[i])
         pairs.append((second, scope.with_accelerations((row,))[0]))
         labels.append(f"J a + gamma of row {i + 1}")
     return Claim("the closing rows are the derivatives of their gaps", pairs, labels)

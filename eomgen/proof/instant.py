@@ -349,13 +349,13 @@ class _Proof:
 
     def wrong_accelerations(self) -> str | None:
         """M a = forcing + J^T lam, J a + gamma = 0, where the motion follows from forces."""
-        system, assembly = self.state.system, self.state.assembly
-        if assembly is None or not self.accelerated:
+        system, equations = self.state.system, self.state.equations
+        if equations is None or not self.accelerated:
             return None
         known = dict(self.way[1])
         inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
         known |= dict(zip(inputs, evaluate(tuple(inputs.values()), known, fifty_digits()), strict=True))
-        free = Nearby(system, assembly, (), known, system.symbols.q, system.symbols.u).going(known)
+        free = Nearby(equations, (), known, system.symbols.q, system.symbols.u).going(known)
         for u, a in zip(system.symbols.u, system.symbols.a, strict=True):
             if self.differs((known[a],), (free.a[u],), 2, self.tolerance):
                 return f"{a.name} is {float(known[a]):.10g} against {float(free.a[u]):.10g}"

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import follows_in_digits
@@ -86,14 +85,13 @@ class Nearby:
     """The states beside one of them.
 
     Args:
-        assembly: the equations of motion of the system.
+        equations: of motion.
         relations: what vanishes between positions.
         numbers: the state, all symbols with 50 digits.
         q, u: the coordinates and speeds that stay independent; driven coordinates are neither these nor sought.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     relations: tuple[Scalar, ...]
     numbers: State
     q: tuple[Node, ...]
@@ -111,8 +109,8 @@ class Nearby:
         state = self._closed({**self.numbers, **given})
         if not self._dependent_u:
             return state
-        J, sigma = self._rows(state, self.assembly.sigma)
-        u, index = self.system.symbols.u, {u: k for k, u in enumerate(self.system.symbols.u)}
+        J, sigma = self._rows(state, self.equations.sigma)
+        u, index = self.equations.symbols.u, {u: k for k, u in enumerate(self.equations.symbols.u)}
         columns = [index[x] for x in self._dependent_u]
         known = [k for k, x in enumerate(u) if x not in self._dependent_u]
         rows = [
@@ -130,7 +128,7 @@ class Nearby:
         Raises:
             NoValue: the equations do not determine them.
         """
-        symbols, graph = self.system.symbols, self.assembly
+        symbols, graph = self.equations.symbols, self.equations
         n, k = len(graph.M), len(graph.J)
         flat = self.at([*(x for row in graph.M for x in row), *graph.forcing], state)
         J, gamma = self._rows(state, graph.gamma)
@@ -140,8 +138,8 @@ class Nearby:
         if a is None:
             raise NoValue("the equations of motion are singular")
         moving = {**state, **dict(zip(symbols.a, a, strict=True))}
-        rates = self.system.scope.rates
-        q1, q2 = self.at(rates, state), self.at(self.system.scope.with_accelerations(rates), moving)
+        rates = self.equations.system.scope.rates
+        q1, q2 = self.at(rates, state), self.at(self.equations.system.scope.with_accelerations(rates), moving)
         return Going(
             state,
             dict(zip(symbols.q, q1, strict=True)),
@@ -153,19 +151,19 @@ class Nearby:
 
     def _rows(self, state: State, bias: Sequence[Scalar]) -> tuple[list[DigitRow], DigitRow]:
         """(J, a bias of it) at a state."""
-        J, n = self.assembly.J, len(self.assembly.M)
+        J, n = self.equations.J, len(self.equations.M)
         flat = self.at([*(x for row in J for x in row), *bias], state)
         return [flat[n * i : n * i + n] for i in range(len(J))], flat[n * len(J) :]
 
     @cached_property
     def _dependent_u(self) -> tuple[Node, ...]:
-        return tuple(x for x in self.system.symbols.u if x not in self.u)
+        return tuple(x for x in self.equations.symbols.u if x not in self.u)
 
     @cached_property
     def _dependent_q(self) -> tuple[Node, ...]:
         """Those that stand in what is known between positions; others stay where they are."""
-        coordinates, bound = self.system.scope.model.coordinates, {*symbols_of(self.relations)}
-        return tuple(q for q in self.system.symbols.q if q in bound - {*self.q} and not coordinates[q.name].driven)
+        coordinates, bound = self.equations.system.scope.model.coordinates, {*symbols_of(self.relations)}
+        return tuple(q for q in self.equations.symbols.q if q in bound - {*self.q} and not coordinates[q.name].driven)
 
     @cached_property
     def _slopes(self) -> list[DigitRow]:

@@ -19,8 +19,7 @@ from scipy.integrate import DOP853
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.balance.friction import with_rest
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.identities import energy_function, given_power
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -38,22 +37,21 @@ class Energies:
         pulled: whether the ties take power by being open: Baumgarte's rows.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     p: np.ndarray
     pulled: bool = False
 
     @cached_property
     def power(self) -> Scalar:
         """dH/dt = Q_nc . u + u . J^T lam + what moves by itself."""
-        assembly = self.assembly
-        found = given_power(self.system, assembly)
-        for sigma, row, lam in zip(assembly.sigma, assembly.J, assembly.symbols.lam, strict=True):
+        equations = self.equations
+        found = given_power(equations)
+        for sigma, row, lam in zip(equations.sigma, equations.J, equations.symbols.lam, strict=True):
             if self.pulled:
-                found = found + lam * sum((x * u for x, u in zip(row, assembly.symbols.u, strict=True)), start=0)
+                found = found + lam * sum((x * u for x, u in zip(row, equations.symbols.u, strict=True)), start=0)
             elif not is_zero(sigma):
                 found = found - lam * sigma
-        return with_rest(self.system, (found,))[0]
+        return with_rest(self.equations.system, (found,))[0]
 
     def along(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """(T, V, H), each n [J]."""
@@ -65,16 +63,16 @@ class Energies:
 
     @cached_property
     def _energies(self) -> RightHandSide:
-        return self._compiled((self.assembly.T, self.assembly.V, energy_function(self.assembly)))
+        return self._compiled((self.equations.T, self.equations.V, energy_function(self.equations)))
 
     @cached_property
     def _power(self) -> RightHandSide:
         return self._compiled((self.power,))
 
     def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        symbols = self.assembly.symbols
-        solve = bordered(self.assembly) if depends_on(scalars[-1], symbols.lam) else None
-        return compiled(program_of(scalars, symbols, inputs=self.system.inputs, solve=solve), "numpy")
+        symbols = self.equations.symbols
+        solve = bordered(self.equations) if depends_on(scalars[-1], symbols.lam) else None
+        return compiled(program_of(scalars, symbols, inputs=self.equations.inputs, solve=solve), "numpy")
 
 
 def followed(

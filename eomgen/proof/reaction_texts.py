@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 
 from eomgen.codegen.reactions import determinate
-from eomgen.errors import EomgenError
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.errors import DerivationError
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.at_a_state import NumericState, off_by, read_back
 from eomgen.proof.check import Check
@@ -22,17 +21,17 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 MOST = 3  # states at which all of them are compared
 
 
-def reaction_texts(system: System, assembly: Assembly, texts: Mapping[str, str]) -> Iterator[Check]:
+def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> Iterator[Check]:
     """Each text at the start, in pieces and at random, against the bodies' equations solved there in doubles.
 
     Args:
         texts: of each reaction by its name, a function of q, u, t and accelerations.
     """
     tally = Tally("formulas, read back, are the reactions of the bodies' balance", "50 digits against doubles")
-    states = list(_states(system, assembly))
+    states = list(_states(equations))
 
     def compared(name: str, text: str) -> str:
-        scalar, judged = read_back(system, text), 0
+        scalar, judged = read_back(equations.system, text), 0
         for state in states:
             if name not in state.reactions:
                 continue
@@ -56,11 +55,11 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
     """Each number at the start is what its formula is worth there with 50 digits: as printed, else as it was solved."""
     tally = Tally("formulas, read back, give the numbers at the start", "50 digits against doubles")
     untold = Tally("numbers too long to print a formula for are those of the balance", "50 digits against doubles")
-    solved = {} if values.keys() <= texts.keys() else determinate(reactions_of(start.system))
+    solved = {} if values.keys() <= texts.keys() else determinate(reactions_of(start.equations.system))
     size = max(map(abs, values.values()), default=0.0)
 
     def compared(name: str) -> str:
-        scalar = read_back(start.system, texts[name]) if name in texts else solved[name]
+        scalar = read_back(start.equations.system, texts[name]) if name in texts else solved[name]
         found, right = values[name], start.number(scalar)
         if abs(found - right) <= COMPUTED * (1 + size):
             return ""
@@ -72,15 +71,15 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
     return iter((*tally.checks(), *untold.checks()))
 
 
-def _states(system: System, assembly: Assembly) -> Iterator[NumericState]:
+def _states(equations: EquationsOfMotion) -> Iterator[NumericState]:
     """The first state of each supply where the motion has accelerations."""
     count = 0
-    for _, supply in Trials(system, assembly).states.supplies:
+    for _, supply in Trials(equations).states.supplies:
         for place in supply:
-            state = _in_numbers(system, assembly, place)
+            state = _in_numbers(equations, place)
             try:
                 state.unknowns.keys()
-            except (NoValue, ZeroDivisionError, EomgenError):
+            except (NoValue, ZeroDivisionError, DerivationError):
                 continue
             yield state
             count += 1
@@ -89,12 +88,10 @@ def _states(system: System, assembly: Assembly) -> Iterator[NumericState]:
             return
 
 
-def _in_numbers(system: System, assembly: Assembly, place: TrialState) -> NumericState:
-    symbols, values = assembly.symbols, place.state
+def _in_numbers(equations: EquationsOfMotion, place: TrialState) -> NumericState:
+    symbols, values = equations.symbols, place.state
     parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
-    return NumericState(
-        system, assembly, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)}
-    )
+    return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)})
 
 
 def _place(state: NumericState) -> str:

@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.first_order import FirstOrder
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.nearby import Nearby
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
@@ -47,13 +49,47 @@ def _unbalanced(place: Equilibrium) -> str:
     known: dict[Node, Any] = values_of_parameters(statics.system.scope, Random(3))
     known |= _places(place, statics.unknowns, known)
     left = evaluate(statics.equations, known, digits)
-    slopes = evaluate(tuple(x for row in jacobian(statics.equations, statics.unknowns) for x in row), known, digits)
-    n = len(statics.unknowns)
-    sizes = [max(1, abs(known[x])) for x in statics.unknowns]
-    for i, x in enumerate(left):
-        usual = sum(abs(slope) * size for slope, size in zip(slopes[n * i : n * i + n], sizes, strict=True))
+    for i, (x, usual) in enumerate(zip(left, _usual(statics, known), strict=True)):
         if abs(x) > COMPUTED * usual + ZERO_AT_50:
             return f"{float(x):.3g} is left of equation {i + 1}"
+    return ""
+
+
+def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
+    """By how much each equation changes where every unknown does by its own size, or by 1."""
+    slopes = jacobian(statics.equations, statics.unknowns)
+    values = iter(evaluate(tuple(x for row in slopes for x in row), known, fifty_digits()))
+    sizes = [max(1, abs(known[x])) for x in statics.unknowns]
+    return [sum(abs(next(values)) * size for size in sizes) for _ in slopes]
+
+
+def pushes_check(places: Sequence[Equilibrium]) -> Check:
+    """What the free bodies ask for at rest, their weights, loads and ties' pushes summed body by body: nothing."""
+    name = "the multipliers at every place of rest hold the free bodies"
+    try:
+        wrong = next(filter(None, (_at(k, _pushed(place)) for k, place in enumerate(places[:MOST], start=1))), "")
+    except (NoValue, ZeroDivisionError) as error:
+        return unchecked(name, str(error) or "no value", BY_MOTION)
+    return checked(name, wrong, BY_MOTION)
+
+
+def _pushed(place: Equilibrium) -> str:
+    """Which speed of the free bodies is pushed; multipliers that stand in no equation push nothing."""
+    statics = place.statics
+    free = statics.system.free or statics.system
+    symbols, digits = free.symbols, fifty_digits()
+    known: dict[Node, Any] = values_of_parameters(free.scope, Random(3))
+    still = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
+    known = {**dict.fromkeys(still, digits.number(0)), **known}
+    held = {q: value for q, value in statics.given.items() if q in symbols.q}
+    known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))
+    known |= _places(place, statics.unknowns, known)
+    inputs = {node: free.inputs[name] for name, node in symbols.inputs.items()}
+    known |= dict(zip(inputs, evaluate(tuple(inputs.values()), known, digits), strict=True))
+    most = max(_usual(statics, known), default=0)
+    for u, x in zip(symbols.u, demand_of(free, known).forces, strict=True):
+        if abs(x) > COMPUTED * most + ZERO_AT_50:
+            return f"{float(x):.3g} is left along {u.name}"
     return ""
 
 
@@ -121,7 +157,7 @@ class _Proof:
         """The states beside it, speeds all 0."""
         system = self.first.system
         along = self.place.stability.along or tuple(q for q in system.symbols.q if q in self.place.statics.q)
-        return Nearby(system, self.first.assembly, self.first.relations, self.numbers, tuple(along), system.symbols.u)
+        return Nearby(self.first.equations, self.first.relations, self.numbers, tuple(along), system.symbols.u)
 
     def _accelerations(self, given: Mapping[Node, Any]) -> np.ndarray:
         going = self.nearby.going(self.nearby.state({**given, **self._still}))

@@ -66,8 +66,8 @@ def _state(run: Trajectory, phase: Phase, p: np.ndarray, row: int) -> NumericSta
     """The state of a row, in the coordinates and speeds of its phase."""
     assert phase.track is not None
     t, x = phase.track
-    system, assembly = phase.model.system, phase.model.assembly
-    symbols, here = assembly.symbols, x[int(np.argmin(np.abs(t - run.t[row])))]
+    equations = phase.model.equations
+    symbols, here = equations.symbols, x[int(np.argmin(np.abs(t - run.t[row])))]
     parameters = {node: Fraction(float(value)) for node, value in zip(symbols.parameters.values(), p, strict=True)}
     numbers = {node: float(value) for node, value in zip((*symbols.q, *symbols.u), here, strict=False)}
-    return NumericState(system, assembly, parameters, {symbols.t: float(run.t[row]), **numbers})
+    return NumericState(equations, parameters, {symbols.t: float(run.t[row]), **numbers})

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from random import Random
 from typing import Any
 
@@ -32,7 +33,15 @@ from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, DIFFERENCE_AT_50, SLOW, TINIEST
+from eomgen.symbolic.numeric.tolerances import (
+    CARRIED,
+    COMPUTED,
+    DIFFERENCE_AT_50,
+    ROUNDING,
+    SLOW,
+    TINIEST,
+    ZERO_AT_50,
+)
 
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
@@ -94,7 +103,7 @@ class Differences:
         first, numbers = small.first, small.reference.numbers
         named = {label: turn.speeds[turn.axis] for label, turn in self._spins.items()}
         u = tuple(named.get(x, x) for x in small.whole.speeds)
-        return Nearby(first.system, first.assembly, first.relations, numbers, q, u)
+        return Nearby(first.equations, first.relations, numbers, q, u)
 
     @cached_property
     def origin(self) -> Going:
@@ -225,7 +234,7 @@ class Differences:
 
     def energy_along(self, step: Mapping[Node, Any]) -> tuple[Any, DigitColumn, DigitColumn]:
         """(second difference of T, the rates of coordinates and the speeds along a step of the speeds)."""
-        T, e = self.small.first.assembly.T, self.small.numbers
+        T, e = self.small.first.equations.T, self.small.numbers
         ways = [self._rates(self.nearby.state(self._moved(step, sign))) for sign in (1, -1)]
         here, late, early = (self.nearby.at((T,), way.state)[0] for way in (self.origin, *ways))
         labels = self.moved if self.is_part else e.coordinates
@@ -240,7 +249,7 @@ class Differences:
 
     def _rates(self, state: State) -> Going:
         """The rates of the coordinates at a state; of accelerations nothing is asked."""
-        symbols, scope = self.nearby.system.symbols, self.nearby.system.scope
+        symbols, scope = self.nearby.equations.symbols, self.nearby.equations.system.scope
         q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))
         return Going(state, q1, dict.fromkeys(symbols.q, 0), dict.fromkeys(symbols.u, 0))
 
@@ -276,6 +285,8 @@ def small_motion_checks(modes: Modes) -> Iterator[Check]:
     try:
         yield _reference(differences)
         yield from _matrices(differences)
+        if small.is_second_order:
+            yield checked("C = D + G and K = S + H, D and S symmetric, G and H skew", _wrong_parts(modes), "50 digits")
         yield from mode_checks(modes)
     except (NoValue, ZeroDivisionError) as error:
         yield unchecked("small motions are those of the equations of motion", str(error), BY_DIFFERENCES)
@@ -337,15 +348,29 @@ def _of_part(differences: Differences) -> Check:
 def _entries(small: SmallMotions) -> dict[str, list[list[Any]]]:
     """The printed matrices in numbers: exact ones with 50 digits."""
     e: LinearEquations = small.exact or small.numbers
-    found = {}
-    for letter in "MCKBFE":
-        rows = getattr(e, letter)
-        flat = [x for row in rows for x in row]
-        if small.exact is not None:
-            flat = evaluate(tuple(flat), small.reference.trial, fifty_digits())
-        values = iter(flat)
-        found[letter] = [[next(values) for _ in row] for row in rows]
-    return found
+    return {letter: _numbers(small, getattr(e, letter)) for letter in "MCKBFE"}
+
+
+def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    flat: Sequence[Any] = [x for row in rows for x in row]
+    if small.exact is not None:
+        flat = evaluate(tuple(flat), small.reference.trial, fifty_digits())
+    values = iter(flat)
+    return [[next(values) for _ in row] for row in rows]
+
+
+def _wrong_parts(modes: Modes) -> str:
+    """Which of the printed parts of C and K is not what its letter says, or ""."""
+    small = modes.small
+    whole, parts = _entries(small), {name: _numbers(small, A) for name, A in modes.symmetric_parts.items()}
+    tolerance = ZERO_AT_50 if small.exact is not None else ROUNDING
+    for letter, even, odd in (("C", "D", "G"), ("K", "S", "H")):
+        for i, j in product(range(len(whole[letter])), repeat=2):
+            (a, b), (c, d) = ((parts[name][i][j], parts[name][j][i]) for name in (even, odd))
+            left = max(abs(a + c - whole[letter][i][j]), abs(a - b), abs(c + d))
+            if left > tolerance * (abs(a) + abs(c)):
+                return f"entry {i + 1}, {j + 1} of {even} or {odd}"
+    return ""
 
 
 def _random(nodes: Sequence[Node], rng: Random) -> State:

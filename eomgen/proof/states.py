@@ -20,6 +20,7 @@ from eomgen.proof.pieces import Switch, switches_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50
 
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
@@ -66,8 +67,20 @@ class States:
     @cached_property
     def supplies(self) -> tuple[tuple[str, Supply], ...]:
         """(where, states): "at the start", then "in a piece" of each quantity, then "at random"."""
-        pieces = [("in a piece", Supply(found)) for found in self._pieces()]
-        return ("at the start", Supply(self._at_the_start())), *pieces, ("at random", Supply(self._at_random()))
+        pieces = [("in a piece", self._supply(found)) for found in self._pieces()]
+        return (
+            ("at the start", self._supply(self._at_the_start())),
+            *pieces,
+            ("at random", self._supply(self._at_random())),
+        )
+
+    def _supply(self, states: Iterator[TrialState]) -> Supply:
+        return Supply(place for place in states if self._is_near(place.state))
+
+    def _is_near(self, state: State) -> bool:
+        """Whether its numbers are so small that digits are left for differences."""
+        symbols = self.system.symbols
+        return all(abs(state[x]) <= LARGEST_AT_50 for x in (*symbols.q, *symbols.u) if x in state)
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:
@@ -202,6 +215,18 @@ def real_state(system: System, rng: Random) -> State:
     state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
     return state | on_unit_spheres(system.scope.quaternions, state)
+
+
+def refuse_open(system: System, state: State) -> None:
+    """Nothing, where the gaps and the rates of all rows are 0.
+
+    Raises:
+        NoValue: they are not.
+    """
+    rows = [row for row in system.ties.rows if not row.identical]
+    asked = [*(row.velocity for row in rows), *(row.gap for row in rows if row.gap is not None)]
+    if any(abs(x) > COMPUTED for x in evaluate(asked, state, fifty_digits())):
+        raise NoValue("the ties are open")
 
 
 def in_doubles(state: State) -> State:

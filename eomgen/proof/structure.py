@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from random import Random
 from typing import Any
 
@@ -26,14 +27,17 @@ from eomgen.mechanics.statics.member_axis import MemberAxis
 from eomgen.mechanics.statics.member_loads import MemberLoads, place_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece
 from eomgen.mechanics.statics.two_ways import StaticReactions
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 
 IN_NUMBERS = "floating point"
+MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
 QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
 
 
@@ -56,6 +60,11 @@ def structure_checks(
         yield checked("N, V and M are the same from the other end", wrong, IN_NUMBERS)
         wrong = next(filter(None, (proof.wrong_slopes(forces) for forces in sections.values())), "")
         yield checked("dM/dx = V, dV/dx = q . n, dN/dx = -q . t", wrong, IN_NUMBERS)
+        wrong = next(filter(None, (proof.wrong_extremes(forces) for forces in sections.values())), "")
+        yield checked("where M has an extreme V is 0, within a part", wrong, IN_NUMBERS)
+    blocks = proof.wrong_blocks()
+    if blocks is not None:
+        yield checked("blocks of released structures move as one each, and differ", blocks, IN_NUMBERS)
     if influence is not None:
         wrong = proof.wrong_influence(influence)
         yield checked("the influence line is what unit loads give at places of it", wrong, IN_NUMBERS)
@@ -131,13 +140,30 @@ class _Proof:
                 R, T, size, moment = along.behind(x, origin + (x - x0) * t)
                 found = {"axial_force": R @ t, "shear_force": -R @ n, "bending_moment": T}
                 for kind, value in found.items():
-                    stated = self._value(piece, kind, x - start)
+                    stated = self._value(piece, kind, x)
                     if abs(stated - value) > COMPUTED * (moment if kind == "bending_moment" else size):
                         return f"{kind}({forces.axis.body}, {x:.6g}): {stated:.10g} against {value:.10g}"
         return ""
 
-    def _value(self, piece: SectionPiece, kind: str, s: float) -> float:
-        return float(np.polyval(self.numbers(piece.coefficients(kind))[::-1], s))
+    def _value(self, piece: SectionPiece, kind: str, x: float) -> float:
+        """As it is printed, a function of x."""
+        section = self.found.system.scope.graph.symbol("(x of a section)")
+        return float(evaluate((piece.value(kind, section),), {**self.values, section: x}, FLOAT)[0])
+
+    def wrong_extremes(self, forces: SectionForces) -> str:
+        """V = 0 there, and the M that is stated, both from the other end."""
+        along = self.along(forces)
+        for extreme in forces.extremes:
+            x, M = self.numbers((extreme.x, extreme.M))
+            mine = [p for p in forces.pieces if self.one(p.start) < x < self.one(p.end)]
+            if not mine:
+                return f"x = {x:.6g} lies in no part of '{forces.axis.body}'"
+            leg = mine[0].leg
+            t, n = self.numbers(leg.along), self.numbers(leg.left)
+            R, T, size, moment = along.behind(x, self.numbers(leg.start) + (x - self.one(leg.x)) * t)
+            if abs(R @ n) > COMPUTED * size or abs(T - M) > COMPUTED * moment:
+                return f"at x = {x:.6g} of '{forces.axis.body}' V = {-R @ n:.6g} and M = {T:.10g} for {M:.10g}"
+        return ""
 
     def wrong_slopes(self, forces: SectionForces) -> str:
         """Of the polynomials, whose derivatives have coefficients k c_k."""
@@ -155,6 +181,33 @@ class _Proof:
                     if abs(np.polyval(np.polyder(series), s) - value) > COMPUTED * unit:
                         return f"{what} of '{forces.axis.body}' at x = {start + s:.6g}"
         return ""
+
+    # -- released structures -----------------------------------------------------------------------------------
+
+    def wrong_blocks(self) -> str | None:
+        """What is in one block moves with it, v = v_0 + w x r at both ends of a member; no two blocks move alike."""
+        plans = [(each.name, each.work.plan) for each in self.found.reactions if each.work is not None]
+        for name, plan in plans[:: 1 + (len(plans) - 1) // MOST_PLANS]:
+            blocks = blocks_of(plan)
+            fields = [np.array(self._at(plan, (*block.spin, *block.velocity))) for block in blocks]
+            for block, field in zip(blocks, fields, strict=True):
+                for part, places in self._ends(plan, block):
+                    for place in places:
+                        r, v = np.split(np.array(self._at(plan, (*plan.position(place), *plan.raw_velocity(place)))), 2)
+                        if abs(field[3:] + np.cross(field[:3], r) - v).max() > COMPUTED * (1 + abs(v).max()):
+                            return f"{part} does not move with its block, {name} released"
+            for one, other in combinations([f for f, b in zip(fields, blocks, strict=True) if not b.nodes], 2):
+                if abs(one - other).max() <= COMPUTED * (1 + abs(one).max()):
+                    return f"two blocks move alike, {name} released"
+        return "" if plans else None
+
+    def _ends(self, plan: VelocityPlan, block: RigidBlock) -> Iterator[tuple[str, list[tuple[str, Vector]]]]:
+        ends = {(truss, member): pair for truss, member, pair in members_of(plan.system)}
+        yield from ((body, [(body, ZERO), (body, (1, 2, 0))]) for body in block.bodies)
+        yield from ((member[1], [(node, ZERO) for node in ends[member]]) for member in block.members)
+
+    def _at(self, plan: VelocityPlan, scalars: Sequence[Scalar]) -> list[float]:
+        return [float(x) for x in plan.numbers(scalars)]
 
     # -- influence lines -------------------------------------------------------------------------------------
 
@@ -232,8 +285,12 @@ class _Proof:
         body, place_, force = load
         if body == cut.axis.body and self._distance(line, place_) < section:
             R, T = R + force, T + _wrench(force, place_ - at)[2]
-        shift, spin = self.numbers(cut.shift), self.one(cut.spin)
-        return float(-(R @ shift) - T * spin)
+        leg = next((leg for leg in reversed(cut.axis.legs) if self.one(leg.x) <= section), cut.axis.legs[0])
+        ends = [self._on(cut.axis.body, leg.place(x)) for x in (leg.x, leg.x + leg.length)]
+        t = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        left = np.array([-t[1], t[0], 0.0])
+        found = {"axial_force": -R @ t, "shear_force": R @ left, "bending_moment": -T}
+        return float(found[line.name.partition("(")[0]])
 
     def _distance(self, line: InfluenceLine, place: np.ndarray) -> float:
         """How far along the axis of the cut body a place is."""

@@ -33,7 +33,7 @@ class Tally:
             found = compared()
         except (NoValue, ZeroDivisionError) as error:
             self.left[what] = str(error) or "no value"
-        except EomgenError as error:
+        except EomgenError as error:  # the edge of a proof: whatever refuses is said to be unchecked
             self.left[what] = error.what
         else:
             self.held += not found

@@ -1,4 +1,4 @@
-"""System, Assembly -> checks at states, in numbers: what the routes share, free bodies, reactions, the emitted code.
+"""Equations of motion -> checks at states, in numbers: what the routes share, free bodies, reactions, the emitted code.
 
 Every check is made at the model's own start, then inside each piece of what it is made of, then at a random state.
 """
@@ -16,42 +16,61 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
 from eomgen.mechanics.bodies.contact_modes import CLOSED
+from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import spin_between
 from eomgen.mechanics.equations.accelerations import exact_accelerations
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
+from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.free_bodies import demand_of
-from eomgen.proof.passive_elements import PassiveElements
+from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, in_doubles
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import apply, matrix_of, transposed, vector_of
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
 
+DIRECTIONS = ((2, 3, 5), (7, -4, 3))  # about which moments of inertia are compared
 NOWHERE = "no state with values was found, at the start, near it or at random"
+
+
+@dataclass(frozen=True)
+class Given:
+    """How a coordinate is driven.
+
+    Args:
+        coordinate: its name.
+        slopes: (f, g) with f' = g.
+        same: what is one function of t.
+        first: what is one at t = 0.
+    """
+
+    coordinate: str
+    slopes: list[tuple[Scalar, Scalar]]
+    same: list[tuple[Scalar, Scalar]]
+    first: Sequence[tuple[Scalar, Scalar]] = ()
 
 
 @dataclass(frozen=True)
 class Trials:
     """The equations of a system, to be tried at states."""
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
 
     @cached_property
     def states(self) -> States:
         """The states of the system; poses and equations are looked at for pieces."""
-        e, links = self.assembly, self.system.motion.links
+        e, links = self.equations, self.equations.system.motion.links
         poses = (x for link in links for row in (*link.pose.R, link.pose.p) for x in row)
         entries = (x for rows in (e.M, e.J, e.N) for row in rows for x in row)
-        return States(self.system, (*poses, *entries, *e.nu, *e.c, *e.Q, *e.forcing, *e.sigma, *e.gamma, e.T, e.V))
+        return States(e.system, (*poses, *entries, *e.nu, *e.c, *e.Q, *e.forcing, *e.sigma, *e.gamma, e.T, e.V))
 
     def _at_states(self, name: str, how: str, check: Callable[[State], str]) -> Check:
         """A check at the first state of each supply where everything has a value; `check` names what differs."""
@@ -79,8 +98,8 @@ class Trials:
     def _moving(self, state: State) -> State:
         """The state with the accelerations of the equations of motion."""
         if id(state) not in self._solved:
-            a = exact_accelerations(self.assembly, state)
-            self._solved[id(state)] = state, state | dict(zip(self.assembly.symbols.a, a, strict=True))
+            a = exact_accelerations(self.equations, state)
+            self._solved[id(state)] = state, state | dict(zip(self.equations.symbols.a, a, strict=True))
         return self._solved[id(state)][1]
 
     def eliminated_rows(self) -> Check:
@@ -88,8 +107,8 @@ class Trials:
 
         Rows that follow from others do so where the ties hold, and are looked at there.
         """
-        scope = self.system.scope
-        rows = [row for row in self.system.ties.rows if row.status == "eliminated"]
+        scope = self.equations.system.scope
+        rows = [row for row in self.equations.system.ties.rows if row.status == "eliminated"]
         gaps = [(row, row.gap) for row in rows if row.gap is not None]
         owners = [*rows, *(row for row, _ in gaps)]
         rates = (*(row.velocity for row in rows), *scope.time_derivative(tuple(gap for _, gap in gaps)))
@@ -105,13 +124,13 @@ class Trials:
 
     def twists(self) -> Check:
         """Twists against central differences of the poses along the motion."""
-        links, digits = self.system.motion.links, fifty_digits()
+        links, digits = self.equations.system.motion.links, fifty_digits()
         poses = tuple(x for link in links for x in (*(x for row in link.pose.R for x in row), *link.pose.p))
         twists = tuple(x for link in links for x in (*link.twist.w, *link.twist.v))
         h = digits.number(1) / 10**15
 
         def check(state: State) -> str:
-            late, early = (evaluate(poses, _moved(self.system, state, sign * h), digits) for sign in (1, -1))
+            late, early = (evaluate(poses, _moved(self.equations.system, state, sign * h), digits) for sign in (1, -1))
             all_rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
             now, motions = evaluate(poses, state, digits), evaluate(twists, state, digits)
             for k, link in enumerate(links):
@@ -126,9 +145,49 @@ class Trials:
 
         return self._at_states("twists are the rates of the poses", "differences at 50 digits", check)
 
+    @property
+    def given(self) -> list[Given]:
+        """What is given of every driven coordinate, with nu = q' and (q')' = q''."""
+        scope, found = self.equations.system.scope, []
+        for q, nu in zip(self.equations.symbols.q, self.equations.nu, strict=True):
+            part, name = scope.model.coordinates[q.name], q.name
+            rate, acceleration = scope.names[f"{name}'"], scope.names[f"{name}''"]
+            if part.motion is not None:
+                found.append(Given(name, [(scope.value(part.motion), rate), (rate, acceleration)], [(nu, rate)]))
+            elif part.rate is not None:
+                found.append(Given(name, [(rate, acceleration)], [(nu, rate), (scope.value(part.rate), rate)]))
+            elif part.acceleration is not None:
+                same = [(nu, rate), (scope.value(part.acceleration), acceleration)]
+                found.append(Given(name, [(rate, acceleration)], same, [(rate, scope.value(part.speed))]))
+        return found
+
+    def given_motions(self) -> Check:
+        """q' and q'' of driven coordinates against the functions of t that are given, by central differences."""
+        t, digits = self.equations.symbols.t, fifty_digits()
+        h = digits.number(1) / 10**15
+
+        def slope(f: Scalar, state: State) -> Any:
+            early, now, late = (evaluate((f,), {**state, t: state[t] + by}, digits)[0] for by in (-h, 0 * h, h))
+            if abs(late - 2 * now + early) > COMPUTED * h * (1 + abs(now)):
+                raise NoValue("two pieces meet there")
+            return (late - early) / (2 * h)
+
+        def check(state: State) -> str:
+            begun = {**state, t: digits.number(0)}
+            for given in self.given:
+                pairs: list[Sequence[Any]] = []
+                pairs += [(slope(f, state), evaluate((g,), state, digits)[0]) for f, g in given.slopes]
+                pairs += [evaluate(pair, state, digits) for pair in given.same]
+                pairs += [evaluate(pair, begun, digits) for pair in given.first]
+                if any(abs(a - b) > DIFFERENCE_AT_50 * (1 + abs(a) + abs(b)) for a, b in pairs):
+                    return f"'{given.coordinate}' moves otherwise"
+            return ""
+
+        return self._at_states("what is driven moves as given", "differences at 50 digits", check)
+
     def free_bodies(self) -> Check:
         """M a + c - Q - J^T lam and J a + gamma at any a and lam, by the free bodies, which use no B and no energy."""
-        e, symbols, closing = self.assembly, self.assembly.symbols, self.system.ties.closing
+        e, symbols, closing = self.equations, self.equations.symbols, self.equations.system.ties.closing
         friction = e.friction or (0,) * len(e.Q)
         inertia = [inner(row, symbols.a) - b + f for row, b, f in zip(e.M, e.forcing, friction, strict=True)]
         forces = [x - inner(column, symbols.lam) for x, column in zip(inertia, _columns(e), strict=True)]
@@ -139,7 +198,7 @@ class Trials:
         ]
 
         def check(state: State) -> str:
-            needed = demand_of(self.system, state)
+            needed = demand_of(self.equations.system, state)
             own = evaluate((*forces, *rows), state, fifty_digits())
             rates = [needed.rates[row.tie, row.number] for row in closing]
             sizes = [*needed.sizes, *(1 + abs(x) for x in rates)]
@@ -155,14 +214,14 @@ class Trials:
 
         What holds on all sides rubs with F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the bodies' balance.
         """
-        laws = _laws_of_round(self.system) if push_sizes(self.system) else []
+        laws = _laws_of_round(self.equations.system) if push_sizes(self.equations.system) else []
 
         def check(state: State) -> str:
             for name, law in laws:
                 if not self._holds(law, state):
                     return f"the friction of '{name}' is not that of its normal force"
-            for name, factor, sliding in frictions(self.system):
-                mode = self.system.modes.get(name, CLOSED)
+            for name, factor, sliding in frictions(self.equations.system):
+                mode = self.equations.system.modes.get(name, CLOSED)
                 v = sliding if mode.sense is None else mode.sense
                 speed, power, factor_at = evaluate((v, mode.push * factor * v, factor), state, fifty_digits())
                 if speed == 0:
@@ -178,24 +237,57 @@ class Trials:
         F, factor, *N = map(float, evaluate(law, self._moving(state), fifty_digits()))
         return math.isclose(F, factor * math.hypot(*N), rel_tol=COMPUTED, abs_tol=COMPUTED)
 
+    def tensors(self) -> Iterable[Check]:
+        """n . I n is what is declared, [xx, yy, zz, xy, yz, zx], times the products of n; none where nothing is."""
+        scope = self.equations.system.scope
+        plain = {name: part for name, part in scope.model.bodies.items() if part.shape is None and part.parts is None}
+        pairs = []
+        for name, inertia in ((name, part.inertia or ()) for name, part in plain.items()):
+            if len(inertia) <= 1:  # about z alone
+                continue
+            tensor = mass_properties(scope, name).I
+            for x, y, z in DIRECTIONS:
+                products = (x * x, y * y, z * z, 2 * x * y, 2 * y * z, 2 * z * x)
+                typed = inner([scope.value(e) for e in inertia], products[: len(inertia)])
+                pairs.append((name, typed, dot((x, y, z), apply(tensor, (x, y, z)))))
+
+        def check(state: State) -> str:
+            values = iter(evaluate([x for _, *both in pairs for x in both], state, fifty_digits()))
+            for name, _, _ in pairs:
+                typed, held = next(values), next(values)
+                if abs(typed - held) > ZERO_AT_50 * (abs(typed) + abs(held)):
+                    return f"that of '{name}'"
+            return ""
+
+        if pairs:
+            yield self._at_states("moments and products of inertia stand where they are declared", "50 digits", check)
+
     def contacts(self) -> Iterable[Check]:
         """What touches touches, where it is declared; none where nothing does."""
-        if meetings_of(self.system):
+        if meetings_of(self.equations.system):
             name = "contacts lie on both surfaces, and neither part nor slip"
-            yield self._at_states(name, "50 digits", lambda state: apart(self.system, state))
+            yield self._at_states(name, "50 digits", lambda state: apart(self.equations.system, state))
 
-    def passive_elements(self) -> Iterable[Check]:
-        """Dampers take power, springs have no energy at their rest length; none where there are none."""
-        found = PassiveElements(self.system)
-        if found.brakes:
-            yield self._at_states("dampers take power", "50 digits", found.driven_on)
-        if found.springs:
-            yield self._at_states("springs have no energy at their rest length", "50 digits", found.stretched)
+    def elements(self) -> Iterable[Check]:
+        """Springs, dampers and pulls act as they are declared; none where there are none."""
+        if elements_of(self.equations.system) or self.equations.system.loads.efforts:
+            name = "springs, dampers and drives act as they are declared, equal and opposite"
+            yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
+
+    def printed(self, printed: Printed) -> Iterable[Check]:
+        """Formulas as they are printed, read back; none where nothing can be read."""
+        text = ReadBack(self.equations, printed)
+        if text.equalities:
+            name = "what is printed, read back, holds along the motion"
+            yield self._at_states(name, "50 digits", lambda state: text.wrong(self._moving(state)))
+        if text.constants:
+            name = "first integrals as they are printed stay constant along the motion"
+            yield self._at_states(name, "differences at 50 digits", lambda state: text.drifting(self._moving(state)))
 
     def balance(self) -> Iterable[Check]:
         """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""
         try:
-            reactions = reactions_of(self.system)
+            reactions = reactions_of(self.equations.system)
         except DerivationError:
             return
         shares = (x for own in reactions.solution.shares.values() for x in own.values())
@@ -211,16 +303,16 @@ class Trials:
 
     def code(self, rhs: RightHandSide) -> Check:
         """The emitted code returns the symbols' numbers, at states that are numbers of double precision."""
-        symbols, digits = self.assembly.symbols, fifty_digits()
+        symbols, digits = self.equations.symbols, fifty_digits()
         groups = ((*symbols.q, *symbols.u), symbols.parameters.values(), symbols.inputs.values())
 
         def check(state: State) -> str:
             rounded = in_doubles(state)
             state = state if state == rounded else rounded
             x, p, inputs = ([float(state[s]) for s in group] for group in groups)
-            rates = [float(v) for v in evaluate(self.system.scope.rates, state, digits)]
+            rates = floats_of(evaluate(self.equations.system.scope.rates, state, digits))
             dx = rhs(float(state[symbols.t]), x, p, inputs)
-            a = [float(self._moving(state)[a]) for a in symbols.a]
+            a = floats_of(self._moving(state)[a] for a in symbols.a)
             return _difference("dx", dx, [*rates, *a], COMPUTED)
 
         name = f"the emitted code ({rhs.target}) returns the symbols' numbers"
@@ -248,9 +340,9 @@ def _moved(system: System, state: State, h: Any) -> State:
     return state | later | {symbols.t: state[symbols.t] + h}
 
 
-def _columns(assembly: Assembly) -> Iterable[Sequence[Scalar]]:
+def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:
     """The columns of J, also where it has no rows."""
-    return zip(*assembly.J, strict=True) if assembly.J else ((),) * len(assembly.M)
+    return zip(*equations.J, strict=True) if equations.J else ((),) * len(equations.M)
 
 
 def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:

@@ -107,12 +107,12 @@ class Judged:
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
         """a by dense linear algebra."""
-        found = accelerations_at(self.motion.assembly, self.motion.values(at))
-        return dict(zip(self.motion.assembly.symbols.a, found.tolist(), strict=True))
+        found = accelerations_at(self.motion.equations, self.motion.values(at))
+        return dict(zip(self.motion.equations.symbols.a, found.tolist(), strict=True))
 
     def _inverse(self, code: Code, at: Iterable[TriedState], name: str) -> Check:
         """tau put back as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""
-        system = self.motion.system
+        system = self.motion.equations.system
         columns = {actuator: acting(system, actuator) for actuator in self.actuators if actuator not in system.inputs}
 
         def wrong(instant: TriedState) -> str | None:

@@ -25,11 +25,14 @@ from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
-from eomgen.mechanics.instant.outputs import LINEARIZED, asks_motion
+from eomgen.mechanics.instant.outputs import asks_motion, asks_of
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
@@ -43,11 +46,12 @@ from eomgen.report.statements import Found, Listing
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
+from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output
@@ -85,20 +89,24 @@ class Answers(dict[str, Answer], Result):
 
     def certify(self) -> Certificate:
         """Every number against the motion in numbers, every text against its number; the equations first."""
-        return certificate_of(self._solver, self)
+        with doing("the proof of the answers"):
+            return certificate_of(self._solver, self)
 
 
-def solve(model: ModelOrPath) -> Answers:
+def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values | None = None) -> Answers:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
+    Args:
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     solver, found, wrong = _Solver(model), {}, []
     for name, output in model.outputs.items():
         try:
-            found[name] = solver.answer(output)
+            with doing(f"the output '{name}'"):
+                found[name] = solver.answer(output)
         except ModelError as error:
             wrong.append(error)
             found[name] = _unanswered(output, error)
@@ -131,7 +139,7 @@ class _Solver:
             return _unanswered(output, error)
 
     def _answer(self, output: Output) -> Answer:
-        if any(call.name in LINEARIZED for call in output.value.calls):
+        if asks_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:
             return self._at(output)
@@ -140,9 +148,6 @@ class _Solver:
         if self.is_of_the_instant(output):
             return self._of_the_instant(output)
         return self._of_state(output)
-
-    def _in_unit(self, scalar: Scalar, output: Output) -> Scalar:
-        return scalar if output.unit is None else output.unit.from_si(scalar, self.phase.system.scope.graph.pi)
 
     # -- at the one instant that [given] speaks of -----------------------------------------------
 
@@ -166,9 +171,7 @@ class _Solver:
 
     def _of_the_instant(self, output: Output) -> Answer:
         scalar = self.snapshot.value(output.value)
-        if output.unit is not None:
-            scalar = output.unit.from_si(scalar, self.snapshot.system.scope.graph.pi)
-        found = self._started(self.snapshot.simple(scalar), "velocities under the ties")
+        found = self._started(self.snapshot.simple(scalar), "velocities under the ties", output)
         return found if self.snapshot.exact else replace(found, exact=None)
 
     # -- of the linearized system ------------------------------------------------------------------
@@ -186,7 +189,7 @@ class _Solver:
 
         def value(call: Call) -> Scalar:
             nonlocal exact
-            if call.name not in LINEARIZED:
+            if FUNCTIONS[call.name].source != SMALL_MOTIONS:
                 raise DerivationError(
                     f"'{call}' is a function of the state, and stands beside the linearized system",
                     mend="ask it in an output of its own",
@@ -196,7 +199,7 @@ class _Solver:
             return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
 
         scalar = output.value.evaluate(scope.names, value)
-        found = self._started(self.phase.simple(self._in_unit(scalar, output)), "small motions")
+        found = self._started(self.phase.simple(scalar), SMALL_MOTIONS, output)
         return found if exact else replace(found, exact=None)
 
     # -- functions of the state, and of the configuration ---------------------------------------
@@ -208,7 +211,7 @@ class _Solver:
         method = phase.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         if self._not_at_rest:
             raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
-        answer = self._regular(self._started(phase.simple(self._in_unit(scalar, output)), method), output)
+        answer = self._regular(self._started(phase.simple(scalar), method, output), output)
         failure = self.motions[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
@@ -255,33 +258,34 @@ class _Solver:
         scalar = phase.of_state(output.value)
         if not depends_on(scalar, phase.system.symbols.u):
             method = phase.method_for(output.value) or "kinematics"
-            return self._started(phase.simple(self._in_unit(scalar, output)), method)
+            return self._started(phase.simple(scalar), method, output)
         if not motion.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
-        rates = rates_of(phase.system, phase.assembly, motion.start, accelerations=phase.accelerations)
+        rates = rates_of(phase.equations, motion.start, accelerations=phase.accelerations)
         if rates is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
                 mend="ask it at an instant: `at`",
             )
         (scalar,) = substituted((scalar,), rates)
-        return self._started(phase.simple(self._in_unit(scalar, output)), "energy theorem")
+        return self._started(phase.simple(scalar), "energy theorem", output)
 
-    def _started(self, scalar: Scalar, method: str) -> Answer:
-        """The text, and the value at the start."""
+    def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
+        """The text, and the value at the start in the output's unit."""
         exact = readable_text(scalar)
         message = None if exact is not None else f"the exact form is longer than {LONGEST_RESULT} characters"
         try:
-            return _valued(Answer(exact, None, "", method, message), self._at_start(scalar), "at the start")
+            return _valued(Answer(exact, None, "", method, message), self._at_start(scalar, output), "at the start")
         except MissingValues as error:
             return Answer(exact, None, "", method, error.what)
 
-    def _at_start(self, scalar: Scalar) -> float:
-        """The value at the start; what it does not depend on may be missing.
+    def _at_start(self, quantity: Scalar, output: Output) -> float:
+        """The value at the start in the output's unit; what it does not depend on may be missing.
 
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
+        scalar = _in_unit(quantity, output)
         known: dict[str, Scalar | float] = {x.name: v for x, v in self._parameters.items()}
         names = {x.name for x in symbols_of((scalar,))}
         if names <= known.keys():
@@ -323,10 +327,10 @@ class _Solver:
             found, method = self._constant(moment, output), "constant of motion"
         if found is None:
             return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
-        exact = phase.simple(self._in_unit(found, output))
+        exact = phase.simple(found)
         text = readable_text(exact)
         try:
-            return _valued(Answer(text, None, "", method), self._at_start(exact), "at the instant")
+            return _valued(Answer(text, None, "", method), self._at_start(exact, output), "at the instant")
         except MissingValues as error:
             return Answer(text, None, "", method, error.what)
 
@@ -355,7 +359,7 @@ class _Solver:
         if moment.phase is not phase or not motion.start:
             return None
         asked = phase.eliminated(phase.raw(output.value))
-        if not stay_constant(phase.system, phase.assembly, (asked,))[0]:
+        if not stay_constant(phase.equations, (asked,))[0]:
             return None
         return substituted((asked,), motion.start)[0]
 
@@ -375,6 +379,15 @@ class _Solver:
         phase = moment.phase
         value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
+
+
+def _in_unit(quantity: Scalar, output: Output) -> Scalar:
+    """How often the output's unit goes into a quantity; exact as this is."""
+    if output.unit is None:
+        return quantity
+    graph = quantity.graph if isinstance(quantity, Node) else Graph()
+    found: Scalar = output.unit.from_si(quantity, graph.pi)
+    return found
 
 
 def _unit(output: Output) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.loads_at_rest import holding_of
@@ -68,7 +67,7 @@ def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping
     gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
     if not unknown or not gaps or not numbers or len(gaps) < len(unknown) == len(system.symbols.q):
         return dict(known)  # nothing to begin with
-    located = Located({**parameters_of(phase), **numbers}, phase.positive)
+    located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
     return {**known, **places_of(equations, unknown, located)}
 
@@ -88,12 +87,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     equilibria = all_equilibria(system, guess)
     place = equilibria.nearest()
     system = place.statics.system
-    if pulls := place.pulling:
-        raise DerivationError(
-            f"'{pulls[0]}' would have to pull where the other forces balance",
-            f"constraints.{pulls[0]}",
-            "without it the system rests elsewhere",
-        )
+    place.refuse_pulling()
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}
     numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from random import Random
 
-from eomgen.errors import EomgenError, RunFailed
+from eomgen.errors import DerivationError, EomgenError, RunFailed
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.first_integrals.closed_instant import ClosedInstant
 from eomgen.model.values import exact_parameters
@@ -73,7 +73,7 @@ class _Search:
 
     def first(self, start: State, values: State) -> StateAtInstant:
         """The instant at the parameters' values."""
-        equations = (self.phase.system, self.phase.assembly, self.accelerations)
+        equations = (self.phase.equations, self.accelerations)
         numbers, method = FirstTime(*equations, self.condition, self.start, start, values).located()
         exact, way = self.closed(numbers, values)
         return StateAtInstant(self.phase, exact, numbers, way or method)
@@ -93,7 +93,7 @@ class _Search:
                 numbers = evaluate(tuple(self.start.values()), values, FLOAT)
                 start = {self.phase.system.symbols.t: 0.0, **dict(zip(self.start, map(float, numbers), strict=True))}
                 return replace(self.first(start, values), numbers={})
-            except EomgenError as error:
+            except (RunFailed, DerivationError) as error:
                 reason = error
         tried = "at the values tried for parameters without one"
         raise RunFailed(f"{reason.what} ({tried})", mend="give the parameters values")
@@ -104,9 +104,9 @@ class _Search:
         moving = {*symbols.q, *symbols.u}
         if not moving <= self.start.keys():
             return {}, ""
-        positive = self.phase.positive | {q for q in symbols.q if numbers[q] > 0}
+        positive = self.phase.system.scope.positive | {q for q in symbols.q if numbers[q] > 0}
         located = Located({**values, **numbers}, positive)
-        equations = (self.phase.system, self.phase.assembly, self.accelerations)
+        equations = (self.phase.equations, self.accelerations)
         closed = ClosedInstant(*equations, self.condition, self.start, located)
         by_time = closed.by_laws()
         if moving <= by_time.keys() or not depends_on(self.condition, moving):

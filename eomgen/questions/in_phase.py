@@ -16,22 +16,19 @@ from typing import Any
 from eomgen.codegen.solved_equations import accelerations_and_multipliers
 from eomgen.errors import MissingValues
 from eomgen.mechanics.balance.balance_solution import values_at_a_state
-from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.balance.unknown_loads import still
 from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
-from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
-from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
-from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.mechanics.masses.inertia_about import FUNCTIONS as OF_MASSES
-from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
+from eomgen.mechanics.instant.outputs import Quantities, asks_of
+from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
 from eomgen.symbolic.exact.normal_form import legible, readable_all
@@ -64,7 +61,7 @@ class PhaseEquations:
         return self.system.scope.model
 
     @cached_property
-    def assembly(self) -> Assembly:
+    def equations(self) -> EquationsOfMotion:
         """The equations of motion, friction included.
 
         Raises:
@@ -72,19 +69,14 @@ class PhaseEquations:
             DerivationError: a force is unknown.
         """
         refuse_motion(self.model)
-        assembly = with_friction(self.system, recursive.assembled_by_recursion(self.system))
-        refuse_massless(self.system, assembly)
-        return assembly
-
-    @cached_property
-    def positive(self) -> frozenset[Node]:
-        """The parameters that stand for positive numbers: declared so, or given so."""
-        return positive_parameters(self.system.scope)
+        equations = equations_of_motion(self.system)
+        refuse_massless(equations)
+        return equations
 
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
         """Accelerations and multipliers as functions of q, u, t and inputs."""
-        return accelerations_and_multipliers(self.system, self.assembly)
+        return accelerations_and_multipliers(self.equations)
 
     @property
     def accelerations(self) -> ScalarRow:
@@ -93,7 +85,7 @@ class PhaseEquations:
     @cached_property
     def moves_by_time(self) -> bool:
         """Whether time stands in the equations of motion."""
-        e, t = self.assembly, (self.system.symbols.t,)
+        e, t = self.equations, (self.system.symbols.t,)
         entries = (x for row in (*e.M, *e.J) for x in row)
         inputs = (self.system.inputs[name] for name in self.system.symbols.inputs)
         return any(depends_on(x, t) for x in (*entries, *e.forcing, *e.gamma, *inputs))
@@ -146,7 +138,7 @@ class PhaseEquations:
         """A scalar in its most readable form; as it came where multiplying out made it longer still."""
         known = self._legible
         if scalar not in known:
-            found = legible(scalar, Work.ANSWER, self.positive, LONG)
+            found = legible(scalar, Work.ANSWER, self.system.scope.positive, LONG)
             known |= {scalar: found, found: found}
         return known[scalar]
 
@@ -220,30 +212,30 @@ class PhaseEquations:
     def method_for(self, formula: Expression) -> str:
         """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
-        if unknown or any(call.name in ASKING_REACTIONS for call in formula.calls):
-            return "balance of the bodies"
+        if unknown or asks_of(formula, BALANCE):
+            return BALANCE
         if self.needs_equations(formula):
             return "equations of motion"
-        return "distribution of mass" if any(call.name in OF_MASSES for call in formula.calls) else ""
+        return MASSES if asks_of(formula, MASSES) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
         """Whether accelerations, multipliers or reactions stand in the formula."""
-        if any(call.name in ASKING_REACTIONS for call in formula.calls):
+        if asks_of(formula, BALANCE):
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 
     def _unknowns_at(self, state: Mapping[Node, Any], readable: bool) -> dict[Node, Scalar]:
         """Accelerations and multipliers at a state: the equations solved there."""
-        symbols, assembly = self.system.symbols, self.assembly
-        if assembly.friction:
+        symbols, equations = self.system.symbols, self.equations
+        if equations.friction:
             values = substituted(tuple(self.unknowns.values()), state)
             return dict(zip(self.unknowns, (self.simple(x) if readable else x for x in values), strict=True))
         kept = regular_rows(self.system)
-        rows, right = bordered_rows(assembly, kept)
+        rows, right = bordered_rows(equations, kept)
         entries = substituted([x for row in rows for x in row.values()], state)
         needed = substituted(right, state)
         if readable:
-            entries, needed = (readable_all(x, Work.ANSWER, self.positive) for x in (entries, needed))
+            entries, needed = (readable_all(x, Work.ANSWER, self.system.scope.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
         solution = general_solution(LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)))
@@ -270,12 +262,8 @@ def start_of(phase: PhaseEquations, *, at_rest: bool) -> dict[Node, Scalar]:
     Args:
         at_rest: all speeds are 0, whatever the model says.
     """
-    scope, model = phase.system.scope, phase.model
-    sought = set(fixed_by_position(phase.system))
-    start: dict[Node, Scalar] = {scope.symbols.t: 0}
-    for q in scope.symbols.q:
-        if q not in sought:
-            start[q] = start_value(scope, model.coordinates[q.name])
-    start = with_unit_quaternions(scope, start)
+    scope, sought = phase.system.scope, set(fixed_by_position(phase.system))
+    given = {scope.symbols.t: 0} | start_values(scope, (q for q in scope.symbols.q if q not in sought))
+    start = with_unit_quaternions(scope, given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(phase.system)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))

@@ -7,14 +7,14 @@ phase is followed in numbers; the instants between are then sought in closed for
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from eomgen.codegen.rhs import parameter_vector
-from eomgen.errors import EomgenError, MissingValues, RunFailed
+from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import system_of
@@ -27,10 +27,12 @@ from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, 
 from eomgen.questions.first_instant import closed_form, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.simulation.configuration import by_the_law, has_phases
-from eomgen.simulation.history import PassedPhase, history
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
+from eomgen.simulation.motion import Plan, through
+from eomgen.simulation.phase_change import PhaseStart, at_start
 from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -55,20 +57,20 @@ class MotionFromStart:
     # -- the start -------------------------------------------------------------------------------
 
     @cached_property
-    def course(self) -> Course | None:
+    def models(self) -> PhaseModels | None:
         """The phases of a model that has any, and values for its parameters; else None."""
         if not has_phases(self.model):
             return None
         try:
-            return course_of(self.model, parameter_vector(self.model))
+            return PhaseModels(self.model, parameter_vector(self.model), "numpy")
         except MissingValues:
             return None
 
     @cached_property
     def _first(self) -> PhaseStart:
         """Where the phases begin."""
-        assert self.course is not None
-        return at_start(self.course, 0.0, None, self._start_rates)
+        assert self.models is not None
+        return at_start(self.models, 0.0, None, self._start_rates)
 
     @property
     def _start_rates(self) -> dict[str, float] | None:
@@ -83,14 +85,14 @@ class MotionFromStart:
         """The first phase: contacts as they are at the start; bodies without coordinates rest on theirs."""
         if not self.model.coordinates:
             return phase_equations_of(self.model, modes_at_rest(self.model))
-        if self.course is None:
+        if self.models is None:
             return phase_equations_of(self.model)
-        return PhaseEquations(self.course.phase_models.of(by_the_law(self.model, self._first.configuration)).system)
+        return PhaseEquations(self.models.of(by_the_law(self.model, self._first.configuration)).system)
 
     @property
     def failure(self) -> str:
         """Why no phase begins at the start; "" where one does."""
-        return "" if self.course is None or not self.model.coordinates else self._first.failure
+        return "" if self.models is None or not self.model.coordinates else self._first.failure
 
     @cached_property
     def numbers(self) -> dict[Node, float]:
@@ -134,7 +136,7 @@ class MotionFromStart:
         if asked not in self._moments:
             try:
                 self._moments[asked] = self._until(condition, side)
-            except EomgenError as error:
+            except (RunFailed, DerivationError) as error:
                 self._moments[asked] = error
         found = self._moments[asked]
         if isinstance(found, EomgenError):
@@ -149,9 +151,9 @@ class MotionFromStart:
     def _until(self, condition: WrittenEquation, side: str | None) -> StateAtInstant:
         if self._is_start(condition):
             return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
-        if self.course is None or self._starts_in_balance(self.phase):
+        if self.models is None or self._starts_in_balance(self.phase):
             return self._within(self.phase, condition, self.start, self.numbers)
-        return self._through(self._passages(condition), side)
+        return self._through(self._runs(condition), condition, side)
 
     def _is_start(self, condition: WrittenEquation) -> bool:
         """Whether an instant is asked for by the time t = 0.
@@ -180,7 +182,7 @@ class MotionFromStart:
         """In one phase."""
         moment = reached(phase, _difference(phase, condition), start, numbers)
         moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
-        if self.course is not None:
+        if self.models is not None:
             self._refuse_ended(moment)
         return moment
 
@@ -197,8 +199,8 @@ class MotionFromStart:
 
     @property
     def _numeric_first(self) -> PhaseModel:
-        assert self.course is not None
-        return self.course.phase_models.of(self._first.configuration)
+        assert self.models is not None
+        return self.models.of(self._first.configuration)
 
     def _refuse_ended(self, moment: StateAtInstant) -> None:
         """Refuse an instant that a motion from an unstable rest would reach with contacts that have ended before.
@@ -218,52 +220,59 @@ class MotionFromStart:
 
     # -- through several phases -------------------------------------------------------------------
 
-    def _passages(self, condition: WrittenEquation) -> tuple[PassedPhase, ...]:
+    def _runs(self, condition: WrittenEquation) -> list[PhaseRun]:
         """The phases up to the one in which the condition is met.
 
         Raises:
             RunFailed: it is not met.
         """
-        p = parameter_vector(self.model)
+        assert self.models is not None
 
         def until(phase: PhaseModel) -> Scalar:
             return _difference(PhaseEquations(phase.system), condition)
 
         for horizon in HORIZONS:
-            found = history(self.model, p, self._start_rates, until=until, time=horizon, how=FINE)
-            if found[-1].kind == "condition":
-                return found
-            if found[-1].kind == "failure":
-                raise RunFailed(f"'{condition.text}' is not met before the run ended: {found[-1].message}")
+            runs = list(through(self.models, self._first, Plan(horizon, FINE, None, until)))
+            if runs[-1].is_met:
+                return runs
+            if runs[-1].run.status != "finished":
+                raise RunFailed(f"'{condition.text}' is not met before the run ended: {runs[-1].run.message}")
         raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
 
-    def _through(self, passages: tuple[PassedPhase, ...], side: str | None) -> StateAtInstant:
+    def _through(self, runs: Sequence[PhaseRun], condition: WrittenEquation, side: str | None) -> StateAtInstant:
         """The end of the last phase, every end before it sought in closed form."""
         moment = StateAtInstant(self.phase, self.start, {}, "")
-        for k, passage in enumerate(passages):
-            phase = PhaseEquations(passage.phase.system)
-            exact = {} if k and _jumps(passages[k - 1].end, passage.start) else carried(moment, phase)
-            moment = _end_of(phase, passage, exact)
-        after = passages[-1].after
+        for k, run in enumerate(runs):
+            phase = PhaseEquations(run.phase.system)
+            exact = {} if k and _jumps(runs[k - 1].end, run.here.values) else carried(moment, phase)
+            ended_by = _difference(phase, condition) if run.bound is None else run.bound.value
+            moment = _end_of(phase, run, ended_by, exact)
+        after = runs[-1].after
         if side != "after" or after is None:
             return moment
-        following, values = after
-        phase = PhaseEquations(following.system)
-        exact = {} if _jumps(passages[-1].end, values) else carried(moment, phase)
-        return StateAtInstant(phase, exact, _numbers(phase, passages[-1].t_1, values), moment.method)
+        assert self.models is not None
+        phase = PhaseEquations(self.models.of(after.configuration).system)
+        exact = {} if _jumps(runs[-1].end, after.values) else carried(moment, phase)
+        return StateAtInstant(phase, exact, _numbers(phase, after.t, after.values), moment.method)
 
 
-def _end_of(phase: PhaseEquations, passage: PassedPhase, start: Mapping[Node, Scalar]) -> StateAtInstant:
-    """The end of a phase: in numbers as it was run, exact where that agrees."""
-    numbers = _numbers(phase, passage.t_1, passage.end)
+def _end_of(
+    phase: PhaseEquations, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]
+) -> StateAtInstant:
+    """The end of a phase: in numbers as it was run, exact where that agrees.
+
+    Args:
+        ended_by: what became zero; None: a slack without a formula.
+    """
+    numbers = _numbers(phase, run.run.end, run.end)
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
-    if not start or passage.value is None:
+    if not start or ended_by is None:
         return by_time
     try:
-        exact, way = closed_form(phase, phase.eliminated(passage.value), start, numbers)
-    except EomgenError:
+        exact, way = closed_form(phase, phase.eliminated(ended_by), start, numbers)
+    except (RunFailed, DerivationError):
         return by_time
-    located = Located({**parameters_of(phase), **numbers}, phase.positive)
+    located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
     exact = {node: x for node, x in exact.items() if located.agrees(x, node)}
     return replace(by_time, exact=placed(phase, exact, numbers), method=way or by_time.method)
 

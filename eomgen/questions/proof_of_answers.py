@@ -18,15 +18,18 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.errors import DerivationError, EomgenError, RunFailed
+from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.mechanics.instant.outputs import COMPONENTS, LINEARIZED
+from eomgen.mechanics.instant.outputs import asks_of
 from eomgen.model.fields import AtRest
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, off_by, read_back
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.second_definitions import second_definition
 from eomgen.proof.tally import Tally
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
@@ -37,7 +40,6 @@ from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
-from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.sure_numbers import number_of
@@ -86,8 +88,8 @@ class _Proof:
         if not phase.system.symbols.u or not self.asked:
             return ()
         try:
-            return certify(phase.system, phase.assembly).checks
-        except EomgenError:
+            return certify(phase.equations).checks
+        except (ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
             return ()
 
     # -- what is printed ---------------------------------------------------------------------------
@@ -95,17 +97,17 @@ class _Proof:
     def texts(self) -> Iterator[Check]:
         """The exact text, read back by our grammar, has the number beside it."""
         tally = Tally("exact texts, read back, give the numbers", "our grammar, the text alone, sure digits")
-        for name, (_, found) in self.asked.items():
+        for name, (output, found) in self.asked.items():
             if found.exact is not None and found.value is not None:
-                tally.add(name, partial(self._read_back, found))
+                tally.add(name, partial(self._read_back, output, found))
         return tally.checks()
 
-    def _read_back(self, found: Quantity) -> str:
+    def _read_back(self, output: Output, found: Quantity) -> str:
         phase = self.solver.motions[False].phase
         number = number_of(read_back(phase.system, found.exact or ""), self._start_values)
         if math.isnan(number):
             raise NoValue("the text holds what has no value at the start")
-        return differing(found.value or 0.0, number)
+        return differing(found.value or 0.0, _in_unit(number, output))
 
     @cached_property
     def _start_values(self) -> dict[Node, Scalar | float]:
@@ -129,16 +131,16 @@ class _Proof:
         return iter((*tally.checks(), *self._differences()))
 
     def _differences(self) -> Iterator[Check]:
-        """What outputs call velocities and accelerations are the rates of places and velocities."""
-        tally = Tally("velocities and accelerations are the rates of places", "differences at 50 digits")
+        """What a function of the motion is worth is what its second definition says."""
+        tally = Tally("functions of the motion hold by their second definitions", "differences of poses, particles")
         for output, found in self.asked.values():
-            calls = [c for c in output.value.calls if COMPONENTS.get(c.name, (0, 0))[0] and len(c.args) == 1]
+            calls = [call for call in output.value.calls if FUNCTIONS[call.name].second is not None]
             if found.value is None or (output.from_ is not None and output.at is None) or not calls:
                 continue
-            with suppress(EomgenError):  # what is known of no state stands in the check of the numbers
+            with suppress(RunFailed, ModelError, DerivationError):  # of no state: said in the check of the numbers
                 state = self._state_of(output)
                 for call in calls:
-                    tally.add(str(call), partial(_rate_of_place, state, call))
+                    tally.add(str(call), partial(second_definition, state, call))
         return tally.checks()
 
     def _against_state(self, output: Output, found: Quantity) -> str:
@@ -171,7 +173,7 @@ class _Proof:
 
     def _refuse_other(self, output: Output) -> None:
         """Raises DerivationError for what is of no state of the motion."""
-        if any(call.name in LINEARIZED for call in output.value.calls):
+        if asks_of(output.value, SMALL_MOTIONS):
             raise DerivationError("it is of the linearized system: `eomgen linearize` proves it")
         if output.at is None and self.solver.is_of_the_instant(output):
             raise DerivationError("it is of one instant that no motion leads to: `eomgen kinematics` proves it")
@@ -188,7 +190,7 @@ class _Proof:
         key = id(phase), tuple(numbers.values())
         if key not in self._states:
             state = {phase.system.symbols.t: 0.0, **numbers}
-            self._states[key] = NumericState(phase.system, phase.assembly, known_exactly(phase.system.scope), state)
+            self._states[key] = NumericState(phase.equations, known_exactly(phase.system.scope), state)
         return self._states[key]
 
     @cached_property
@@ -217,7 +219,7 @@ class _Proof:
         motion = self.solver.motions[output.from_ == "rest"]
         moment = self._moment(output)
         assert moment is not None
-        if motion.course is not None:
+        if motion.models is not None:
             raise DerivationError("the motion has phases, and its instants are those of the run in time itself")
         t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
         if not (math.isfinite(t) and motion.numbers):
@@ -255,7 +257,7 @@ class _Proof:
             raise RunFailed("the place is not known in numbers")
         phase = moment.phase
         state = self._state(phase, moment.numbers)
-        numbers = PhaseMotion(phase.system, phase.assembly).numbers(TriedState(0.0, state.x, state.p))
+        numbers = PhaseMotion(phase.equations).numbers(TriedState(0.0, state.x, state.p))
         left, where = numbers.left(np.zeros(len(state.x)))
         return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
 
@@ -281,18 +283,13 @@ class _Proof:
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
             right = _in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
-            wrong = differing(number_of(scalar, here), right, CARRIED) and off_by(
-                number_of(scalar, here), right, [_in_unit(near.worth(output.value), output) for near in state.beside()]
+            told = _in_unit(number_of(scalar, here), output)
+            wrong = differing(told, right, CARRIED) and off_by(
+                told, right, [_in_unit(near.worth(output.value), output) for near in state.beside()]
             )
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
         return ""
-
-
-def _rate_of_place(state: NumericState, call: Call) -> str:
-    """That a velocity or an acceleration is not what differences say, or ""."""
-    found, right = state.by_differences(call)
-    return differing(found, right)
 
 
 def _in_unit(value: float, output: Output) -> float:
@@ -303,7 +300,7 @@ def _start(motion: MotionFromStart) -> dict[Node, float]:
     """t, q and u at the start; {} where they are not known."""
     try:
         return motion.numbers
-    except EomgenError:
+    except (ModelError, DerivationError):
         return {}
 
 
@@ -320,9 +317,9 @@ def _run(motion: MotionFromStart, time: float, samples: int | None = None) -> Tr
         RunFailed: it does not get there.
     """
     phase, p = motion.phase, _parameters(motion)
-    system, assembly, symbols = phase.system, phase.assembly, phase.system.symbols
+    system, equations, symbols = phase.system, phase.equations, phase.system.symbols
     x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
-    rhs = compiled(right_hand_side(with_accelerations(system, assembly), system.inputs), "numpy")
+    rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
     run = integrate(
         rhs,
         time=time,
@@ -332,7 +329,7 @@ def _run(motion: MotionFromStart, time: float, samples: int | None = None) -> Tr
         atol=FINE_RUN,
         samples=samples,
         projection=projection_of(system, p, "numpy"),
-        nearness=nearness_of(system, assembly, p, system),
+        nearness=nearness_of(equations, p, system),
         most_steps=STEPS,
     )
     if not run.ok:

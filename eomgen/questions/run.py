@@ -14,19 +14,23 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.proof import motion
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.contact_phases import changes_follow_impulses, contacts_do_as_told
 from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
-from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.integrator import Run, Stepping
 from eomgen.simulation.joined import joined, thinned, with_reactions
 from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import Course, PhaseStart, at_start, course_of
-from eomgen.simulation.phase_run import condition_of
+from eomgen.simulation.phase_change import PhaseStart, at_start
+from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.phase_run import PhaseRun, condition_of
 from eomgen.simulation.result import Phase, Trajectory
-from eomgen.simulation.solvers import knots_of
+from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
@@ -38,32 +42,52 @@ class RunProof:
     Args:
         equations: as they were derived.
         how: the tolerances of the run.
+        models: its phases.
     """
 
     equations: Equations
     p: np.ndarray
     how: Stepping
+    models: PhaseModels
 
+    @doing("the proof of the run")
     def __call__(self, found: Trajectory) -> Certificate:
         """The proof of the equations, then that of the run."""
-        certificate = certify(self.equations.system, self.equations.graph)
+        certificate = certify(self.equations.graph)
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        promise = motion.Promise(self.how.rtol, self.how.atol, found.steps)
-        return certificate + motion.run_checks(legs, promise) + reaction_columns_hold(found, self.p)
+        projected = self.how.stabilization == "projection" and self.how.every is None
+        promise = motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
+        certificate += motion.run_checks(legs, promise)
+        return certificate + reaction_columns_hold(found, self.p) + self._contacts(found)
+
+    def _contacts(self, found: Trajectory) -> Iterator[Check]:
+        """What contacts do in the phases of a run, and between them."""
+        seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
+        yield from contacts_do_as_told(seen)
+        if len(seen) > 1:
+            yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
         """The states that a phase went through, none of them after the run was cut."""
-        if phase.track is None or not len(found.t):
+        track, phased = _until(phase, found.t).track, phase.model
+        if track is None:
             return
-        phased = phase.model
-        system, assembly, rhs = phased.system, phased.assembly, phased.rhs
-        t, x = phase.track
-        here = t <= max(found.t[-1], phase.start)
-        inner = np.ascontiguousarray(x[here, : len(rhs.coordinates) + len(rhs.speeds)])
+        t, x = track
         pulled = self.how.stabilization == "baumgarte"
-        yield motion.Leg(system, assembly, self.p, rhs, t[here], inner, found.passages, pulled)
+        rhs, inner = phased.functions.rhs, phased.functions.inner(x)
+        yield motion.Leg(phased.equations, self.p, rhs, t, inner, found.carried, pulled)
 
 
+def _until(phase: Phase, t: np.ndarray) -> Phase:
+    """A phase without the states after the run was cut."""
+    if phase.track is None or not len(t):
+        return replace(phase, track=None)
+    times, states = phase.track
+    here = times <= max(t[-1], phase.start)
+    return replace(phase, track=(times[here], states[here]))
+
+
+@doing("the motion in time")
 def run(
     equations: Equations,
     *,
@@ -73,7 +97,7 @@ def run(
     target: str | None = None,
     samples: int | Sequence[float] | None = None,
     how: Stepping | None = None,
-    until: str | None = None,
+    until: WrittenEquation | str | None = None,
 ) -> Trajectory:
     """The motion by equations that are derived already.
 
@@ -94,19 +118,46 @@ def run(
     refuse_bad_run(0.0, time, how)
     _refuse_given(model, start or {})
     pulled = how.rates if how.stabilization == "baumgarte" else None
-    course = course_of(model, p, target, pulled, (equations.system, equations.graph))
-    here = at_start(course, 0.0, parameters, start)
-    _refuse_fork_at_rest(course, here)
+    models = PhaseModels(model, p, target, pulled, equations.graph)
+    here = at_start(models, 0.0, parameters, start)
+    _refuse_fork_at_rest(models, here)
     plan = Plan(
         time,
-        replace(how.of_one_step(), knots=knots_of(model)),
+        replace(how.of_one_step(), breakpoints=breakpoints_of(model), keeps=True),
         instants_of(samples, 0.0, time),
         None if condition is None else lambda phase: condition(phase.system),
     )
-    runs = list(through(course, here, plan))
-    found = with_reactions(_told(joined(course, runs), until), runs)
+    runs = _followed(through(models, here, plan))
+    words = until.text if isinstance(until, WrittenEquation) else until
+    found = with_reactions(_told(joined(models, runs), words), runs)
     found = replace(found, assembled="" if here.begun is None else here.begun.words)
-    return thinned(replace(found, proof=RunProof(equations, p, how)), samples)
+    return thinned(replace(found, proof=RunProof(equations, p, how, models)), samples)
+
+
+def _followed(phases: Iterator[PhaseRun]) -> list[PhaseRun]:
+    """The phases of a motion; those that there are, where somebody stops it between two of them.
+
+    Raises:
+        KeyboardInterrupt, PatienceEnded: there is none yet.
+    """
+    runs: list[PhaseRun] = []
+    try:
+        for each in phases:
+            runs.append(each)
+    except (KeyboardInterrupt, PatienceEnded) as stop:
+        if not runs:
+            raise
+        runs[-1] = replace(runs[-1], run=_cut(runs[-1].run, stop), bound=None, after=None)
+    return runs
+
+
+def _cut(run: Run, stop: BaseException) -> Run:
+    """A run as what stopped the motion after it left it."""
+    if isinstance(stop, KeyboardInterrupt):
+        return replace(run, status="interrupted", message=f"Interrupted at t = {run.end:.6g} s.")
+    keep_what_there_is()
+    message = f"Gave up at t = {run.end:.6g} s: the time to wait (--patience) is over."
+    return replace(run, status="out of patience", message=message)
 
 
 def _refuse_given(model: Model, start: Mapping[str, float]) -> None:
@@ -120,7 +171,7 @@ def _refuse_given(model: Model, start: Mapping[str, float]) -> None:
             raise UsageError(f"'{name}' starts where its `motion` says", mend="give no other start")
 
 
-def _refuse_fork_at_rest(course: Course, here: PhaseStart) -> None:
+def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     """Refuses a start at rest where branches meet, unless it stays at rest.
 
     Raises:
@@ -129,7 +180,7 @@ def _refuse_fork_at_rest(course: Course, here: PhaseStart) -> None:
     fork = None if here.begun is None else here.begun.fork
     if fork is None:
         return
-    phase = course.phase_models.of(here.configuration)
+    phase = models.of(here.configuration)
     rates, accelerations = np.split(np.abs(phase.rate(here.t, phase.state(here.values))), [len(phase.coordinates)])
     if np.max(rates, initial=0.0) <= COMPUTED and np.max(accelerations, initial=0.0) > COMPUTED:
         what = f"it starts at rest in {fork.words}: forces pull it away, on which branch nothing says"
@@ -146,10 +197,8 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
     Raises:
         UsageError: see `stabilized`.
     """
-    system = equations.system
-    return replace(
-        equations, graph=with_friction(system, stabilized(system, recursive.assembled_by_recursion(system), rates))
-    )
+    pulled = stabilized(recursive.assembled_by_recursion(equations.graph.system), rates)
+    return replace(equations, graph=with_friction(pulled))
 
 
 def _told(found: Trajectory, until: str | None) -> Trajectory:

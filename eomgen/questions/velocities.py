@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
-from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.instant.kinematic_state import KinematicState
@@ -20,15 +20,17 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Given, Model
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values, equation_typed
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.report.kinematics.result import Kinematics
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Expression, parse_equation
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
@@ -134,8 +136,8 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
         (u,) = symbols.u
         return replace(found, moving={**moving, u: u}, rate=u.name, symbol=u)
     accelerated, rounded = _with_accelerations(phase, moving, numbers)
-    assembly = phase.assembly if accelerated else None
-    return replace(found, accelerated=accelerated, rounded=rounded, assembly=assembly)
+    equations = phase.equations if accelerated else None
+    return replace(found, accelerated=accelerated, rounded=rounded, equations=equations)
 
 
 def _sees_time(phase: PhaseEquations) -> bool:
@@ -163,7 +165,7 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
             return (state if all(a in state for a in symbols.a) else {}), False
         values = {**parameters_of(phase), **numbers}
         found = [phase.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
-    except EomgenError:
+    except (ModelError, DerivationError):  # no motion goes on from there, or no numbers are known
         return {}, False
     if not all(map(isfinite, found)):
         return {}, False
@@ -174,12 +176,15 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
 # -- as a user asks for it ------------------------------------------------------------------------------
 
 
+@doing("the velocities")
 def kinematics(
     model: ModelOrPath,
     at: WrittenEquation | str | None = None,
     *,
     given: Sequence[WrittenEquation | str] = (),
     relative: Sequence[tuple[str, str]] = (),
+    parameters: Values | None = None,
+    start: Values | None = None,
 ) -> Kinematics:
     """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
 
@@ -187,21 +192,22 @@ def kinematics(
         at: the instant: an equation that is first met then; None: the start, or the one configuration.
         given: velocities besides those of the model: "omega(crank) = 2".
         relative: (point, body) pairs: the point as it is seen from the body.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         ExpressionError: a text that is no equation.
         ModelError: an equation with unknown names.
         DerivationError: nothing can move; too few or too many velocities are given.
     """
-    model = model_at(model)
-    equations = tuple(map(_equation, given))
-    state = state_of(_with_given(model, equations), None if at is None else _equation(at))
+    model = model_at(model, parameters, start)
+    equations = tuple(_equation(model, text) for text in given)
+    state = state_of(_with_given(model, equations), None if at is None else _equation(model, at))
     moves = model.given is None and not equations and bool(model.coordinates)
     kinds = Kinds(state.system, {} if state.symbol is not None else state.moving) if moves else None
     return Kinematics(state, kinds, tuple(relative))
 
 
-def _equation(text: WrittenEquation | str) -> WrittenEquation:
-    return text if isinstance(text, WrittenEquation) else WrittenEquation(*parse_equation(text), text=text)
+def _equation(model: Model, text: WrittenEquation | str) -> WrittenEquation:
+    return text if isinstance(text, WrittenEquation) else equation_typed(model, text)[0]
 
 
 def _with_given(model: Model, equations: Sequence[WrittenEquation]) -> Model:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from eomgen.errors import UsageError
+from eomgen.errors import UsageError, visible
 from eomgen.report import json_form, latex, markdown, text
 from eomgen.report.document import Document
 
@@ -18,4 +18,4 @@ def rendered(document: Document, format: str = "text") -> str:
     formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
     if format not in formats:
         raise UsageError(f"unknown format '{format}'", mend=f"one of {', '.join(formats)}")
-    return formats[format](document)
+    return visible(formats[format](document))

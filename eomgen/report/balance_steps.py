@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.mechanics.balance.balance import BodyEquation
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations import projection
+from eomgen.mechanics.formulations import derived_by
 from eomgen.model.trusses import called
 from eomgen.report import motion_steps, projection_steps
 from eomgen.report.bounded import FULL
@@ -143,10 +143,11 @@ DROPPED = Law(
 
 
 def kinetostatic_steps(
-    system: System, reader: Reader, assembly: Assembly, letters: Lettered
+    equations: EquationsOfMotion, reader: Reader, letters: Lettered
 ) -> tuple[tuple[Step, ...], EquationSteps]:
     """The free bodies and their balance, and the equations of motion that come out of it."""
-    own = projection.assembled_by_wrenches(system)
+    system = equations.system
+    own = derived_by("kinetostatic", system)
     steps = (
         motion_steps.positions_step(system, reader),
         *motion_steps.speeds_step(system, reader),
@@ -161,7 +162,7 @@ def kinetostatic_steps(
         DROPPED,
         ":",
     )
-    result = equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), words)
+    result = equations_of(equations, reader, sides_of(equations, own.M, own.c, own.Q), words)
     return (*steps, *_multipliers(system, letters)), result
 
 

@@ -1,14 +1,14 @@
-"""System, Assembly -> Document: the way to the equations of motion, step by step, as a teacher would write it."""
+"""Equations of motion -> Document: the way to the equations of motion, step by step, as a teacher would write it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
-from eomgen.mechanics.formulations import lagrange, projection
+from eomgen.mechanics.formulations import derived_by, lagrange
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import kinetostatic_steps, reactions_table_step
@@ -23,7 +23,8 @@ from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_steps import along_the_motion, letters_of, reactions_step
 from eomgen.report.reading import Reader
 from eomgen.report.setting_steps import setting_steps
-from eomgen.report.statements import Law, Step
+from eomgen.report.statements import Formula, Law, Step
+from eomgen.report.text import side_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.print.text import text_size
@@ -38,10 +39,12 @@ LAGRANGE_WITH_TIES = Law(
 )
 MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
 
+FROM_THE_START = frozenset(("data", "freedom", "coordinates", "constraints", "along", "laws"))
+"""Steps whose formulas hold on the motion from the start alone, or define what the others use."""
 SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
 
 
-def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool = False) -> Document:
+def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = False) -> Document:
     """The derivation of the equations of motion of a system.
 
     By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
@@ -49,20 +52,21 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
     What is too long to print is said to be so, with its size, unless `full`.
 
     Args:
-        assembly: the equations that a user gets; printed with named sub-expressions where the method's own are long.
+        equations: those that a user gets; printed with named sub-expressions where the method's own are long.
         full: everything is printed, however long, the long and the repeated parts with names of their own.
     """
+    system = equations.system
     model = system.scope.model
     reader = Reader(full=full, gathers=model.space == "space")
     letters = letters_of(system)
-    steps, result = _by_method(system, reader, assembly, method, letters)
-    known = method == "kinetostatic" or bool(assembly.friction)  # the table of the reactions stands further up
-    last = reactions_step(system, reader, assembly, letters, table=not known)
+    steps, result = _by_method(equations, reader, method, letters)
+    known = method == "kinetostatic" or bool(equations.friction)  # the table of the reactions stands further up
+    last = reactions_step(equations, reader, letters, table=not known)
     if method == "kinetostatic" and not isinstance(letters, str):
-        last = (*last, *along_the_motion(system, reader, assembly, letters))
-    last = (*integral_steps(system, reader, assembly), *last)
+        last = (*last, *along_the_motion(equations, reader, letters))
+    last = (*integral_steps(equations, reader), *last)
     written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
-    graph, taken = assembly.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
+    graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names
     written = with_roots_named(written, graph, taken, reader.roots)
     if full:
@@ -73,46 +77,49 @@ def derivation_of(system: System, assembly: Assembly, method: str, *, full: bool
 
 
 def _by_method(
-    system: System, reader: Reader, assembly: Assembly, method: str, letters: Lettered | str
+    equations: EquationsOfMotion, reader: Reader, method: str, letters: Lettered | str
 ) -> tuple[tuple[Step, ...], EquationSteps]:
     """The method's own steps, and its equations of motion.
 
     Raises:
         DerivationError: by "kinetostatic", where the reactions cannot carry the motion.
     """
+    system = equations.system
     if method == "kinetostatic":
         if isinstance(letters, str):
             letters = lettered(reactions_of(system.free or system), system.scope.names)  # raises what it says
-        return kinetostatic_steps(system, reader, assembly, letters)
-    steps, result = _BY_METHOD[method](system, reader, assembly)
-    if assembly.friction and not isinstance(letters, str):
+        return kinetostatic_steps(equations, reader, letters)
+    steps, result = _BY_METHOD[method](equations, reader)
+    if equations.friction and not isinstance(letters, str):
         steps = (*steps, reactions_table_step(letters))
     return steps, result
 
 
-def _lagrange(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
+def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
     """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations.
 
     Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
     """
+    system = equations.system
     if system.scope.model.speeds:
-        return _projection(system, reader, assembly)
+        return _projection(equations, reader)
     if system.free is None:
-        return _by_energies(system, reader, assembly)
-    if _is_integrable(system, assembly):
+        return _by_energies(equations, reader)
+    if _is_integrable(equations):
         momenta = energy_steps.momenta_of(system, reader, _whole(system, reader, body_energies(system.motion)))
         if sum(text_size(x) for x in (*momenta.momenta, *momenta.rates, *momenta.held)) <= SHORT:
-            return _by_energies(system, reader, assembly)
-    return _by_maggi(system, system.free, reader, assembly)
+            return _by_energies(equations, reader)
+    return _by_maggi(equations, system.free, reader)
 
 
-def _is_integrable(system: System, assembly: Assembly) -> bool:
+def _is_integrable(equations: EquationsOfMotion) -> bool:
     """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
-    _, c = lagrange.inertia_by_energies(system.motion, kinetic_energy(system.motion))
-    return equal_at_random_states(zip(c, assembly.c, strict=True)).equal
+    _, c = lagrange.inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
+    return equal_at_random_states(zip(c, equations.c, strict=True)).equal
 
 
-def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
+def _by_energies(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    system = equations.system
     energies = body_energies(system.motion)
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
@@ -127,15 +134,14 @@ def _by_energies(system: System, reader: Reader, assembly: Assembly) -> tuple[tu
     )
     if momenta.momenta:
         steps = (*steps, energy_steps.derivatives_step(system, reader, momenta))
-    sides = _lagrange_sides(assembly, momenta, forces)
-    law = LAGRANGE_WITH_TIES if assembly.J else LAGRANGE
-    return steps, equations_of(system, reader, assembly, sides, ("Lagrange's equations ", law, ":"))
+    sides = _lagrange_sides(equations, momenta, forces)
+    law = LAGRANGE_WITH_TIES if equations.J else LAGRANGE
+    return steps, equations_of(equations, reader, sides, ("Lagrange's equations ", law, ":"))
 
 
-def _by_maggi(
-    system: System, free: System, reader: Reader, assembly: Assembly
-) -> tuple[tuple[Step, ...], EquationSteps]:
+def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
     """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
+    system = equations.system
     energies = body_energies(free.motion)
     T = _whole(free, reader, energies)
     momenta = energy_steps.momenta_of(free, reader, T)
@@ -148,11 +154,11 @@ def _by_maggi(
         energy_steps.work_step(free, reader, forces),
         energy_steps.derivatives_step(free, reader, momenta),
     )
-    result = None if assembly.friction else maggi_equations(system, free, reader, assembly, momenta, forces)
+    result = None if equations.friction else maggi_equations(equations, free, reader, momenta, forces)
     if result is None:
-        own = lagrange.assembled_by_energies(system)
+        own = derived_by("lagrange", system)
         rule = ("Put together along the motions that the constraints allow, ", MAGGI, ":")
-        result = equations_of(system, reader, assembly, sides_of(assembly, own.M, own.c, own.Q), rule)
+        result = equations_of(equations, reader, sides_of(equations, own.M, own.c, own.Q), rule)
     return steps, result
 
 
@@ -164,15 +170,16 @@ def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> 
     return reader.short((total,))[0]
 
 
-def _lagrange_sides(assembly: Assembly, momenta: Momenta, forces: tuple[Scalar, ...]) -> list[Sides]:
+def _lagrange_sides(equations: EquationsOfMotion, momenta: Momenta, forces: tuple[Scalar, ...]) -> list[Sides]:
     """d/dt dT/du - N^T dT/dq = Q + J^T lam"""
-    ties = multiplier_forces(assembly)
+    ties = multiplier_forces(equations)
     rows = zip(momenta.rates, momenta.held, forces, ties, strict=True)
     return [Sides(rate - held, force + tie) for rate, held, force, tie in rows]
 
 
-def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tuple[Step, ...], EquationSteps]:
-    own = projection.assembled_by_wrenches(system)
+def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    system = equations.system
+    own = derived_by("projection", system)
     steps: tuple[Step, ...] = (
         motion_steps.positions_step(system, reader),
         *motion_steps.speeds_step(system, reader),
@@ -180,10 +187,21 @@ def _projection(system: System, reader: Reader, assembly: Assembly) -> tuple[tup
         *motion_steps.constraints_step(system, reader),
     )
     if own.Q:
-        steps = (*steps, projection_steps.balance_step(system, reader, own))
-    sides = sides_of(assembly, own.M, own.c, own.Q)
-    law = MATRICES_WITH_TIES if assembly.J else MATRICES
-    return steps, equations_of(system, reader, assembly, sides, ("The equations ", law, ":"))
+        steps = (*steps, projection_steps.balance_step(own, reader))
+    sides = sides_of(equations, own.M, own.c, own.Q)
+    law = MATRICES_WITH_TIES if equations.J else MATRICES
+    return steps, equations_of(equations, reader, sides, ("The equations ", law, ":"))
 
 
 _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
+
+
+def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
+    """(the sides of every formula that holds at any state, what is said to stay constant), as they are printed."""
+    sides = {
+        step.key: [tuple(map(side_text, s.sides)) for s in step.statements if isinstance(s, Formula)]
+        for step in document.steps
+        if step.key not in FROM_THE_START
+    }
+    constants = tuple(each[-1] for each in sides.pop("integrals", ()))
+    return tuple(each for formulas in sides.values() for each in formulas), constants

@@ -8,6 +8,7 @@ from typing import Any
 
 from eomgen.errors import Problem
 from eomgen.model.parts import Model
+from eomgen.model.replaced import Taken
 from eomgen.proof.check import Certificate
 from eomgen.report.quantity import Quantity
 from eomgen.report.statements import Equation, Lines, Meaning, Statement, Step, Table
@@ -38,6 +39,9 @@ class Document:
         failed: what is wrong with the result, or open in it; "" as it must be.
         notes: what else is worth a line on stderr.
         certificate: the proof; None where none was made.
+        interrupted: it holds what there was when somebody stopped it.
+        cautions: what is allowed in the model and hardly meant.
+        taken: what was made of values that a person typed.
     """
 
     title: str
@@ -52,6 +56,9 @@ class Document:
     failed: str = ""
     notes: tuple[str, ...] = ()
     certificate: Certificate | None = None
+    interrupted: bool = False
+    cautions: tuple[Problem, ...] = ()
+    taken: tuple[Taken, ...] = ()
 
     @property
     def nomenclature(self) -> tuple[Meaning, ...]:
@@ -83,7 +90,7 @@ class Document:
     def warnings(self) -> tuple[Problem, ...]:
         """What a user should know before the result is used."""
         unchecked = self.certificate is not None and self.certificate.ok is None
-        return (NOTHING_CHECKED,) if unchecked else ()
+        return (*self.cautions, *((NOTHING_CHECKED,) if unchecked else ()))
 
     def proven(self, certificate: Certificate | None) -> Document:
         """With its proof; None: none was asked for."""

@@ -249,8 +249,8 @@ def _springs(panel: Any, sketch: Sketch) -> None:
     """Zigzags: springs between points, and joints that slide against a stiffness."""
     motion = sketch.system.motion
     for force in sketch.system.scope.model.forces.values():
-        if force.spring_ends:
-            _spring(panel, sketch, *(sketch.position(motion.place(point)) for point in force.spring_ends))
+        if force.element is not None and force.element.spring_ends:
+            _spring(panel, sketch, *(sketch.position(motion.place(point)) for point in force.element.spring_ends))
     for link in motion.links:
         efforts = () if link.joint is None else link.joint.efforts()
         slides = all(is_zero(x) for w, _ in link.S for x in w)

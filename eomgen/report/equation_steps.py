@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.report.bounded import elsewhere
 from eomgen.report.friction_steps import friction_of
@@ -56,28 +56,28 @@ class EquationSteps:
     steps: tuple[Step, ...]
 
 
-def multiplier_forces(assembly: Assembly) -> tuple[Scalar, ...]:
+def multiplier_forces(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
     """J^T lam, one entry a speed."""
-    size = len(assembly.symbols.u)
+    size = len(equations.symbols.u)
     return tuple(
-        sum((row[k] * lam for row, lam in zip(assembly.J, assembly.symbols.lam, strict=True)), start=0)
+        sum((row[k] * lam for row, lam in zip(equations.J, equations.symbols.lam, strict=True)), start=0)
         for k in range(size)
     )
 
 
 def sides_of(
-    assembly: Assembly, M: Sequence[Sequence[Scalar]], c: Sequence[Scalar], Q: Sequence[Scalar]
+    equations: EquationsOfMotion, M: Sequence[Sequence[Scalar]], c: Sequence[Scalar], Q: Sequence[Scalar]
 ) -> list[Sides]:
     """M a + c = Q + J^T lam, row by row."""
     rows = []
-    for k, force in enumerate(multiplier_forces(assembly)):
-        inertia = sum((m * a for m, a in zip(M[k], assembly.symbols.a, strict=True)), start=c[k])
+    for k, force in enumerate(multiplier_forces(equations)):
+        inertia = sum((m * a for m, a in zip(M[k], equations.symbols.a, strict=True)), start=c[k])
         rows.append(Sides(inertia, Q[k] + force))
     return rows
 
 
 def equations_of(
-    system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
+    equations: EquationsOfMotion, reader: Reader, sides: Sequence[Sides], rule: tuple[Piece, ...]
 ) -> EquationSteps:
     """The equations of motion, divided by what is common, and the accelerations where that is short.
 
@@ -87,60 +87,60 @@ def equations_of(
     """
     if not sides:
         return EquationSteps((), (), (Step("equations", "Equations of motion", (prose("Nothing is free to move."),)),))
-    if assembly.friction:
-        friction = friction_of(system, reader, assembly)
+    if equations.friction:
+        friction = friction_of(equations, reader)
         sides = [Sides(row.left, row.right + force) for row, force in zip(sides, friction.forces, strict=True)]
-        result = _equations(system, reader, assembly, sides, rule)
+        result = _equations(equations, reader, sides, rule)
         steps = (friction.step, *result.steps, *friction.solved)
         return EquationSteps(result.equations, (*friction.definitions, *result.definitions), steps)
-    return _equations(system, reader, assembly, sides, rule)
+    return _equations(equations, reader, sides, rule)
 
 
 def _equations(
-    system: System, reader: Reader, assembly: Assembly, sides: Sequence[Sides], rule: tuple[Piece, ...]
+    equations: EquationsOfMotion, reader: Reader, sides: Sequence[Sides], rule: tuple[Piece, ...]
 ) -> EquationSteps:
-    equations = readable_equations(reader, assembly, sides)
-    if equations is not None:
-        statements = (Prose(rule), *printed(system, equations), *closing(reader, assembly))
-        steps = (Step("equations", "Equations of motion", statements), *_solved(reader, assembly, equations))
-        return EquationSteps(tuple(equations), (), steps)
-    found = _whole(reader, assembly) if reader.full else _named(reader, assembly)
+    written = readable_equations(reader, equations, sides)
+    if written is not None:
+        statements = (Prose(rule), *printed(equations.system, written), *closing(reader, equations))
+        steps = (Step("equations", "Equations of motion", statements), *_solved(reader, equations, written))
+        return EquationSteps(tuple(written), (), steps)
+    found = _whole(reader, equations) if reader.full else _named(reader, equations)
     if found is None:
-        count = operations((*(x for row in assembly.M for x in row), *assembly.forcing)).total
+        count = operations((*(x for row in equations.M for x in row), *equations.forcing)).total
         return EquationSteps((), (), (Step("equations", "Equations of motion", (Prose(rule), elsewhere(count))),))
-    equations, definitions = found
+    written, definitions = found
     statements = (
         Prose(rule),
         prose(f"{SHORTEST}{', with names for parts' if definitions else ''}:"),
         *map(Formula, definitions),
-        *printed(system, equations),
-        *closing(reader, assembly),
+        *printed(equations.system, written),
+        *closing(reader, equations),
     )
-    return EquationSteps(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
+    return EquationSteps(tuple(written), definitions, (Step("equations", "Equations of motion", statements),))
 
 
-def readable_equations(reader: Reader, assembly: Assembly, sides: Sequence[Sides]) -> list[Equation] | None:
+def readable_equations(reader: Reader, equations: EquationsOfMotion, sides: Sequence[Sides]) -> list[Equation] | None:
     """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
-    equations = []
-    for u, row in zip(assembly.symbols.u, sides, strict=True):
+    written = []
+    for u, row in zip(equations.symbols.u, sides, strict=True):
         left, right = reader.shown(row.left), reader.shown(row.right)
         if isinstance(left, Omitted) or isinstance(right, Omitted) or text_size(left) + text_size(right) > LONGEST:
             return None
-        equations.append(Equation(u, *reader.divided(left, right)))
-    return equations
+        written.append(Equation(u, *reader.divided(left, right)))
+    return written
 
 
-def _whole(reader: Reader, assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]]:
+def _whole(reader: Reader, equations: EquationsOfMotion) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]]:
     """The shortest form of the equations, no names given yet."""
-    sides = iter(_shortest_sides(reader, assembly))
-    return [Equation(u, next(sides), next(sides)) for u in assembly.symbols.u], ()
+    sides = iter(_shortest_sides(reader, equations))
+    return [Equation(u, next(sides), next(sides)) for u in equations.symbols.u], ()
 
 
-def _shortest_sides(reader: Reader, assembly: Assembly) -> tuple[Scalar, ...]:
+def _shortest_sides(reader: Reader, equations: EquationsOfMotion) -> tuple[Scalar, ...]:
     """Left and right of M a = forcing + J^T lam, row after row."""
-    rows = sides_of(assembly, assembly.M, [0] * len(assembly.M), assembly.forcing)
+    rows = sides_of(equations, equations.M, [0] * len(equations.M), equations.forcing)
     sides = [x for row in rows for x in (row.left, row.right)]
-    simple = simple_constants(sides, assembly.symbols.parameters.values())
+    simple = simple_constants(sides, equations.symbols.parameters.values())
     forms = [sides, *(_with_shorter(sides, simple, share) for share in SIMPLER)]
     return reader.with_symbols(min(forms, key=lambda form: operations(form).total))
 
@@ -151,19 +151,21 @@ def _with_shorter(sides: Sequence[Scalar], simple: Mapping[Node, Scalar], share:
     return substituted(sides, {x: found for x, found in simple.items() if operations((found,)).total <= size[x]})
 
 
-def _named(reader: Reader, assembly: Assembly) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
+def _named(
+    reader: Reader, equations: EquationsOfMotion
+) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
     """The shortest form of the equations with named sub-expressions; None where even that is too long."""
-    graph = assembly.symbols.graph
-    taken = {node.name for node in _symbols(assembly)}
-    found: Shortened | None = shortened(graph, _shortest_sides(reader, assembly), NAMED_PART, taken)
+    graph = equations.symbols.graph
+    taken = {node.name for node in _symbols(equations)}
+    found: Shortened | None = shortened(graph, _shortest_sides(reader, equations), NAMED_PART, taken)
     if found is None:
         return None
     texts = iter(found.expressions)
-    return [Equation(u, next(texts), next(texts)) for u in assembly.symbols.u], found.definitions
+    return [Equation(u, next(texts), next(texts)) for u in equations.symbols.u], found.definitions
 
 
-def _symbols(assembly: Assembly) -> tuple[Node, ...]:
-    s = assembly.symbols
+def _symbols(equations: EquationsOfMotion) -> tuple[Node, ...]:
+    s = equations.symbols
     return (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
 
 
@@ -190,36 +192,36 @@ def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
     return (*words, " and " if words else "", "divided by ", rest, " (where that is not zero)" if moving else "")
 
 
-def closing(reader: Reader, assembly: Assembly) -> list[Statement]:
+def closing(reader: Reader, equations: EquationsOfMotion) -> list[Statement]:
     """J a + gamma = 0, for each closing row."""
     rows = []
-    for row, gamma in zip(assembly.J, assembly.gamma, strict=True):
-        rows.append(sum((j * a for j, a in zip(row, assembly.symbols.a, strict=True)), start=gamma))
+    for row, gamma in zip(equations.J, equations.gamma, strict=True):
+        rows.append(sum((j * a for j, a in zip(row, equations.symbols.a, strict=True)), start=gamma))
     if not rows:
         return []
     words = "The constraints, differentiated until accelerations stand in them:"
     return [prose(words), *(Formula((reader.shown(row), 0)) for row in rows)]
 
 
-def _solved(reader: Reader, assembly: Assembly, equations: Sequence[Equation]) -> list[Step]:
+def _solved(reader: Reader, equations: EquationsOfMotion, written: Sequence[Equation]) -> list[Step]:
     """The accelerations, where there are few and their formulas short: by Cramer's rule."""
-    a = assembly.symbols.a
-    length = sum(text_size(x) for e in equations for x in (e.left, e.right))
-    if assembly.friction or assembly.J or len(equations) > SOLVED or length > SOLVED_LENGTH:
+    a = equations.symbols.a
+    length = sum(text_size(x) for e in written for x in (e.left, e.right))
+    if equations.friction or equations.J or len(written) > SOLVED or length > SOLVED_LENGTH:
         return []
     if any(depends_on(root, a) for root in reader.roots.values()):
         return []
-    determinant, numerators = _by_cramer([_in_whole_numbers(e.left, e.right) for e in equations], a)
+    determinant, numerators = _by_cramer([_in_whole_numbers(e.left, e.right) for e in written], a)
     if is_zero(determinant):
         return []
-    quotients = [_quotient(reader, assembly.symbols.graph, x, determinant) for x in numerators]
+    quotients = [_quotient(reader, equations.symbols.graph, x, determinant) for x in numerators]
     apart = len(products_of(determinant)) == 1  # each equation has its own acceleration
     if all(length_in_print(x) <= (LONGEST if apart else QUOTIENT) for x in quotients):
         return [Step("solved", "Accelerations", tuple(map(Formula, zip(a, quotients, strict=True))))]
     if max(text_size(x) for x in (*numerators, determinant)) > LONGEST // 2:
         return []
-    taken = {node.name for node in _symbols(assembly)}
-    symbol = assembly.symbols.graph.symbol("D" if "D" not in taken else next(free_names("D", taken)))
+    taken = {node.name for node in _symbols(equations)}
+    symbol = equations.symbols.graph.symbol("D" if "D" not in taken else next(free_names("D", taken)))
     formulas = [Formula((symbol, determinant))]
     formulas += [Formula((symbol * x, n)) for x, n in zip(a, numerators, strict=True)]
     words = prose("By Cramer's rule, with the determinant of the equations")

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import io
-import os
 import re
-import tempfile
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eomgen.errors import RunFailed, UsageError
+from eomgen import files
+from eomgen.errors import UsageError, visible
 from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
 
 FORMATS = (".png", ".svg", ".pdf")
@@ -54,12 +54,16 @@ class Picture:
 
         Raises:
             UsageError: another ending.
-            RunFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; what was there before is then still there.
         """
         path = Path(path)
         if path.suffix.lower() not in FORMATS:
             raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
-        self._drawn(lambda figure: _save(figure, path))
+        form = path.suffix.lower()
+        undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(form, {})
+        page = io.BytesIO()
+        self._drawn(lambda figure: figure.savefig(page, format=form[1:], dpi=150, metadata=undated))
+        files.write(path, page.getvalue())
 
     def _drawn(self, keep: Callable[[Any], object]) -> None:
         """Draw it, and keep it while the style of its numbers and letters holds."""
@@ -67,12 +71,13 @@ class Picture:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        with rc_context(STYLE):
+        with rc_context(STYLE), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph")  # of a letter that the font lacks: it is drawn as a box
             figure = Figure(figsize=self.size, layout="constrained")
             FigureCanvasAgg(figure)
             self.fill(figure)
             if self.title:
-                title = self.title.replace("$", r"\$")
+                title = visible(self.title).replace("$", r"\$")
                 figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left")
             keep(figure)
 
@@ -99,18 +104,6 @@ def halo() -> list[Any]:
     from matplotlib.patheffects import withStroke
 
     return [withStroke(linewidth=2.5, foreground="white")]
-
-
-def _save(figure: Any, path: Path) -> None:
-    """Draw aside and move into place."""
-    metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix.lower(), {})
-    try:
-        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".eomgen-") as aside:
-            made = Path(aside) / path.name
-            figure.savefig(made, dpi=150, metadata=metadata)
-            os.replace(made, path)
-    except OSError as error:
-        raise RunFailed(f"the picture cannot be written: {error.strerror or error}", str(path)) from None
 
 
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"))

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.balance.friction import Rub
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
@@ -50,14 +50,15 @@ class FrictionTerms:
     solved: tuple[Step, ...]
 
 
-def friction_of(system: System, reader: Reader, assembly: Assembly) -> FrictionTerms:
+def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
     """The friction of every contact by its normal reaction, and that by the bodies' balance."""
-    readings = readings_of(system, reader, assembly)
+    system = equations.system
+    readings = readings_of(equations, reader)
     letters = lettered(readings.ways[0], system.scope.names)
     senses = _senses(letters, system)
     forces: list[Scalar] = [0] * len(system.symbols.u)
     shown = {symbol: function(x.op, readable_value(reader, x.args[0])) for x, symbol in senses.items()}
-    definitions = [(symbol, simplest(x, Work.ENTRY, readings.positive)) for symbol, x in shown.items()]
+    definitions = [(symbol, simplest(x, Work.ENTRY, readings.system.scope.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
     for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
@@ -66,13 +67,13 @@ def friction_of(system: System, reader: Reader, assembly: Assembly) -> FrictionT
             definitions += [] if isinstance(shown_force, Omitted) else [(normal, shown_force)]
             statements.append(formula)
         else:
-            value = _normal(readings, rub.component, assembly, senses)
+            value = _normal(readings, rub.component, equations, senses)
             definitions.append((normal, value))
             statements += [Formula((normal, value)), *_along(reader, letters, rub, frictions, senses)]
         row = rub.along if rub.normals else substituted(rub.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (prose(WORDS), *statements))
-    return FrictionTerms(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, assembly))
+    return FrictionTerms(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, equations))
 
 
 def _of_round(
@@ -97,11 +98,11 @@ def _along(
     ]
 
 
-def _normal(readings: Readings, j: int, assembly: Assembly, senses: Mapping[Node, Node]) -> Scalar:
+def _normal(readings: Readings, j: int, equations: EquationsOfMotion, senses: Mapping[Node, Node]) -> Scalar:
     """A normal reaction with its accelerations, or with those of the equations of motion where that is shorter."""
     reader = readings.reader
     values = [way.value(j) for way in readings.ways]
-    accelerations = dict(zip(assembly.symbols.a, assembly.accelerations or (), strict=False))
+    accelerations = dict(zip(equations.symbols.a, equations.accelerations or (), strict=False))
     moving = [_sliding(reader, substituted((x,), accelerations)[0]) for x in values if text_size(x) <= TRIED]
     forms = readings.forms(substituted(tuple(x for x in (*values, *moving) if x is not None), senses))
     return min(forms, key=length_in_print)
@@ -121,13 +122,13 @@ def _sliding(reader: Reader, x: Scalar) -> Scalar | None:
     return x
 
 
-def _solved(reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+def _solved(reader: Reader, equations: EquationsOfMotion) -> tuple[Step, ...]:
     """The accelerations while one contact slides, where they are short."""
-    found = [_sliding(reader, x) for x in assembly.accelerations or ()]
+    found = [_sliding(reader, x) for x in equations.accelerations or ()]
     shown = [None if x is None else readable_value(reader, x) for x in found]
     if not shown or any(x is None or length_in_print(x) > LONGEST for x in shown):
         return ()
-    formulas = tuple(Formula((a, x)) for a, x in zip(assembly.symbols.a, shown, strict=True) if x is not None)
+    formulas = tuple(Formula((a, x)) for a, x in zip(equations.symbols.a, shown, strict=True) if x is not None)
     return (Step("solved", "Accelerations", (prose("While the contact slides:"), *formulas)),)
 
 

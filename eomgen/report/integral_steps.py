@@ -1,13 +1,12 @@
-"""System, Assembly -> the steps after the equations of motion: cyclic coordinates, energy, laws of motion."""
+"""Equations of motion -> the steps after the equations of motion: cyclic coordinates, energy, laws of motion."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
 
-from eomgen.errors import EomgenError
-from eomgen.mechanics.bodies.loads import start_value
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.bodies.loads import given_start
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
@@ -30,14 +29,14 @@ ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
 JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
 
 
-def integral_steps(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+def integral_steps(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     """First integrals, and laws of motion from the model's start; no step where there are none."""
-    return (*_integrals(system, reader, assembly), *_laws(system, reader, assembly))
+    return (*_integrals(equations, reader), *_laws(equations, reader))
 
 
-def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
-    symbols = assembly.symbols
-    cyclic = [each for each in momentum_integrals(system, assembly) if not depends_on(each.expression, (symbols.t,))]
+def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    symbols = equations.symbols
+    cyclic = [each for each in momentum_integrals(equations) if not depends_on(each.expression, (symbols.t,))]
     statements: list[Statement] = []
     if cyclic:
         moving = {q.name: q for q in symbols.q}
@@ -50,17 +49,17 @@ def _integrals(system: System, reader: Reader, assembly: Assembly) -> tuple[Step
         for each in (other for other in cyclic if other not in rates):
             statements.append(prose("The momentum of the speed ", speeds[each.coordinate], " stays constant:"))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
-    energies = energy_integral(system, assembly)
+    energies = energy_integral(equations)
     for energy in energies:
-        statements += _energy(reader, assembly, energy)
-    statements += _of_the_whole(system, reader, assembly, [each.expression for each in (*cyclic, *energies)])
+        statements += _energy(reader, equations, energy)
+    statements += _of_the_whole(equations, reader, [each.expression for each in (*cyclic, *energies)])
     return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
 
 
-def _of_the_whole(system: System, reader: Reader, assembly: Assembly, known: Sequence[Scalar]) -> list[Statement]:
+def _of_the_whole(equations: EquationsOfMotion, reader: Reader, known: Sequence[Scalar]) -> list[Statement]:
     """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
     statements: list[Statement] = []
-    found = momenta_of_the_whole(system, assembly, known)
+    found = momenta_of_the_whole(equations, known)
     for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
         what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
         statements.append(prose(f"The {what}, in the axes of the ground, stays constant:"))
@@ -78,13 +77,13 @@ def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
     return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:")
 
 
-def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statement]:
+def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> list[Statement]:
     """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
     law, words = ENERGY, ("The energy ", ENERGY, " stays constant")
     if energy.name == "jacobi":
         law = JACOBI
         words = ("What moves by itself does so at a steady rate, and Jacobi's integral ", JACOBI, " stays constant")
-    elif energy.expression is not assembly.T + assembly.V:
+    elif energy.expression is not equations.T + equations.V:
         law = ENERGY_AND_WORK
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
     if any(node.op == "select" for node in order((energy.expression,))):
@@ -92,13 +91,14 @@ def _energy(reader: Reader, assembly: Assembly, energy: Integral) -> list[Statem
     return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
 
 
-def _laws(system: System, reader: Reader, assembly: Assembly) -> tuple[Step, ...]:
+def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     """q(t) of the coordinates whose equations are solved in closed form."""
+    system = equations.system
     symbols = system.symbols
     start = _start(system)
     if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or start is None:
         return ()
-    accelerations = short_accelerations(system, assembly)
+    accelerations = short_accelerations(equations)
     laws = {} if accelerations is None else laws_of_motion(system, accelerations, start)
     free = {u.name.removesuffix("'") for u in symbols.u}
     found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
@@ -115,11 +115,4 @@ def _law(reader: Reader, x: Scalar) -> Scalar:
 
 def _start(system: System) -> dict[Node, Scalar] | None:
     """q and u at the start; None where a dependent coordinate is sought by the ties."""
-    scope, parts = system.scope, system.scope.model.coordinates
-    if system.free is not None:
-        return None
-    try:
-        start = {q: start_value(scope, parts[q.name]) for q in scope.symbols.q}
-    except EomgenError:
-        return None
-    return start | {u: scope.value(parts[u.name.removesuffix("'")].speed) for u in scope.symbols.u}
+    return given_start(system.scope) if system.free is None else None

@@ -18,13 +18,14 @@ name = "json"
 
 def render(document: Document) -> str:
     """The document as a JSON text."""
-    return json.dumps(as_dict(document), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+    return json.dumps(as_dict(document), indent=1, allow_nan=False) + "\n"
 
 
 def as_dict(document: Document) -> dict[str, Any]:
     """The document as plain data; of one without entries what is printed."""
     entries = document.entries() or _printed(document)
     own: dict[str, Any] = {"warnings": [each.as_dict() for each in document.warnings]} if document.title else {}
+    own |= {"taken": {each.name: each.as_dict() for each in document.taken}} if document.title else {}
     own |= {"steps": steps(document)} if document.has_heads else {}
     return {"schema_version": SCHEMA_VERSION, **_plain(entries), **own}
 

@@ -202,7 +202,8 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
 def _read_back(graph: Graph, exact: str) -> Side:
     """What a text of the grammar says, as a formula."""
     expression = parse(exact, longest=len(exact))
-    read: Scalar = expression.evaluate({name: graph.symbol(name) for name in expression.names} | {"pi": graph.pi})
+    symbols = {name: graph.symbol(name) for kind, name in expression.code if kind == "name"}  # as they stand in it
+    read: Scalar = expression.evaluate(symbols | {"pi": graph.pi})
     return read
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.report.energy_steps import Momenta
@@ -31,36 +31,37 @@ WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\math
 
 
 def maggi_equations(
-    system: System, free: System, reader: Reader, assembly: Assembly, momenta: Momenta, forces: ScalarRow
+    equations: EquationsOfMotion, free: System, reader: Reader, momenta: Momenta, forces: ScalarRow
 ) -> EquationSteps | None:
     """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
 
     Args:
         momenta, forces: of the free system, one entry a coordinate.
     """
+    system = equations.system
     N = jacobian(free_rates(system, free), system.scope.symbols.u)
     inertia = [rate - held for rate, held in zip(momenta.rates, momenta.held, strict=True)]
     columns = list(zip(*N, strict=True))
-    ties = multiplier_forces(assembly)
+    ties = multiplier_forces(equations)
     sides = [
         Sides(inner(column, inertia), inner(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
     ]
-    equations = readable_equations(reader, assembly, sides)
+    written = readable_equations(reader, equations, sides)
     followers = _followers(system, free, N)
     shown = [(symbol, reader.shown(x)) for symbol, x in followers]
-    if equations is None or any(isinstance(x, Omitted) for _, x in shown):
+    if written is None or any(isinstance(x, Omitted) for _, x in shown):
         return None
-    law = WITH_TIES if assembly.J else MAGGI
+    law = WITH_TIES if equations.J else MAGGI
     words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
     statements = (
         prose(words, law, ":"),
-        *printed(system, equations),
-        *closing(reader, assembly),
+        *printed(system, written),
+        *closing(reader, equations),
         prose("The dependent coordinates follow, their rates as above:"),
         *map(Formula, shown[len(shown) // 2 :]),
     )
     definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
-    return EquationSteps(tuple(equations), definitions, (Step("equations", "Equations of motion", statements),))
+    return EquationSteps(tuple(written), definitions, (Step("equations", "Equations of motion", statements),))
 
 
 def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:

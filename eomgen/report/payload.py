@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.model.values import exact_parameters
 from eomgen.report.equation_steps import multiplier_forces
 from eomgen.report.reaction_payload import reactions_payload
@@ -22,16 +21,16 @@ LARGEST = 16_000_000  # characters of all expressions together that are written 
 NAMED_PART = 200  # characters of a text in which long parts have names
 
 
-def equations_payload(system: System, assembly: Assembly, method: str) -> dict[str, Any]:
+def equations_payload(equations: EquationsOfMotion, method: str) -> dict[str, Any]:
     """The equations of motion as plain data, ready for JSON.
 
     Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
     would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each
     before its use.
     """
-    model, symbols = system.scope.model, assembly.symbols
-    fields = _fields(system, assembly)
-    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(assembly))
+    model, symbols = equations.system.scope.model, equations.symbols
+    fields = _fields(equations)
+    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(equations))
     rest = iter(texts)
     written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in fields.items()}
     sides = written.pop("equations")
@@ -50,7 +49,7 @@ def equations_payload(system: System, assembly: Assembly, method: str) -> dict[s
         "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
         "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
         "equations": [f"{left} = {right}" for left, right in sides],
-        **reactions_payload(system, assembly, _taken(assembly) | {name for name, _ in definitions}),
+        **reactions_payload(equations, _taken(equations) | {name for name, _ in definitions}),
     }
 
 
@@ -83,22 +82,22 @@ class Field:
         return [next(found) if there else None for there in self.present]
 
 
-def _fields(system: System, assembly: Assembly) -> dict[str, Field]:
+def _fields(equations: EquationsOfMotion) -> dict[str, Field]:
     """Every expression of the payload."""
-    gaps = tuple(gap for gap in assembly.phi if gap is not None)
+    gaps = tuple(gap for gap in equations.phi if gap is not None)
     return {
-        "kinematic_matrix": _matrix(assembly.N),
-        "kinematic_bias": Field(assembly.nu),
-        "mass_matrix": _matrix(assembly.M),
-        "forcing": Field(assembly.forcing),
-        "constraint_jacobian": _matrix(assembly.J),
-        "velocity_bias": Field(assembly.sigma),
-        "constraint_bias": Field(assembly.gamma),
-        "gaps": Field(gaps, present=tuple(gap is not None for gap in assembly.phi)),
-        "kinetic_energy": Field((assembly.T,), single=True),
-        "potential_energy": Field((assembly.V,), single=True),
-        "generalized_forces": Field(assembly.Q),
-        "equations": Field(_sides(assembly), rows=len(assembly.symbols.u)),
+        "kinematic_matrix": _matrix(equations.N),
+        "kinematic_bias": Field(equations.nu),
+        "mass_matrix": _matrix(equations.M),
+        "forcing": Field(equations.forcing),
+        "constraint_jacobian": _matrix(equations.J),
+        "velocity_bias": Field(equations.sigma),
+        "constraint_bias": Field(equations.gamma),
+        "gaps": Field(gaps, present=tuple(gap is not None for gap in equations.phi)),
+        "kinetic_energy": Field((equations.T,), single=True),
+        "potential_energy": Field((equations.V,), single=True),
+        "generalized_forces": Field(equations.Q),
+        "equations": Field(_sides(equations), rows=len(equations.symbols.u)),
     }
 
 
@@ -106,12 +105,12 @@ def _matrix(rows: Sequence[Sequence[Scalar]]) -> Field:
     return Field(tuple(x for row in rows for x in row), rows=len(rows))
 
 
-def _sides(assembly: Assembly) -> tuple[Scalar, ...]:
+def _sides(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
     """Left and right of M a + c = Q + J^T lam, row by row."""
     sides: list[Scalar] = []
-    for k, reaction in enumerate(multiplier_forces(assembly)):
-        left = sum((m * a for m, a in zip(assembly.M[k], assembly.symbols.a, strict=True)), start=assembly.c[k])
-        sides += [left, assembly.Q[k] + reaction]
+    for k, reaction in enumerate(multiplier_forces(equations)):
+        left = sum((m * a for m, a in zip(equations.M[k], equations.symbols.a, strict=True)), start=equations.c[k])
+        sides += [left, equations.Q[k] + reaction]
     return tuple(sides)
 
 
@@ -124,8 +123,8 @@ def _texts(scalars: Sequence[Scalar], taken: frozenset[str]) -> tuple[list[tuple
     return with_definitions(without_cases(scalars), NAMED_PART, taken)
 
 
-def _taken(assembly: Assembly) -> frozenset[str]:
+def _taken(equations: EquationsOfMotion) -> frozenset[str]:
     """Names that no named part may have."""
-    s = assembly.symbols
+    s = equations.symbols
     symbols: tuple[Node, ...] = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
     return frozenset(symbol.name for symbol in symbols)

@@ -10,7 +10,9 @@ import numpy as np
 
 from eomgen.report.figures import Picture, mathtext
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.units import Unit
 
+PLAIN = Unit("")
 MOST_IN_LEGEND = 12
 MOST_REACTIONS = 10  # lines in one panel
 UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
@@ -18,7 +20,7 @@ DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension
 
 
 def plot_trajectory(
-    trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, str] | None = None
+    trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, Unit] | None = None
 ) -> None:
     """Draw a trajectory into a PNG, SVG or PDF file.
 
@@ -26,10 +28,10 @@ def plot_trajectory(
         trajectory: what is drawn.
         path: where to; the ending says which.
         title: above the picture, the model's name.
-        units: of the coordinates by name; absent: none is printed.
+        units: of the coordinates by name, in which they are drawn; absent: SI, and none is printed.
     Raises:
         UsageError: another ending.
-        RunFailed: the file cannot be written; what was there before is then still there.
+        WriteFailed: the file cannot be written; what was there before is then still there.
     """
     groups = _by_unit(trajectory, units or {})
     reactions = _reactions_by_unit(trajectory)
@@ -41,8 +43,8 @@ def plot_trajectory(
             _coordinates(panel, trajectory, names, unit)
         if trajectory.energy is not None:
             _energy(panels[len(groups)], trajectory)
-        for panel, (unit, names) in zip(panels[count - len(reactions) :], reactions.items(), strict=False):
-            _reactions(panel, trajectory, names, unit)
+        for panel, (kind, alike) in zip(panels[count - len(reactions) :], reactions.items(), strict=False):
+            _reactions(panel, trajectory, alike, kind)
         panels[-1].set_xlabel("$t$ [s]")
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
@@ -50,14 +52,14 @@ def plot_trajectory(
     Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title).save(path)
 
 
-def _by_unit(trajectory: Trajectory, units: Mapping[str, str]) -> dict[str, list[str]]:
-    groups: dict[str, list[str]] = {}
+def _by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
+    groups: dict[Unit, list[str]] = {}
     for name in trajectory.coordinates:
-        groups.setdefault(units.get(name, ""), []).append(name)
+        groups.setdefault(units.get(name, PLAIN), []).append(name)
     return groups
 
 
-def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
+def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
     from matplotlib import colormaps
 
     few = len(names) <= MOST_IN_LEGEND
@@ -68,9 +70,9 @@ def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: str
     )
     labels = [f"${mathtext(name)}$" for name in names]
     for name, label, color in zip(names, labels, colors, strict=False):
-        panel.plot(trajectory.t, trajectory[name], label=label, color=color, linewidth=1.6 if few else 1.0)
+        panel.plot(trajectory.t, trajectory[name] / unit.size, label=label, color=color, linewidth=1.6 if few else 1.0)
     shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"
-    panel.set_ylabel(f"{shown} [{unit}]" if unit else shown)
+    panel.set_ylabel(f"{shown} [{unit}]" if unit.text else shown)
     if len(names) > 1 and few:
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.report.bounded import page
 from eomgen.report.motion_steps import Pair, component_pairs, is_still, spins
@@ -38,17 +38,17 @@ def twists_step(system: System, reader: Reader) -> Step:
     return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
 
 
-def balance_step(system: System, reader: Reader, assembly: Assembly) -> Step:
+def balance_step(equations: EquationsOfMotion, reader: Reader) -> Step:
     """M, c and Q: the balance of momentum of every body along the motions that the joints allow."""
-    u, q = system.symbols.u, moved_coordinates(system)
+    u, q = equations.system.symbols.u, moved_coordinates(equations.system)
     inertia: list[Pair] = [
-        (Entry("M", u[i], u[j]), assembly.M[i][j])
+        (Entry("M", u[i], u[j]), equations.M[i][j])
         for i in range(len(u))
         for j in range(i, len(u))
-        if not is_zero(assembly.M[i][j])
+        if not is_zero(equations.M[i][j])
     ]
-    inertia += [(Name("c", by=x), c) for x, c in zip(u, assembly.c, strict=True)]
-    forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, assembly.Q, strict=True)]
+    inertia += [(Name("c", by=x), c) for x, c in zip(u, equations.c, strict=True)]
+    forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, equations.Q, strict=True)]
     statements = (
         prose("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that"),
         Formula((PROJECTED,)),

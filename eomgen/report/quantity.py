@@ -12,8 +12,8 @@ class Quantity:
     """One thing that was found: exact, as a number, by which way; else what is missing.
 
     Args:
-        exact: text of the grammar with every parameter as a symbol, or None.
-        value: a number, parameters and start (or instant) put in, or None.
+        exact: text of the grammar with every parameter as a symbol, or None: an equation between quantities.
+        value: a number in the unit, parameters and start (or instant) put in, or None.
         unit: of the number; "" for SI, None where nobody names one.
         method: the way on which it was found.
         message: what is missing, or None.

@@ -9,8 +9,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import LONGEST, Reader, length_in_print, readable_value, without_cases
 from eomgen.symbolic.expression.derivative import depends_on
@@ -22,7 +21,7 @@ LARGEST = 2_000_000  # characters of all reactions together that are written out
 NAMED_PART = 200  # characters of a text in which long parts have names
 
 
-def reactions_payload(system: System, assembly: Assembly, taken: frozenset[str]) -> dict[str, Any]:
+def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> dict[str, Any]:
     """`reactions` {name: text, null where it is indeterminate}, `reaction_null_space` [{name: coefficient}, ...].
 
     Texts hold q, u, and accelerations as `theta''`. Long ones share parts, under `reaction_definitions`; where there
@@ -32,7 +31,7 @@ def reactions_payload(system: System, assembly: Assembly, taken: frozenset[str])
         taken: names that no shared part may have.
     """
     try:
-        readings = readings_of(system, Reader(), assembly)
+        readings = readings_of(equations, Reader())
         names = named_reactions(readings.ways[0].balance)
     except DerivationError as error:
         message = f"{error.what}; {error.mend}" if error.mend else error.what
@@ -49,9 +48,9 @@ def reactions_payload(system: System, assembly: Assembly, taken: frozenset[str])
     return {**found, **({"reaction_definitions": [list(pair) for pair in definitions]} if definitions else {})}
 
 
-def null_space(system: System, assembly: Assembly) -> list[dict[str, str]]:
+def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
     """What may be added to indeterminate reactions without a trace: for each free one {name: coefficient}."""
-    readings = readings_of(system, Reader(), assembly)
+    readings = readings_of(equations, Reader())
     spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
     texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
     return [{name: next(texts) for name in space} for space in spaces]
@@ -80,7 +79,7 @@ def _share(readings: Readings, names: Sequence[NamedReaction], free: int) -> dic
                 total = total + k
             elif free in shares.get(j, {}):
                 total = total - k * shares[j][free]
-        total = readable_value(readings.reader, total, readings.positive)
+        total = readable_value(readings.reader, total, readings.system.scope.positive)
         if not is_zero(total):
             found[named.name] = total
     return found
@@ -115,13 +114,13 @@ class ReactionFormula:
     message: str | None = None
 
 
-def reaction_formulas(system: System, assembly: Assembly) -> dict[str, ReactionFormula]:
+def reaction_formulas(equations: EquationsOfMotion) -> dict[str, ReactionFormula]:
     """The formula of every reaction.
 
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    readings = readings_of(system, Reader(), assembly)
+    readings = readings_of(equations, Reader())
     return {named.name: _formula(readings, named) for named in named_reactions(readings.ways[0].balance)}
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.bodies.loads import given_start
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
@@ -38,7 +38,7 @@ def letters_of(system: System) -> Lettered | str:
 
 
 def reactions_step(
-    system: System, reader: Reader, assembly: Assembly, letters: Lettered | str, *, table: bool
+    equations: EquationsOfMotion, reader: Reader, letters: Lettered | str, *, table: bool
 ) -> tuple[Step, ...]:
     """Every reaction; no step where nothing is held.
 
@@ -49,7 +49,7 @@ def reactions_step(
         return (Step("reactions", "Reactions", (prose(f"The reactions do not follow: {letters}."),)),)
     if not letters.symbols:
         return ()
-    formulas, left_out = _formulas(readings_of(system, reader, assembly, free=True), letters)
+    formulas, left_out = _formulas(readings_of(equations, reader, free=True), letters)
     shown = {formula.sides[0] for formula in formulas} | {
         symbol
         for c, symbol in zip(letters.balance.components, letters.symbols, strict=True)
@@ -106,15 +106,15 @@ def _sides(readings: Readings, j: int) -> list[Scalar]:
 # -- along the motion from the start ----------------------------------------------------------------
 
 
-def along_the_motion(system: System, reader: Reader, assembly: Assembly, letters: Lettered) -> tuple[Step, ...]:
+def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lettered) -> tuple[Step, ...]:
     """The reactions as functions of the coordinates alone, where first integrals give the speeds and that is short."""
-    if system.free is not None:
+    if equations.system.free is not None:
         return ()
-    readings, start = readings_of(system, reader, assembly), _start(system)
-    accelerations, positive = readings.accelerations, readings.positive
+    readings, start = readings_of(equations, reader), _start(equations.system)
+    accelerations, positive = readings.accelerations, readings.system.scope.positive
     if not accelerations or start is None:
         return ()
-    rates = rates_of(system, assembly, start, accelerations=tuple(accelerations.values()))
+    rates = rates_of(equations, start, accelerations=tuple(accelerations.values()))
     if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:
         return ()
     known, u = rates, tuple(rates)
@@ -143,11 +143,8 @@ def _is_clear(x: Scalar) -> bool:
 
 def _start(system: System) -> dict[Node, Scalar] | None:
     """q and u at the start as exact scalars of the parameters; None where a coordinate is driven."""
-    scope, model = system.scope, system.scope.model
-    if any(part.driven for part in model.coordinates.values()):
-        return None
-    start = {q: start_value(scope, model.coordinates[q.name]) for q in scope.symbols.q}
-    return start | {u: scope.value(model.coordinates[u.name.removesuffix("'")].speed) for u in scope.symbols.u}
+    driven = any(part.driven for part in system.scope.model.coordinates.values())
+    return None if driven else given_start(system.scope)
 
 
 # -- what is indeterminate -------------------------------------------------------------------------

@@ -12,8 +12,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Combination
-from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
@@ -45,10 +44,6 @@ class Readings:
     accelerations: Mapping[Node, Scalar]
 
     @cached_property
-    def positive(self) -> frozenset[Node]:
-        return positive_parameters(self.system.scope)
-
-    @cached_property
     def ways(self) -> tuple[Reactions, ...]:
         """Of the shown system, the one from few equations first."""
         return _ways(self.shown)
@@ -76,7 +71,7 @@ class Readings:
     def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
         """The shortest of the values after a replacement; None where all of them are long."""
         short = [
-            simplest(y, Work.ENTRY, self.positive) if not conditions_in(y) else y
+            simplest(y, Work.ENTRY, self.system.scope.positive) if not conditions_in(y) else y
             for x in values
             if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED
         ]
@@ -95,7 +90,7 @@ class Readings:
         failed: DerivationError | None = None
         for x in values:
             try:
-                found.append(readable_value(self.reader, x, self.positive))
+                found.append(readable_value(self.reader, x, self.system.scope.positive))
             except DerivationError as error:
                 failed = error
         if failed is not None and not found:
@@ -103,7 +98,7 @@ class Readings:
         return found
 
 
-def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: bool = False) -> Readings:
+def readings_of(equations: EquationsOfMotion, reader: Reader, *, free: bool = False) -> Readings:
     """The reactions of a system for a reader.
 
     Args:
@@ -111,9 +106,10 @@ def readings_of(system: System, reader: Reader, assembly: Assembly, *, free: boo
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    found = short_accelerations(system, assembly)
+    system = equations.system
+    found = short_accelerations(equations)
     long = found is None or sum(map(text_size, found)) > LONGEST
-    accelerations = {} if found is None or long else dict(zip(assembly.symbols.a, found, strict=True))
+    accelerations = {} if found is None or long else dict(zip(equations.symbols.a, found, strict=True))
     return Readings(system, shown_system(system) if free else system, reader, accelerations)
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.integrability import integrability_of
@@ -131,7 +131,7 @@ def _velocities(system: System) -> list[Statement]:
     """Which conditions on velocities are holonomic, and what these keep at zero."""
     try:
         found = integrability_of((system.free or system).ties)
-    except EomgenError:  # the ties do not close near the start: whoever needs a state says so
+    except (DerivationError, MissingValues):  # the ties do not close near the start: whoever needs a state says so
         return []
     statements: list[Statement] = []
     for row in () if found is None else found.rows:

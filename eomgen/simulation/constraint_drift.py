@@ -13,6 +13,7 @@ constraints, SIAM J. Numer. Anal. 30 (1993).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -28,9 +29,10 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import weighted, without_rounding
+from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
 
-ITERATIONS = 8
+STEPS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed
 SHORT = 400  # operations up to which a function is not worth a compiler
 ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
@@ -38,23 +40,30 @@ ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows J of some ties at a state, and what measures a change there.
+    """The rows J of some ties, and what measures a change there.
 
     Args:
-        function: (t, x, p) -> M, J, N and how far each row is open, one after the other.
+        function: (t, x, p) -> M, J, N, one after the other.
         k, n: rows and speeds.
+        resting: whether they are those of places, for which the speeds are 0.
     """
 
     function: RightHandSide
     k: int
     n: int
+    resting: bool
 
-    def change(self, t: float, x: np.ndarray, p: np.ndarray) -> np.ndarray:
-        """N ds, the least change of the state that closes the rows to first order."""
-        values, n, k = np.asarray(self.function(t, x, p)), self.n, self.k
-        ends = n * n, n * n + k * n, len(values) - k
-        M, J = values[: ends[0]].reshape(n, n), values[ends[0] : ends[1]].reshape(k, n)
-        change: np.ndarray = values[ends[1] : ends[2]].reshape(-1, n) @ least_change(M, J, -values[ends[2] :])
+    def change(self, values: np.ndarray, right: np.ndarray) -> np.ndarray:
+        """N ds with the least ds for which J ds = right.
+
+        Args:
+            values: of the function at a state.
+            right: of the rows; those that keep quaternions on their spheres come last and have none.
+        """
+        n, k = self.n, self.k
+        M, J, N = np.split(values, [n * n, n * n + k * n])
+        right = np.append(right, np.zeros(k - len(right)))
+        change: np.ndarray = N.reshape(-1, n) @ least_change(M.reshape(n, n), J.reshape(k, n), right)
         return change
 
 
@@ -100,35 +109,60 @@ class Projection:
         """
         found = on_spheres(x, self.spheres)
         enough = max(FAR * allowed, _rounding(x)) if allowed > 0 else 0.0
-        places, speeds = slice(0, self.coordinates), slice(self.coordinates, self.size)
-        if self.positions is not None:
-            found = self._improved(self.positions, t, found, places, slice(0, self.placed), enough)
-        if self.speeds is not None:
-            found = self._improved(self.speeds, t, found, speeds, slice(self.placed, None), enough)
+        for rows in (self.positions, self.speeds):
+            if rows is not None:
+                closing = Newton(enough, steps=STEPS, stalls=math.inf, share=1.0, least=rows.change)
+                sought = _Open(self, rows, t)
+                nearer = closing.root(sought, found).x
+                if sought.gap(nearer) < sought.gap(found):
+                    found = nearer
         return found, self._gap(t, found, slice(None))
 
-    def _improved(self, rows: Rows, t: float, x: np.ndarray, moved: slice, which: slice, enough: float) -> np.ndarray:
-        """Newton's method until some of the gaps are closed, or come no nearer."""
-        gap = self._gap(t, x, which)
-        for _ in range(ITERATIONS):
-            if gap <= enough:
-                break
-            state = x[: self.size] if moved.start else np.concatenate([x[moved], np.zeros(rows.n)])
-            nearer = x.copy()
-            nearer[moved] += rows.change(t, state, self.p)
-            nearer = on_spheres(nearer, self.spheres)
-            left = self._gap(t, nearer, which)
-            if not left < gap:
-                break
-            x, gap = nearer, left
-        return x
-
     def _gap(self, t: float, x: np.ndarray, which: slice) -> float:
-        return float(np.abs(self._gaps_at(t, x[: self.size])[which]).max(initial=0.0))
+        return float(np.abs(self.gaps_at(t, x[: self.size])[which]).max(initial=0.0))
 
     @cached_property
-    def _gaps_at(self) -> Callable[[float, np.ndarray], np.ndarray]:
+    def gaps_at(self) -> Callable[[float, np.ndarray], np.ndarray]:
+        """(t, x) -> phi and J u + sigma of all ties."""
         return self.gaps.at(self.p)
+
+
+@dataclass(frozen=True)
+class _Open:
+    """What is open of the ties at an instant, as Newton's method sees it: places alone, or speeds alone."""
+
+    projection: Projection
+    rows: Rows
+    t: float
+
+    @property
+    def _which(self) -> slice:
+        """Of what is open."""
+        placed = self.projection.placed
+        return slice(0, placed) if self.rows.resting else slice(placed, None)
+
+    @property
+    def _moved(self) -> slice:
+        """Of the state."""
+        q = self.projection.coordinates
+        return slice(0, q) if self.rows.resting else slice(q, self.projection.size)
+
+    def gap(self, x: np.ndarray) -> float:
+        return float(np.abs(self.left(x)).max(initial=0.0))
+
+    def left(self, x: np.ndarray) -> np.ndarray:
+        return self.projection.gaps_at(self.t, x[: self.projection.size])[self._which]
+
+    def slopes(self, x: np.ndarray) -> np.ndarray:
+        state = x[: self.projection.size].copy()
+        if self.rows.resting:
+            state = np.concatenate([x[self._moved], np.zeros(self.rows.n)])
+        return np.asarray(self.rows.function(self.t, state, self.projection.p))
+
+    def moved(self, x: np.ndarray, step: Sequence[float]) -> np.ndarray:
+        found = x.copy()
+        found[self._moved] += step
+        return np.asarray(on_spheres(found, self.projection.spheres))
 
 
 def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -169,31 +203,32 @@ def projection_of(system: System, p: np.ndarray, target: str | None = None) -> P
         len(gaps),
         spheres_of(function.program),
         function,
-        _positions(free, gaps, target) if gaps else None,
-        _rows(system, system.ties.J, _identity(len(symbols.u)), speeds, target) if closing and symbols.u else None,
+        _positions(free, target) if gaps else None,
+        _rows(system, system.ties.J, _identity(len(symbols.u)), target) if closing and symbols.u else None,
     )
 
 
-def _positions(free: System, gaps: tuple[Scalar, ...], target: str | None) -> Rows:
+def _positions(free: System, target: str | None) -> Rows:
     """The rows of the ties that have a gap, and e . de = 0 of every quaternion."""
     J = [row for row, tie in zip(free.ties.J, free.ties.closing, strict=True) if tie.gap is not None]
     q, N = free.symbols.q, free.scope.N
     for four in free.scope.quaternions:
         rows = [(e, N[q.index(e)]) for e in four]
         J.append(tuple(sum((e * row[k] for e, row in rows), start=0) for k in range(len(free.symbols.u))))
-    return _rows(free, J, N, (*gaps, *(0 for _ in free.scope.quaternions)), target)
+    return _rows(free, J, N, target, resting=True)
 
 
 def _rows(
     system: System,
     J: Sequence[Sequence[Scalar]],
     N: Sequence[Sequence[Scalar]],
-    gaps: Sequence[Scalar],
     target: str | None,
+    *,
+    resting: bool = False,
 ) -> Rows:
     M = recursive.mass(system.motion, branches_of(system.motion))
     entries = tuple(x for matrix in (M, J, N) for row in matrix for x in row)
-    return Rows(_compiled((*entries, *gaps), system, target), len(gaps), len(M))
+    return Rows(_compiled(entries, system, target), len(J), len(M), resting)
 
 
 def _compiled(outputs: tuple[Scalar, ...], system: System, target: str | None) -> RightHandSide:

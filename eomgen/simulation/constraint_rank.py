@@ -14,7 +14,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.bodies.gimbal import locks_of
 from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import rank_of_ties
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.simulation.event_location import PARTS, Crossing
 from eomgen.simulation.integrator import LOOKED_OUT
@@ -218,8 +218,10 @@ class Undetermined:
     place: str = PLACE
 
 
-def undetermined_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> tuple[Undetermined, ...]:
+def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> tuple[Undetermined, ...]:
     """Rates of dependent coordinates, declared speeds, angles that lock, rows that depend on one another."""
+
+    system = equations.system
 
     def of(parts: Sequence[Any], place: str) -> list[Undetermined]:
         words = tuple(map(str, parts))
@@ -229,25 +231,27 @@ def undetermined_of(system: System, assembly: Assembly, p: np.ndarray, declared:
     found = of(singular_blocks(system.elimination, system.scope), PLACE)
     found += of(system.declared, "declare other speeds")
     found += of(locks_of(system.motion), "gimbal lock: choose another `orientation`, or a quaternion")
-    rows = independence_of(system, assembly, p, declared)
+    rows = independence_of(equations, p, declared)
     return (*found, *([] if rows is None else [Undetermined(rows, lambda t, x: [rows.words(t, x)])]))
 
 
-def nearness_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> Nearness | None:
+def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> Nearness | None:
     """How near a motion is to positions in which the ties do not determine it; None without ties."""
+    system = equations.system
     blocks = singular_blocks(system.elimination, system.scope)
     determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
-    rows = independence_of(system, assembly, p, declared)
+    rows = independence_of(equations, p, declared)
     what = tuple(map(str, blocks))
     return None if determinants is None and rows is None else Nearness(determinants, rows, what)
 
 
-def independence_of(system: System, assembly: Assembly, p: np.ndarray, declared: System) -> ConstraintRank | None:
+def independence_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> ConstraintRank | None:
     """How independent the rows are that close by multipliers; None without such."""
+    system = equations.system
     rank = rank_of_ties(system.ties)
     if not rank:
         return None
-    J = measure(system, tuple(x for row in assembly.J for x in row), p)
+    J = measure(system, tuple(x for row in equations.J for x in row), p)
     dependent = () if declared.elimination is None else declared.elimination.blocks
     known = tuple((block.ties, str(block)) for block in dependent)
     return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank, known)

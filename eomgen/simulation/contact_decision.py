@@ -140,8 +140,8 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[C
 def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
     """Whether forces and accelerations are such as the configuration says; an N without one value denies nothing."""
     x = phase.state(values)
-    found = phase.look(t, x)
-    forces, accelerations = phase.sizes(t, x)
+    found = phase.signals.look(t, x)
+    forces, accelerations = phase.signals.sizes(t, x)
     asked = [contact for contact in phase.contacts if contact.name not in apart]
     signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
     return not any(
@@ -156,7 +156,7 @@ def _standing(
 ) -> tuple[str, ...]:
     """The contacts that are to begin sliding or to part, and do not: one way of many in which all of them hold."""
     x = phase.state(values)
-    found, (_, size) = phase.look(t, x), phase.sizes(t, x)
+    found, (_, size) = phase.signals.look(t, x), phase.signals.sizes(t, x)
     accelerations = {}
     for contact in phase.contacts:
         mode, name = phase.watch.mode(contact), contact.name

@@ -127,6 +127,9 @@ class ContactEvents:
         apart = (contact for contact in self.contacts if not self.mode(contact).closed)
         return tuple(contact.name for contact in apart if self._of_open(contact)[0].value is None)
 
+    def contact(self, name: str) -> Contact:
+        return next(contact for contact in self.contacts if contact.name == name)
+
     def mode(self, contact: Contact) -> ContactMode:
         return self.configuration.modes[contact.name]
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,7 +16,7 @@ MOST_PARTS = 4096  # of a step in which a function goes up and down many times
 RESOLVED = 0.02  # of a function's largest value in a step: so near a polynomial comes to what lies between looks
 NODES, DEGREE = 40, 16  # of the polynomial around an event
 SMALLER = 8  # times, the second window around an event
-ORDER = 0.05  # of the largest value nearby: a derivative larger than that says of which order a root is
+ORDER = 0.05  # of the largest value nearby: the derivative that tells of which order a root is is larger
 MOST_ORDER = 5  # of a root
 NEARBY = 0.5  # of the window: how far the root may be from where it was seen
 NEWTON_STEPS = 6
@@ -213,7 +214,9 @@ def _root(value: Callable[[float], float], before: float, after: float) -> float
 # -- as exactly as the motion is known ---------------------------------------------------------------
 
 
-def sharpened(events: Events, found: Crossing, width: float, carry: Callable[[np.ndarray], np.ndarray]) -> Crossing:
+def sharpened(
+    search: EventSearch, found: Crossing, width: float, carry: Callable[[np.ndarray], np.ndarray]
+) -> Crossing:
     """A crossing of a function that counts from either side, by states at which steps end.
 
     Around a root of order m the derivative of order m - 1 goes straight through zero: of a polynomial through g on
@@ -223,21 +226,27 @@ def sharpened(events: Events, found: Crossing, width: float, carry: Callable[[np
         width: how far the motion is looked at before and after.
         carry: instants -> states, one a row.
     """
+    events = search.events
     if found.index not in events.either:
         return found
+    known = events.touch / TOUCH * float(search.largest[found.index])
     for w in (width, width / SMALLER):
         nodes = w * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
         with np.errstate(all="ignore"):
             g = events.values(found.t + nodes, carry(found.t + nodes))[:, found.index]
-        root = _root_within(nodes / w, g) if np.all(np.isfinite(g)) else None
+        root = _root_within(nodes / w, g, known) if np.all(np.isfinite(g)) else None
         if root is not None:
             t = found.t + w * root
             return Crossing(found.index, t, carry(np.array([t]))[0])
     return found
 
 
-def _root_within(z: np.ndarray, g: np.ndarray) -> float | None:
-    """The root nearest to 0, of any order, of a function by its values in -1 < z < 1; None where no polynomial fits."""
+def _root_within(z: np.ndarray, g: np.ndarray, known: float) -> float | None:
+    """The root near 0, of any order, of a function by its values in -1 < z < 1; None where no polynomial fits.
+
+    Args:
+        known: to within which the function is known.
+    """
     from numpy.polynomial.chebyshev import Chebyshev
 
     size = float(np.max(np.abs(g)))
@@ -246,19 +255,35 @@ def _root_within(z: np.ndarray, g: np.ndarray) -> float | None:
     best = fits[int(np.argmin(apart))]
     if not 0 < size or min(apart) > COMPUTED * size:
         return None
-    order, fall = 0, best
-    while order < MOST_ORDER:
-        order, last, fall = order + 1, fall, fall.deriv()
-        if abs(fall(0.0)) > ORDER * size:
-            step = _newton(last, fall)
-            return step if abs(step) < NEARBY else None
+    noise = max(known, min(apart)) / size
+    slopes = [best, *(best.deriv(order) for order in range(1, MOST_ORDER + 1))]
+    for order in range(MOST_ORDER, 0, -1):
+        root = _newton(slopes[order - 1], slopes[order])
+        if root is not None and _is_of_order(order, [float(f(root)) / size for f in slopes], noise):
+            return root
     return None
 
 
-def _newton(g: Any, slope: Any) -> float:
+def _is_of_order(order: int, slopes: Sequence[float], known: float) -> bool:
+    """Whether so many roots are one, as far as a function whose largest value is 1 is known.
+
+    With a_k = g^(k)/k! and a_m r^m = known they lie within r, where |a_k| r^k <= known for all k < m.
+    """
+    if abs(slopes[order]) <= ORDER:
+        return False
+    a = [abs(slope) / math.factorial(k) for k, slope in enumerate(slopes)]
+    r = (known / a[order]) ** (1 / order)
+    return all(a[k] * r**k <= known for k in range(order - 1))
+
+
+def _newton(g: Any, slope: Any) -> float | None:
+    """The root of g to which Newton's method leads from 0; None where it leads to none nearby."""
     z = 0.0
     for _ in range(NEWTON_STEPS):
-        z -= float(g(z) / slope(z))
-        if not abs(z) < 1:
+        step = float(g(z) / slope(z))
+        z -= step
+        if not abs(z) < NEARBY:
+            return None
+        if abs(step) < SOLVED:
             break
     return z

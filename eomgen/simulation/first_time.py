@@ -16,8 +16,7 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.constraints.elimination import singular_blocks
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.constraint_rank import PLACE
 from eomgen.simulation.event_location import Events
@@ -45,15 +44,14 @@ class FirstTime:
     """A motion in one phase, and what is sought on it.
 
     Args:
-        system, assembly, accelerations: the equations of motion.
+        equations, accelerations: the equations of motion.
         condition: of q, u, t and parameters; it vanishes at the instant.
         exact: q and u at the start as scalars of the parameters, {} where they have no closed form.
         start: t, q and u at the start.
         values: of the parameters.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     accelerations: tuple[Scalar, ...]
     condition: Scalar
     exact: State
@@ -66,7 +64,7 @@ class FirstTime:
         Raises:
             RunFailed: the condition is not met.
         """
-        if not depends_on(self.condition, (*self.system.symbols.q, *self.system.symbols.u)):
+        if not depends_on(self.condition, (*self.equations.symbols.q, *self.equations.symbols.u)):
             return self._at_time(), "integration in time"
         if self._departure.is_needed:
             return self._departure.first(self.condition), "energy theorem"
@@ -76,26 +74,26 @@ class FirstTime:
 
     @property
     def t0(self) -> float:
-        return float(self.start.get(self.system.symbols.t, 0.0))
+        return float(self.start.get(self.equations.symbols.t, 0.0))
 
     @cached_property
     def _phase(self) -> PhaseModel:
-        p = np.array([self.values[node] for node in self.system.symbols.parameters.values()])
-        return one_phase(self.system, self.assembly, p)
+        p = np.array([self.values[node] for node in self.equations.symbols.parameters.values()])
+        return one_phase(self.equations.system, self.equations, p)
 
     @cached_property
     def _here(self) -> PhaseStart:
-        symbols = self.system.symbols
+        symbols = self.equations.symbols
         begun = {node.name: float(self.start[node]) for node in (*symbols.q, *symbols.u)}
         return PhaseStart(self.t0, self._phase.with_rates(self.t0, begun), Configuration())
 
     @cached_property
     def _departure(self) -> RestDeparture:
-        equations = (self.system, self.assembly, self.accelerations)
+        equations = (self.equations, self.accelerations)
         return RestDeparture(*equations, self.exact, self.start, self.values, self._phase, dict(self._here.values))
 
     def _state(self, run: Run) -> State:
-        symbols, values = self.system.symbols, self._phase.values(run.end, run.last)
+        symbols, values = self.equations.symbols, self._phase.values(run.end, run.last)
         return {symbols.t: run.end} | {node: values[node.name] for node in (*symbols.q, *symbols.u)}
 
     def _at_time(self) -> State:
@@ -106,7 +104,7 @@ class FirstTime:
         """
         end = self._given_time()
         if end <= self.t0:
-            return {**self.start, self.system.symbols.t: end}
+            return {**self.start, self.equations.symbols.t: end}
         run = advance(self._phase, self._here, Plan(end, FINE))
         if run.status != "finished" or not np.all(np.isfinite(run.last)):
             raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
@@ -132,9 +130,9 @@ class FirstTime:
         Raises:
             RunFailed: they are named.
         """
-        for block in singular_blocks(self.system.elimination, self.system.scope):
+        for block in singular_blocks(self.equations.system.elimination, self.equations.system.scope):
             t, x = np.array([self.t0, run.end]), np.vstack([self._phase.state(self._here.values), run.last])
-            before, there = self._phase.evaluated(t, x, (block.determinant,))[:, 0]
+            before, there = self._phase.functions.evaluated(t, x, (block.determinant,))[:, 0]
             if abs(there) < DEGENERATE * abs(before):
                 raise RunFailed(
                     f"{block} at that instant ({PLACE})",
@@ -143,15 +141,15 @@ class FirstTime:
 
     def _given_time(self) -> float:
         """The first t, from the start on, at which a condition on t alone holds."""
-        t = self.system.symbols.t
+        t = self.equations.symbols.t
         values = [float(evaluate((root,), self.values, FLOAT)[0]) for root in roots(self.condition, t)]
         later = [value for value in values if value >= self.t0 - SOLVED]
         if later:
             return min(later)
         if values:
             raise DerivationError(f"the instant t = {max(values):g} s is before the start")
-        function = compiled(program_of((self.condition,), self.system.symbols), "numpy")
-        x = np.array([self.start[node] for node in (*self.system.symbols.q, *self.system.symbols.u)])
+        function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
+        x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
         events = Events(
             lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, COMPUTED), (0,)
         )

@@ -28,7 +28,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
 
 
 @dataclass(frozen=True)
-class Loose:
+class WithoutContacts:
     """A model without the contacts that can end.
 
     Args:

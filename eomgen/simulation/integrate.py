@@ -19,6 +19,7 @@ from eomgen.simulation.solvers import METHODS, Slope
 from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001
+MOST_SAMPLES = 10_000_000
 
 FunctionOfStates = Callable[[np.ndarray, np.ndarray], Any]
 
@@ -44,7 +45,7 @@ def integrate(
     every: int | None = None,
     slope: Slope | None = None,
     nearness: Nearness | None = None,
-    knots: tuple[float, ...] = (),
+    breakpoints: tuple[float, ...] = (),
 ) -> Trajectory:
     """The motion from a start, x' = rhs(t, x, p).
 
@@ -63,21 +64,21 @@ def integrate(
         most_steps, stabilization, every: as of Stepping.
         projection: onto the ties; by it these are also measured.
         slope: (t, x) -> df/dx for the implicit methods; None: by differences.
-        knots: instants across which no step goes, ascending.
+        breakpoints: instants across which no step goes, ascending.
         nearness: to singular positions, across which the motion is carried; None: nobody looks.
     Raises:
         UsageError: a start, parameter, tolerance, method or time that is missing or makes no sense.
     """
     start, end = (0.0, float(time)) if isinstance(time, (int, float)) else map(float, time)
     x0, p = _vector("x0", rhs.x0 if x0 is None else x0), _vector("p", rhs.p0 if p is None else p)
-    how = Stepping(method, rtol, atol, most_steps, stabilization, every, knots=knots)
+    how = Stepping(method, rtol, atol, most_steps, stabilization, every, breakpoints=breakpoints)
     refuse_bad_run(start, end, how)
     instants = instants_of(samples, start, end)
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
     flow = Flow(f, how, rhs.spheres, projection, slope)
-    run, passages = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
+    run = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
     track = measured(run.t, run.x, run.tracks)
     gap, gap_rate = _open(*track, projection, gaps)
@@ -95,7 +96,7 @@ def integrate(
         message=run.message,
         steps=run.steps,
         evaluations=run.evaluations,
-        passages=tuple((passage.start, passage.end) for passage in passages),
+        carried=run.carried,
     )
 
 
@@ -143,6 +144,8 @@ def instants_of(samples: int | Sequence[float] | None, start: float, end: float)
     if isinstance(samples, (int, np.integer)):
         if samples < 2:
             raise UsageError(f"{samples} samples: at least the start and the end are needed")
+        if samples > MOST_SAMPLES:
+            raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", mend="ask for fewer")
         return np.linspace(start, end, int(samples))
     times = np.asarray(samples, dtype=float)
     if times.ndim != 1 or np.any(np.diff(times) <= 0) or len(times) == 0 or times[0] < start or times[-1] > end:

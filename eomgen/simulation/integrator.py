@@ -13,9 +13,11 @@ import numpy as np
 from eomgen.codegen.spheres import SpherePlaces
 from eomgen.simulation.constraint_drift import DriftCorrection, Projection
 from eomgen.simulation.event_location import Crossing, Events, EventSearch, sharpened
+from eomgen.simulation.pace import Pace
 from eomgen.simulation.result import RunStatus
 from eomgen.simulation.solvers import EXPLICIT, NotFinite, Slope, StateRate, put, solver_of, step
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN, LEAST_RTOL, RUN
+from eomgen.symbolic.numeric.work import PatienceEnded, check_patience, keep_what_there_is
 
 MOST = 20_000  # states
 
@@ -80,7 +82,8 @@ class Stepping:
             "baumgarte" lets the equations pull towards them, "none" leaves them alone.
         every: project at each so many steps; None: where a tie is open by more than atol.
         rates: alpha and beta of Baumgarte's rows [1/s].
-        knots: instants across which no step goes, ascending [s].
+        breakpoints: instants across which no step goes, ascending [s].
+        keeps: whether a run keeps what it has when the user's patience is over; else nothing comes of it.
     """
 
     method: str = "DOP853"
@@ -90,7 +93,8 @@ class Stepping:
     stabilization: str = "projection"
     every: int | None = None
     rates: tuple[float, float] = RATES
-    knots: tuple[float, ...] = ()
+    breakpoints: tuple[float, ...] = ()
+    keeps: bool = False
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
@@ -111,7 +115,7 @@ class Run:
         end, last: how far it came [s], and the state there.
         crossing: the event that ended it.
         tracks: states at the integrator's steps, the start among them.
-        carried: the start and the end of each passage through a singular position.
+        carried: the start and the end of each crossing of a singular position.
     """
 
     t: np.ndarray
@@ -172,8 +176,16 @@ class _Rows:
 
     def close(self, t: float, x: np.ndarray) -> None:
         """The state in which a run ended early, unless it is there."""
-        if not self.t[-1].size or self.t[-1][-1] != t:
+        if not self.t or not self.t[-1].size or self.t[-1][-1] != t:
             self._put(t, x)
+
+    def kept(self) -> tuple[float, np.ndarray]:
+        """The last state that is kept and its instant, in the middle of whatever a run was stopped."""
+        for times, states in ((self.t, self.x), (self.track.t, self.track.x)):
+            whole = min(len(times), len(states))
+            del times[whole:], states[whole:]
+        rows = [(float(times[-1]), x[-1]) for times, x in zip(self.t, self.x, strict=True) if len(times)]
+        return max([*rows[-1:], (self.track.t[-1], self.track.x[-1])], key=lambda each: each[0])
 
     def _put(self, t: float, x: np.ndarray) -> None:
         self.t.append(np.array([t]))
@@ -213,8 +225,20 @@ def march(
     rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]))
     solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
     watch = EventSearch(events, start, x0) if events is not None else None
-    status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how)
-    t, x = (float(solver.t), solver.y) if crossing is None else (crossing.t, crossing.x)
+    pace = Pace(f, how.method, start, end, how.most_steps)
+    try:
+        status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how, pace)
+        t, x = (float(solver.t), solver.y) if crossing is None else (crossing.t, crossing.x)
+    except PatienceEnded:
+        if not how.keeps:
+            raise
+        keep_what_there_is()
+        t, x = rows.kept()
+        steps, crossing = rows.track.steps, None
+        status, message = "out of patience", _impatient(pace.words(steps, t, x), t, steps)
+    except KeyboardInterrupt:
+        t, x = rows.kept()
+        status, message, steps, crossing = "interrupted", f"Interrupted at t = {t:.6g} s.", rows.track.steps, None
     if status != "finished":
         rows.close(t, x)
     message = " ".join(part for part in (message or _reached(end), hold.remark) if part)
@@ -223,7 +247,7 @@ def march(
 
 
 def _stepped(
-    f: StateRate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping
+    f: StateRate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping, pace: Pace
 ) -> tuple[RunStatus, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
     steps, hold, end = 0, rows.hold, solver.t_bound
@@ -232,12 +256,15 @@ def _stepped(
             return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s.", steps, None
         try:
             with np.errstate(all="ignore"):
-                step(solver, how.knots, end)
-        except (NotFinite, KeyboardInterrupt) as stop:
-            return *_stopped(stop, solver.t), steps, None
+                step(solver, how.breakpoints, end)
+        except NotFinite:
+            return "not finite", _no_value(solver.t), steps, None
         if solver.status == "failed":
             return *_failed(f, solver), steps, None
         steps += 1
+        check_patience()
+        if hopeless := pace.hopeless(steps, solver.t, solver.y):
+            return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s: {hopeless}.", steps, None
         dense = cache(solver.dense_output)
         crossing = watches.step(solver.t_old, solver.t, solver.y, dense)
         if crossing is not None:
@@ -258,10 +285,10 @@ def _exactly(
     """A crossing in the step over a span that began in x, by finer steps that end there."""
     if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in EXPLICIT:
         return crossing
-    before, after = bisect_right(how.knots, span[0]), bisect_left(how.knots, crossing.t)
-    near = [abs(crossing.t - t) for t in how.knots[max(before - 1, 0) : after + 1]]
+    before, after = bisect_right(how.breakpoints, span[0]), bisect_left(how.breakpoints, crossing.t)
+    near = [abs(crossing.t - t) for t in how.breakpoints[max(before - 1, 0) : after + 1]]
     width = min([span[1] - span[0], *(d for d in near if d > 0)])
-    return sharpened(watches.watch.events, crossing, width, lambda t: _carried(f, span[0], x, t))
+    return sharpened(watches.watch, crossing, width, lambda t: _carried(f, span[0], x, t))
 
 
 def _carried(f: StateRate, t_0: float, x_0: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -298,10 +325,12 @@ def _failed(f: StateRate, solver: Any) -> tuple[RunStatus, str]:
     return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero."
 
 
-def _stopped(stop: BaseException, t: float) -> tuple[RunStatus, str]:
-    if isinstance(stop, KeyboardInterrupt):
-        return "interrupted", f"Interrupted at t = {t:.6g} s."
-    return "not finite", _no_value(t)
+def _impatient(why: str, t: float, steps: int) -> str:
+    return (
+        f"Gave up at t = {t:.6g} s: the time to wait (--patience) is over after {steps} steps"
+        + f"; {why}" * bool(why)
+        + "."
+    )
 
 
 def _no_value(t: float) -> str:

@@ -11,25 +11,25 @@ from eomgen.errors import DerivationError
 from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.integrator import measured
-from eomgen.simulation.phase_change import Course
+from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Phase, Trajectory
 
 
-def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
+def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
     coordinates, speeds = _union(runs)
-    columns = [stretch.phase.columns(stretch.run.t, stretch.run.x) for stretch in runs]
+    columns = [phase_run.phase.columns(phase_run.run.t, phase_run.run.x) for phase_run in runs]
     tables = [
-        np.column_stack([found.get(name, np.zeros(len(stretch.run.t))) for name in (*coordinates, *speeds)])
-        for stretch, found in zip(runs, columns, strict=True)
+        np.array([found.get(name, np.zeros(len(t))) for name in (*coordinates, *speeds)]).reshape(-1, len(t)).T
+        for t, found in zip((phase_run.run.t for phase_run in runs), columns, strict=True)
     ]
-    energies = [stretch.phase.energies(stretch.run.t, stretch.run.x) for stretch in runs]
-    ends = np.cumsum([0, *(len(stretch.run.t) for stretch in runs)])
+    energies = [phase_run.phase.energies(phase_run.run.t, phase_run.run.x) for phase_run in runs]
+    ends = np.cumsum([0, *(len(phase_run.run.t) for phase_run in runs)])
     gap, gap_rate = _open(runs)
     return Trajectory(
-        t=np.concatenate([stretch.run.t for stretch in runs]),
+        t=np.concatenate([phase_run.run.t for phase_run in runs]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
@@ -38,21 +38,21 @@ def joined(course: Course, runs: Sequence[PhaseRun]) -> Trajectory:
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(
-            Phase(s.here.t, s.run.end, phase_text(course, s), (int(first), int(last)), s.phase, _measured(s))
+            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, _measured(s))
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,
         message=runs[-1].run.message,
-        steps=sum(stretch.run.steps for stretch in runs),
-        evaluations=sum(stretch.run.evaluations for stretch in runs),
-        passages=tuple(passage for stretch in runs for passage in stretch.run.carried),
+        steps=sum(phase_run.run.steps for phase_run in runs),
+        evaluations=sum(phase_run.run.evaluations for phase_run in runs),
+        carried=tuple(span for phase_run in runs for span in phase_run.run.carried),
     )
 
 
 def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Coordinates and speeds of all phases, each in the order in which it comes."""
-    coordinates = dict.fromkeys(name for stretch in runs for name in stretch.phase.coordinates)
-    speeds = dict.fromkeys(name for stretch in runs for name in stretch.phase.shown)
+    coordinates = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.coordinates)
+    speeds = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.shown)
     return tuple(coordinates), tuple(speeds)
 
 
@@ -61,8 +61,8 @@ def _drift(runs: Sequence[PhaseRun]) -> float | None:
     return max((drift_of(*s.phase.energies(*_measured(s))) for s in runs if s.phase.conservative), default=None)
 
 
-def _measured(stretch: PhaseRun) -> tuple[np.ndarray, np.ndarray]:
-    return measured(stretch.run.t, stretch.run.x, stretch.run.tracks)
+def _measured(phase_run: PhaseRun) -> tuple[np.ndarray, np.ndarray]:
+    return measured(phase_run.run.t, phase_run.run.x, phase_run.run.tracks)
 
 
 def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
@@ -81,13 +81,13 @@ def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
     """
     try:
-        made = {id(s.phase): ReactionColumns(s.phase.reactions, s.phase.rhs) for s in runs}
+        made = {id(s.phase): ReactionColumns(s.phase.reactions, s.phase.functions.rhs) for s in runs}
     except DerivationError as error:
         return replace(full, remark=f"No reactions: {error.what}.")
     found: dict[str, np.ndarray] = {}
     for s, phase in zip(runs, full.phases, strict=True):
         columns, model, t = made[id(s.phase)], s.phase, s.run.t
-        x = begun(t, model.inner(s.run.x), model.rhs.at(model.p), model.slowest)
+        x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
         for name, column in zip(columns.names, columns.along(t, x, model.p).T, strict=True):
             found.setdefault(name, np.zeros(len(full.t)))[slice(*phase.rows)] = column
     always = dict.fromkeys(name for columns in made.values() for name in columns.indeterminate)
@@ -120,15 +120,15 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
     )
 
 
-def phase_text(course: Course, stretch: PhaseRun) -> str:
+def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
     """What ended a phase, and when."""
-    after = stretch.after
-    if after is None:
-        return stretch.run.message
+    after = phase_run.after
+    if phase_run.bound is None or after is None:
+        return phase_run.run.message
     when = f"at t = {after.t:.6g} s"
     if after.failure:
         return f"{after.failure} {when}"
-    phrases = changed(course.model, stretch.here.configuration, after.configuration)
+    phrases = changed(models.model, phase_run.here.configuration, after.configuration)
     return f"{', '.join(phrases) or 'the contacts change and return'} {when}" + after.impact * ", without rebound"
 
 

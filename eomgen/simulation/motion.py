@@ -12,8 +12,9 @@ from eomgen.mechanics.constraints.edges import left_of, stopped_at
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import Run, Stepping
-from eomgen.simulation.phase_change import Course, PhaseStart
+from eomgen.simulation.phase_change import PhaseStart, next_start
 from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.singular_crossing import Flow, march_across
@@ -43,18 +44,18 @@ class Plan:
     until: PhaseCondition | None = None
 
 
-def through(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
+def through(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
     """The phases of a motion, up to the first instant at which what ends it holds."""
-    runs = passed(course, here, plan)
+    runs = passed(models, here, plan)
     return runs if plan.until is None else ended(runs, plan.until)
 
 
-def passed(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
+def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
     """The phases one after the other; the last is the one that ends with the time, the condition, or in failure."""
     ended: frozenset[Configuration] = frozenset()
     hasty = count = 0
     while True:
-        phase = course.phase_models.of(here.configuration)
+        phase = models.of(here.configuration)
         failure = here.failure or _endless(phase, count, hasty)
         if failure:
             yield _standstill(phase, here, failure)
@@ -67,7 +68,7 @@ def passed(course: Course, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
         soon = run.end - here.t <= COMPUTED
         hasty, count = hasty + 1 if soon else 0, count + 1
         ended = frozenset({*(ended if soon else ()), here.configuration})
-        after = course.after(phase, crossing, ended)
+        after = next_start(models, phase, crossing, ended)
         yield PhaseRun(here, phase, run, phase.bounds[crossing.index], after)
         here = after
 
@@ -83,10 +84,18 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(phase, here.t, x, plan)
     slope = phase.slope if plan.how.method in IMPLICIT else None
-    flow = Flow(phase.rate, plan.how, phase.rhs.spheres, phase.projection, slope)
-    run, passages = march_across(flow, (here.t, plan.end), x, phase.nearness, instants=wanted, events=events)
-    run = replace(run, carried=tuple((passage.start, passage.end) for passage in passages))
-    return _determined(phase, _at_edge(phase, run), plan.how)
+    flow = Flow(phase.rate, plan.how, phase.functions.rhs.spheres, phase.projection, slope)
+    run = march_across(flow, (here.t, plan.end), x, phase.nearness, instants=wanted, events=events)
+    return _determined(phase, _named(phase, _at_edge(phase, run), here.t), plan.how)
+
+
+def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
+    """The run; where it came to a state without a value, with what has none there."""
+    found = phase.valueless(run.end, run.last) if run.status == "not finite" else None
+    if found is None:
+        return run
+    when = "The motion starts where" if run.end == begun else f"Stopped at t = {run.end:.6g} s:"
+    return replace(run, message=f"{when} {found.what}.")
 
 
 def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
@@ -109,17 +118,17 @@ def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
 
 def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | None:
     """The bounds of the contacts, the edges of the ties, and last the condition; None without any."""
-    floors = phase.floors(t, x)
+    floors = phase.signals.floors(t, x)
     asked = () if plan.until is None else (plan.until(phase),)
     if any(type(x) is not Node for x in asked):
         raise UsageError("nothing in the condition moves: it holds always or never", mend='write "theta = pi/2"')
     further = (*left_of(phase.edges), *asked)
     if not further:
-        return Events(phase.watched, floors) if phase.bounds else None
-    function = phase.function(further)
+        return Events(phase.signals.watched, floors) if phase.bounds else None
+    function = phase.functions.function(further)
 
     def values(t: np.ndarray, x: np.ndarray) -> np.ndarray:
-        return np.hstack([phase.watched(t, x), function.many(t, phase.inner(x), phase.p)])
+        return np.hstack([phase.signals.watched(t, x), function.many(t, phase.functions.inner(x), phase.p)])
 
     floors = np.append(floors, np.full(len(further), COMPUTED))
     return Events(values, floors, either=(len(floors) - 1,) if asked else (), touch=TOUCH * plan.how.rtol)
@@ -137,8 +146,8 @@ def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
     """The run, ended where the ties do not say how it goes on, and it went astray."""
     if run.status == "singular":
         return run
-    finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, knots=())
-    flow = Flow(phase.rate, finer, phase.rhs.spheres, phase.projection)
+    finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, breakpoints=())
+    flow = Flow(phase.rate, finer, phase.functions.rhs.spheres, phase.projection)
 
     def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
         found = flow.march((start, end), x, np.array([start, end]), None)

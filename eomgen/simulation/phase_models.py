@@ -11,12 +11,12 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import with_friction
+from eomgen.mechanics.balance.friction import equations_of_motion, with_friction
 from eomgen.mechanics.balance.release import released, stays_straight
 from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import freedoms, redundant_rows
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.stabilization import PullBack, stabilized
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
@@ -24,7 +24,7 @@ from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
 from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces
 from eomgen.simulation.contact_events import ContactEvents, sliding_velocity
-from eomgen.simulation.impact import Loose
+from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression.graph import Scalar
 
@@ -42,12 +42,12 @@ def integrated_system(system: System) -> System:
     return system.free if singular_blocks(system.elimination, system.scope) else system
 
 
-def one_phase(declared: System, assembly: Assembly, p: np.ndarray, target: str | None = None) -> PhaseModel:
+def one_phase(declared: System, equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> PhaseModel:
     """Equations of motion as the one phase of a motion in which no contact changes."""
     system = integrated_system(declared)
     if system is not declared:
-        assembly = with_friction(system, recursive.assembled_by_recursion(system))
-    return PhaseModel(ContactEvents(Configuration(), (), {}, system), declared, assembly, p, target)
+        equations = equations_of_motion(system)
+    return PhaseModel(ContactEvents(Configuration(), (), {}, system), declared, equations, p, target)
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class PhaseModels:
         p: the values of its parameters.
         target: of the emitted code.
         rates: alpha and beta of Baumgarte's rows; None: they do not pull.
-        derived: the system and the equations of the one phase of a model that has no other, where they are known.
+        derived: the equations of the one phase of a model that has no other, where they are known.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class PhaseModels:
         p: np.ndarray,
         target: str | None,
         rates: PullBack | None = None,
-        derived: tuple[System, Assembly] | None = None,
+        derived: EquationsOfMotion | None = None,
     ) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
         self._derived = None if has_phases(model) else derived
@@ -117,13 +117,13 @@ class PhaseModels:
         return self._slides[configuration]
 
     @cached_property
-    def loose(self) -> Loose:
+    def without_contacts(self) -> WithoutContacts:
         """The model without the contacts that can end.
 
         Raises:
             DerivationError: as `of`.
         """
-        return Loose(_opened(self.model, dict.fromkeys(self.ends, OPEN)), self.ends, self.p)
+        return WithoutContacts(_opened(self.model, dict.fromkeys(self.ends, OPEN)), self.ends, self.p)
 
     @cached_property
     def ends(self) -> tuple[str, ...]:
@@ -132,19 +132,19 @@ class PhaseModels:
 
     def _phase(self, configuration: Configuration) -> PhaseModel:
         model = on_pieces(self.model, configuration.pieces)
-        declared = self._system(model, configuration) if self._derived is None else self._derived[0]
+        declared = self._system(model, configuration) if self._derived is None else self._derived.system
         system = integrated_system(declared)
-        assembly = self._assembly(system)
+        equations = self._equations(system)
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
         watch = ContactEvents(configuration, contacts_of(model), lengths, system)
-        return PhaseModel(watch, declared, assembly, self.p, self.target)
+        return PhaseModel(watch, declared, equations, self.p, self.target)
 
-    def _assembly(self, system: System) -> Assembly:
+    def _equations(self, system: System) -> EquationsOfMotion:
         """The equations of motion, friction and Baumgarte's rows included."""
-        if self._derived is not None and self._derived[0] is system and self.rates is None:
-            return self._derived[1]
-        assembly = recursive.assembled_by_recursion(system)
-        return with_friction(system, assembly if self.rates is None else stabilized(system, assembly, self.rates))
+        if self._derived is not None and self._derived.system is system and self.rates is None:
+            return self._derived
+        equations = recursive.assembled_by_recursion(system)
+        return with_friction(equations if self.rates is None else stabilized(equations, self.rates))
 
     def _system(self, model: Model, configuration: Configuration) -> System:
         """The system of a configuration.
@@ -183,10 +183,18 @@ def _opened(model: Model, modes: ContactModes) -> System:
 
 
 def _released(system: System, tie: str) -> System:
+    """The system without a tie: where its rows only close, they are left out and nothing else changes.
+
+    Raises:
+        DerivationError: coordinates that satisfy the tie by themselves cannot leave it.
+    """
     model, modes = released(system, tie)
     after = system_of(model, modes)
+    rows = [row for row in system.ties.rows if row.tie == tie]
+    if all(row.status == "closing" for row in rows):
+        return after
     dependent = {(row.tie, row.number) for row in redundant_rows(system.ties)}
-    held = [row for row in system.ties.rows if row.tie == tie and (row.tie, row.number) not in dependent]
+    held = [row for row in rows if (row.tie, row.number) not in dependent]
     if freedoms(after.ties) < freedoms(system.ties) + len(held):
         raise DerivationError(
             f"'{tie}' ends, and what it held does not become free",

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -17,12 +18,13 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model, Output
+from eomgen.model.replaced import equation_typed
 from eomgen.model.table import Table
 from eomgen.simulation.contact_events import EventFunction
 from eomgen.simulation.integrator import Run
 from eomgen.simulation.phase_change import PhaseStart
-from eomgen.simulation.phase_model import PhaseModel
-from eomgen.symbolic.expression.expressions import parse, parse_equation
+from eomgen.simulation.phase_model import PhaseModel, Values
+from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -30,14 +32,15 @@ SystemCondition = Callable[[System], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a system."""
 
 
-def condition_of(model: Model, text: str) -> SystemCondition:
+def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
     """Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0".
 
     Raises:
         UsageError: it is no equation, or names what the model does not have.
     """
+    text = until if isinstance(until, str) else until.text
     try:
-        equation = WrittenEquation(*parse_equation(text), text=text)
+        equation = equation_typed(model, until)[0] if isinstance(until, str) else until
         dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
@@ -60,7 +63,7 @@ class PhaseRun:
         phase: its equations.
         run: what the integrator left.
         bound: what ended it; None where the time, a condition or a failure did.
-        after: what follows the bound.
+        after: what follows the bound; of a condition, what would follow if it holds just as the phase ends.
     """
 
     here: PhaseStart
@@ -69,14 +72,24 @@ class PhaseRun:
     bound: EventFunction | None
     after: PhaseStart | None
 
+    @cached_property
+    def end(self) -> Values:
+        """Coordinates, rates and speeds at its end."""
+        return self.phase.values(self.run.end, self.run.last)
+
+    @property
+    def is_met(self) -> bool:
+        """Whether a condition ended it."""
+        return self.bound is None and self.run.status == "event"
+
 
 PhaseCondition = Callable[[PhaseModel], Scalar]
 """What is asked to become 0, over the symbols, accelerations and multipliers of a phase."""
 
 
-def met(stretch: PhaseRun, until: PhaseCondition) -> bool:
+def met(phase_run: PhaseRun, until: PhaseCondition) -> bool:
     """Whether the condition holds where a phase ends, and did not hold all along."""
-    sizes = _sizes(stretch, until)
+    sizes = _sizes(phase_run, until)
     largest = float(np.max(sizes))
     return bool(sizes[-1] <= COMPUTED * max(1.0, largest) < largest)
 
@@ -84,39 +97,39 @@ def met(stretch: PhaseRun, until: PhaseCondition) -> bool:
 def ended(runs: Iterable[PhaseRun], until: PhaseCondition) -> Iterator[PhaseRun]:
     """The phases, the last of them cut off where the condition first holds."""
     before: PhaseRun | None = None
-    for stretch in runs:
-        if before is not None and _begins(before, stretch, until):
-            yield _only_begun(stretch)
+    for phase_run in runs:
+        if before is not None and _begins(before, phase_run, until):
+            yield _only_begun(phase_run)
             return
-        if stretch.bound is not None and met(stretch, until):
-            yield _by_condition(stretch)
+        if phase_run.bound is not None and met(phase_run, until):
+            yield _by_condition(phase_run)
             return
-        yield stretch
-        before = stretch
+        yield phase_run
+        before = phase_run
 
 
-def _begins(before: PhaseRun, stretch: PhaseRun, until: PhaseCondition) -> bool:
+def _begins(before: PhaseRun, phase_run: PhaseRun, until: PhaseCondition) -> bool:
     """Whether the condition holds where a phase begins, and did not at the end of the one before."""
     last, largest = (float(find(_sizes(before, until))) for find in (lambda sizes: sizes[-1], np.max))
     enough = COMPUTED * max(1.0, largest)
-    return last > enough and bool(_sizes(stretch, until)[0] <= enough)
+    return last > enough and bool(_sizes(phase_run, until)[0] <= enough)
 
 
-def _sizes(stretch: PhaseRun, until: PhaseCondition) -> np.ndarray:
+def _sizes(phase_run: PhaseRun, until: PhaseCondition) -> np.ndarray:
     """The absolute values of what ought to be 0, at the instants of a phase and at its end."""
-    run, phase = stretch.run, stretch.phase
-    stops, after = stretch.bound is not None and stretch.bound.kind == "stops", stretch.after
+    run, phase = phase_run.run, phase_run.phase
+    stops, after = phase_run.bound is not None and phase_run.bound.kind == "stops", phase_run.after
     last = phase.state(after.values) if stops and after is not None else run.last  # on a surface near to 0, then 0
     t, x = np.append(run.t, run.end), np.vstack([run.x, last])
-    return np.asarray(np.abs(phase.evaluated(t, x, (until(phase),))[:, 0]))
+    return np.asarray(np.abs(phase.functions.evaluated(t, x, (until(phase),))[:, 0]))
 
 
-def _only_begun(stretch: PhaseRun) -> PhaseRun:
-    run = stretch.run
+def _only_begun(phase_run: PhaseRun) -> PhaseRun:
+    run = phase_run.run
     first = replace(run, t=run.t[:1], x=run.x[:1], end=float(run.t[0]), last=run.x[0], steps=0, evaluations=0)
-    return _by_condition(replace(stretch, run=first))
+    return _by_condition(replace(phase_run, run=first, after=None))
 
 
-def _by_condition(stretch: PhaseRun) -> PhaseRun:
-    message = f"Stopped by an event at t = {stretch.run.end:.6g} s."
-    return replace(stretch, run=replace(stretch.run, status="event", message=message), bound=None, after=None)
+def _by_condition(phase_run: PhaseRun) -> PhaseRun:
+    message = f"Stopped by an event at t = {phase_run.run.end:.6g} s."
+    return replace(phase_run, run=replace(phase_run.run, status="event", message=message), bound=None)

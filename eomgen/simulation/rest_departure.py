@@ -15,8 +15,7 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
@@ -39,7 +38,7 @@ class RestDeparture:
     """A start from which time may not lead away.
 
     Args:
-        system, assembly, accelerations: the equations of motion.
+        equations, accelerations: the equations of motion.
         exact: q and u at the start as scalars of the parameters, {} where they have no closed form.
         start: t, q and u at the start.
         values: of the parameters.
@@ -47,8 +46,7 @@ class RestDeparture:
         names: coordinates, rates and speeds at the start, by name.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     accelerations: tuple[Scalar, ...]
     exact: State
     start: State
@@ -63,15 +61,15 @@ class RestDeparture:
 
     @property
     def t0(self) -> float:
-        return float(self.start.get(self.system.symbols.t, 0.0))
+        return float(self.start.get(self.equations.symbols.t, 0.0))
 
     @cached_property
     def _x0(self) -> np.ndarray:
-        return np.array([self.start[node] for node in (*self.system.symbols.q, *self.system.symbols.u)])
+        return np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
 
     def _functions(self, scalars: tuple[Scalar, ...]) -> Callable[[float, np.ndarray], np.ndarray]:
         """Scalars as functions of t and x."""
-        function = compiled(program_of(scalars, self.system.symbols), "numpy")
+        function = compiled(program_of(scalars, self.equations.symbols), "numpy")
         return lambda t, x: function(t, x, self.phase.p)
 
     def _function(self, scalar: Scalar) -> Callable[[float, np.ndarray], float]:
@@ -83,7 +81,7 @@ class RestDeparture:
         with np.errstate(all="ignore"):
             x = self.phase.state(self.names)
             dx = self.phase.rate(self.t0, x)
-            nq = len(self.system.symbols.q)
+            nq = len(self.equations.symbols.q)
             aside = x.copy()
             aside[:nq] += 0.05 * (1 + np.abs(aside[:nq]))
             usual = self.phase.rate(self.t0, aside)
@@ -97,22 +95,22 @@ class RestDeparture:
     @property
     def _is_moved_by_time(self) -> bool:
         """Whether given motions, or forces that change with time, can end a rest."""
-        symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
+        symbols, coordinates = self.equations.symbols, self.equations.system.scope.model.coordinates
         moving = (symbols.t, *(q for q in symbols.q if coordinates[q.name].driven))
-        return any(depends_on(x, moving) for x in (*self.accelerations, *self.system.scope.nu))
+        return any(depends_on(x, moving) for x in (*self.accelerations, *self.equations.system.scope.nu))
 
     def _is_singular(self) -> bool:
         """Whether the ties do not determine which way the start is left."""
-        if not any(not row.identical and row.gap is not None for row in self.system.ties.rows):
+        if not any(not row.identical and row.gap is not None for row in self.equations.system.ties.rows):
             return False
         way = self._way
-        return way is not None and not way.is_regular(self._x0[: len(self.system.symbols.q)])
+        return way is not None and not way.is_regular(self._x0[: len(self.equations.symbols.q)])
 
     @cached_property
     def _relations(self) -> Relations | None:
         """Every speed by one of them, homogeneous; None where there are more freedoms, or momenta that are not 0."""
         try:
-            found = relations_of(self.system, self.assembly, self._exact_start)
+            found = relations_of(self.equations, self._exact_start)
         except DerivationError:  # a start without values
             return None
         if found is None or found.speed is None or not all(map(vanishes, found.constants.values())):
@@ -123,24 +121,24 @@ class RestDeparture:
     def _exact_start(self) -> State:
         """The start in exact numbers where it has no closed form."""
         return self.exact or {
-            node: Fraction(self.start[node]) for node in (*self.system.symbols.q, *self.system.symbols.u)
+            node: Fraction(self.start[node]) for node in (*self.equations.symbols.q, *self.equations.symbols.u)
         }
 
     @property
     def _leading(self) -> int:
         """The coordinate whose rate is the one free speed."""
         assert self._relations is not None
-        return next(k for k, rate in enumerate(self.system.scope.rates) if rate is self._relations.speed)
+        return next(k for k, rate in enumerate(self.equations.system.scope.rates) if rate is self._relations.speed)
 
     @cached_property
     def _way(self) -> Configurations | None:
         """The configurations that one freedom leaves."""
         if self._relations is None:
             return None
-        symbols, scope = self.system.symbols, self.system.scope
+        symbols, scope = self.equations.symbols, self.equations.system.scope
         shares = tuple(self._relations.shares.values())
         direction = self._functions(tuple(inner(row, shares) for row in scope.N))
-        rows = tuple(position_equations(self.system, self._exact_start))
+        rows = tuple(position_equations(self.equations.system, self._exact_start))
         gaps = self._functions(rows)
         held = [k for k, q in enumerate(symbols.q) if any(depends_on(gap, (q,)) for gap in rows)]
         sought = tuple(k for k in held if k != self._leading)
@@ -158,10 +156,13 @@ class RestDeparture:
         Raises:
             RunFailed: more than one freedom rests, or the condition is not met on the way.
         """
+        lost = self.phase.valueless(self.t0, self.phase.state(self.names))
+        if lost is not None:
+            raise RunFailed(f"the motion starts where {lost.what}", lost.where, "start elsewhere")
         way, relations = self._way, self._relations
         if way is None or relations is None or relations.speed is None:
             raise RunFailed("the motion rests at the start", mend=MEND)
-        symbols, speed = self.system.symbols, relations.speed
+        symbols, speed = self.equations.symbols, relations.speed
         square = self._function(self._square(speed))
         condition = self._function(substituted((sought,), relations.speeds)[0])
         shares = self._functions(tuple(relations.shares.values()))
@@ -193,7 +194,7 @@ class RestDeparture:
         Raises:
             RunFailed: no integrals give it.
         """
-        found = rates_of(self.system, self.assembly, self._exact_start, accelerations=self.accelerations)
+        found = rates_of(self.equations, self._exact_start, accelerations=self.accelerations)
         if found is None:
             raise RunFailed("the motion rests at the start, and no integrals give its speeds elsewhere", mend=MEND)
         return found[speed] * found[speed]
@@ -204,7 +205,7 @@ class RestDeparture:
 
     def _near(self) -> np.ndarray:
         """The guesses of the coordinates: `near` where it is given, else the start."""
-        scope, found = self.system.scope, []
+        scope, found = self.equations.system.scope, []
         for q in scope.symbols.q:
             near = scope.model.coordinates[q.name].near
             guess = None if near is None else evaluate((scope.value(near),), self.values, FLOAT)[0]

@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import html
 import io
-import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,10 +12,20 @@ from typing import IO, Any, Literal
 
 import numpy as np
 
-from eomgen.errors import RunFailed, UsageError
+from eomgen import files
+from eomgen.errors import UsageError
+from eomgen.symbolic.expression.units import Unit
 
 RunStatus = Literal[
-    "finished", "not finite", "step too small", "too many steps", "interrupted", "event", "contact", "singular"
+    "finished",
+    "not finite",
+    "step too small",
+    "too many steps",
+    "out of patience",
+    "interrupted",
+    "event",
+    "contact",
+    "singular",
 ]
 
 
@@ -64,7 +72,7 @@ class Trajectory:
         reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
         units: of the reactions, by name.
         remark: what is missing among them, and why; or "".
-        passages: the start and the end of each passage through a singular position (a change point, a dead centre).
+        carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
         assembled: what was changed of the start values so that the ties hold there, and of which; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
     """
@@ -85,7 +93,7 @@ class Trajectory:
     units: Mapping[str, str] = field(default_factory=dict)
     remark: str = ""
     gap_rate: float | None = None
-    passages: tuple[tuple[float, float], ...] = ()
+    carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
 
@@ -119,19 +127,23 @@ class Trajectory:
         named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
         return named | ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
 
-    def to_csv(self, path: str | Path | IO[str]) -> None:
+    def to_csv(self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None) -> None:
         """A header line and one line an instant; every digit of a double.
 
+        Args:
+            units: in which the columns are given, "theta [deg]"; None: plain names, and SI.
         Raises:
-            RunFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; what was there before is then still there.
         """
         columns = self.columns()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        told = dict[str, Unit]() if units is None else units
+        writer.writerow(f"{name} [{told[name]}]" if name in told else name for name in columns)
+        given = (x / told[name].size if name in told else x for name, x in columns.items())
+        writer.writerows(zip(*(column.tolist() for column in given), strict=True))
         if isinstance(path, (str, Path)):
-            _write(Path(path), lambda file: file.write(text.getvalue().encode()))
+            files.write(path, text.getvalue())
         else:
             path.write(text.getvalue())
 
@@ -139,7 +151,7 @@ class Trajectory:
         """numpy's archive: t, x, coordinates, speeds, energy, reactions (n x names) and their names, status, message.
 
         Raises:
-            RunFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; what was there before is then still there.
         """
         arrays: dict[str, Any] = {"t": self.t, "x": self.x, "status": self.status, "message": self.message}
         arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
@@ -150,7 +162,7 @@ class Trajectory:
                 "reactions": np.column_stack(list(self.reactions.values())),
                 "reaction_names": np.array(list(self.reactions), dtype=str),
             }
-        _write(Path(path), lambda file: np.savez_compressed(file, **arrays))
+        files.write(path, lambda file: np.savez_compressed(file, **arrays))
 
     def to_pandas(self) -> Any:
         """The columns as a DataFrame over t (needs pandas)."""
@@ -163,8 +175,8 @@ class Trajectory:
     def summary(self) -> str:
         """How it went, in a line or two."""
         parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]
-        if self.passages:
-            parts.append(f"Carried across {_singular_positions(self.passages)}.")
+        if self.carried:
+            parts.append(f"Carried across {_singular_positions(self.carried)}.")
         if len(self.phases) > 1:
             parts.append(f"{len(self.phases)} phases.")
         if self.drift is not None:
@@ -192,29 +204,8 @@ def _size(x: float) -> str:
     return f"{x:.1e}" if x else "0"
 
 
-def _singular_positions(passages: Sequence[tuple[float, float]]) -> str:
+def _singular_positions(carried: Sequence[tuple[float, float]]) -> str:
     """ "a singular position at t = 0.7 s", or how many, and when the first."""
-    first = f"{sum(passages[0]) / 2:.6g} s"
-    many = len(passages)
+    first = f"{sum(carried[0]) / 2:.6g} s"
+    many = len(carried)
     return f"a singular position at t = {first}" if many == 1 else f"{many} singular positions, first at t = {first}"
-
-
-def _write(path: Path, fill: Callable[[IO[bytes]], object]) -> None:
-    """Write aside and move into place."""
-    try:
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".eomgen-", delete=False) as file:
-            fill(file)
-    except OSError as error:
-        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
-    try:
-        os.chmod(file.name, 0o666 & ~_umask())
-        os.replace(file.name, path)
-    except OSError as error:
-        os.unlink(file.name)
-        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -41,7 +41,7 @@ def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: fl
     for i, number in zeros:
         if not _passed(run, i, again, allowed):
             return _cut(run, i, _instant(run.t, values[:, number], i), what, number)
-    if run.status in ("finished", "event", "interrupted", "singular"):
+    if run.status in ("finished", "event", "interrupted", "out of patience", "singular"):
         return run
     k = int(np.argmin(abs(values[-1])))
     flipped = np.any(np.diff(np.sign(values[-3:, k])))

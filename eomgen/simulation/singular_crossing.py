@@ -35,7 +35,7 @@ BEYOND = 0.5  # of the nearness: how far from the singular position the far side
 
 
 @dataclass(frozen=True)
-class Passage:
+class SingularCrossing:
     """A singular position by which a motion came.
 
     Args:
@@ -95,57 +95,54 @@ def march_across(
     *,
     instants: np.ndarray | None = None,
     events: Events | None = None,
-) -> tuple[Run, tuple[Passage, ...]]:
+) -> Run:
     """`march`, carried across singular positions; where that fails it ends.
 
     Args:
         nearness: to these; None where nobody looks for them.
-
-    Returns:
-        the run, and the passages in it.
     """
     if nearness is None:
-        return flow.march(span, x0, instants, events), ()
+        return flow.march(span, x0, instants, events)
     runs: list[Run] = []
-    passages: list[Passage] = []
+    carried: list[SingularCrossing] = []
     (t, end), x, since, level = span, x0, span[0], 0
     while True:
         lookout = RankLookout(nearness, NEARNESS[level], t, x)
         run = flow.march((t, end), x, _from(instants, t), events, lookout)
         runs.append(run)
         if run.crossing is None or run.crossing.index != LOOKED_OUT:
-            return _joined(runs, passages, instants), tuple(passages)
+            return _joined(runs, carried, instants)
         t, x = run.crossing.t, run.crossing.x
         found = _passed(flow, t, x, since, nearness, lookout.near)
         if found is None and level + 1 == len(NEARNESS):
-            return _ended(flow, _joined(runs, passages, instants), nearness), tuple(passages)
+            return _ended(flow, _joined(runs, carried, instants), nearness)
         if found is None:
             level += 1
             continue
-        passage, x = _up_to(flow, found[0], found[1], end)
-        passages.append(passage)
-        crossing = None if events is None else _met(events, passage)
+        across, x = _up_to(flow, found[0], found[1], end)
+        carried.append(across)
+        crossing = None if events is None else _met(events, across)
         if crossing is not None:
             runs.append(_stopped(run, crossing))
-            return _joined(runs, passages, instants), tuple(passages)
-        t, since, level = passage.end, passage.end, 0
+            return _joined(runs, carried, instants)
+        t, since, level = across.end, across.end, 0
 
 
-def _up_to(flow: Flow, passage: Passage, beyond: np.ndarray, end: float) -> tuple[Passage, np.ndarray]:
-    """(the passage, the state behind it), cut where the run is to end."""
-    if passage.end <= end:
-        return passage, beyond
-    last = passage.motion(np.array([end]))[0]
-    return replace(passage, end=end), last if flow.projection is None else flow.projection.closed(end, last, 0.0)[0]
+def _up_to(flow: Flow, across: SingularCrossing, beyond: np.ndarray, end: float) -> tuple[SingularCrossing, np.ndarray]:
+    """(the crossing, the state behind it), cut where the run is to end."""
+    if across.end <= end:
+        return across, beyond
+    last = across.motion(np.array([end]))[0]
+    return replace(across, end=end), last if flow.projection is None else flow.projection.closed(end, last, 0.0)[0]
 
 
-def _met(events: Events, passage: Passage) -> Crossing | None:
-    """The first event in a passage."""
+def _met(events: Events, across: SingularCrossing) -> Crossing | None:
+    """The first event in a singular crossing."""
 
     def motion(t: Any) -> np.ndarray:
-        return passage.motion(np.atleast_1d(t)).T if np.ndim(t) else passage.motion(np.array([t]))[0]
+        return across.motion(np.atleast_1d(t)).T if np.ndim(t) else across.motion(np.array([t]))[0]
 
-    return EventSearch(events, passage.start, motion(passage.start)).step(passage.start, passage.end, motion)
+    return EventSearch(events, across.start, motion(across.start)).step(across.start, across.end, motion)
 
 
 def _stopped(run: Run, crossing: Crossing) -> Run:
@@ -177,13 +174,13 @@ def _ended(flow: Flow, run: Run, nearness: Nearness) -> Run:
     return replace(run, status="singular", message=message, crossing=None)
 
 
-# -- one passage -------------------------------------------------------------------------------------
+# -- one crossing ----------------------------------------------------------------------------------
 
 
 def _passed(
     flow: Flow, t: float, x: np.ndarray, since: float, nearness: Nearness, near: float
-) -> tuple[Passage, np.ndarray] | None:
-    """(the passage, the state beyond it); None where the motion cannot be continued to the other side."""
+) -> tuple[SingularCrossing, np.ndarray] | None:
+    """(the crossing, the state beyond it); None where the motion cannot be continued to the other side."""
     x = x if flow.projection is None else flow.projection.closed(t, x, 0.0)[0]
     tau = _time_to(flow, t, x, nearness)
     if tau is None:
@@ -208,7 +205,7 @@ def _time_to(flow: Flow, t: float, x: np.ndarray, nearness: Nearness) -> float |
 
 def _continued(
     flow: Flow, t: float, x: np.ndarray, window: float, degree: int, nearness: Nearness, near: float, tau: float
-) -> tuple[Passage, np.ndarray] | None:
+) -> tuple[SingularCrossing, np.ndarray] | None:
     """The motion beyond by a polynomial through what it was before."""
     from numpy.polynomial.chebyshev import Chebyshev
 
@@ -226,7 +223,7 @@ def _continued(
             allowed = AGREE * (rtol * (1 + np.max(np.abs(found))) + atol)
             if np.max(np.abs(found - other)) > allowed or np.max(np.abs(beyond - found)) > allowed:
                 return None
-            return Passage(t, end, lambda s: np.column_stack([fit(s) for fit in fits[0]])), beyond
+            return SingularCrossing(t, end, lambda s: np.column_stack([fit(s) for fit in fits[0]])), beyond
         end += tau / 2
     return None
 
@@ -250,17 +247,17 @@ def _before(flow: Flow, t: float, x: np.ndarray, window: float, many: int) -> tu
 # -- all of it ---------------------------------------------------------------------------------------
 
 
-def _joined(runs: Sequence[Run], passages: Sequence[Passage], instants: np.ndarray | None) -> Run:
-    """One run of several, with the instants inside the passages."""
+def _joined(runs: Sequence[Run], carried: Sequence[SingularCrossing], instants: np.ndarray | None) -> Run:
+    """One run of several, with the instants inside what was carried across."""
     last = runs[-1]
-    if len(runs) == 1 and not passages:
+    if len(runs) == 1 and not carried:
         return last
     t, x = [run.t for run in runs], [run.x for run in runs]
     if instants is not None:
-        for passage in passages:
-            inside = instants[(instants > passage.start) & (instants < min(passage.end, last.end))]
+        for across in carried:
+            inside = instants[(instants > across.start) & (instants < min(across.end, last.end))]
             t.append(inside)
-            x.append(passage.motion(inside))
+            x.append(across.motion(inside))
     times, states = _in_order(np.concatenate(t), np.concatenate(x))
     if instants is not None:
         kept = np.isin(times, instants) | ((times == last.end) if last.status != "finished" else False)
@@ -272,6 +269,7 @@ def _joined(runs: Sequence[Run], passages: Sequence[Passage], instants: np.ndarr
         steps=sum(run.steps for run in runs),
         evaluations=sum(run.evaluations for run in runs),
         tracks=tuple(track for run in runs for track in run.tracks),
+        carried=tuple((across.start, across.end) for across in carried),
     )
 
 

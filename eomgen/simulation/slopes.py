@@ -1,4 +1,4 @@
-"""System, Assembly -> d(x')/dx, exactly: what implicit integrators ask for.
+"""Equations of motion -> d(x')/dx, exactly: what implicit integrators ask for.
 
 x' = (N u + nu, a), with a and lam from  M a - J^T lam = forcing,  J a = -gamma. The derivative of that solution comes
 from the same matrix, nothing is inverted in symbols:
@@ -12,8 +12,7 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, kinematic_rates, program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.simulation.solvers import Slope
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Scalar
@@ -23,22 +22,29 @@ LONG = 60_000  # operations from which on differences are cheaper than the deriv
 SHORT = 400  # operations up to which a function is not worth a compiler
 
 
-def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | None = None) -> Slope | None:
+def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> Slope | None:
     """(t, x) -> d(x')/dx; None where the derivative is so long that differences are cheaper.
 
     Args:
         p: the parameters' values.
         target: in which language a long function is run.
     """
-    states = assembly.symbols.q + assembly.symbols.u
-    n, k, m = len(assembly.M), len(assembly.J), len(states)
-    parts = (jacobian(kinematic_rates(assembly), states), jacobian(_residual(assembly), states), assembly.M, assembly.J)
+    states = equations.symbols.q + equations.symbols.u
+    n, k, m = len(equations.M), len(equations.J), len(states)
+    parts = (
+        jacobian(kinematic_rates(equations), states),
+        jacobian(_residual(equations), states),
+        equations.M,
+        equations.J,
+    )
     entries = tuple(x for rows in parts for row in rows for x in row)
-    program = program_of(entries, system.symbols, inputs=system.inputs, solve=bordered(assembly) if n else None)
+    program = program_of(
+        entries, equations.system.symbols, inputs=equations.system.inputs, solve=bordered(equations) if n else None
+    )
     if program.count.total > LONG:
         return None
     function = compiled(program, target if program.count.total > SHORT else "numpy")
-    ends = np.cumsum([len(assembly.N) * m, (n + k) * m, n * n])
+    ends = np.cumsum([len(equations.N) * m, (n + k) * m, n * n])
 
     def slope(t: float, x: np.ndarray) -> np.ndarray:
         rates, residual, M, J = np.split(np.asarray(function(t, x, p)), ends)
@@ -50,13 +56,13 @@ def slope_of(system: System, assembly: Assembly, p: np.ndarray, target: str | No
     return slope
 
 
-def _residual(assembly: Assembly) -> tuple[Scalar, ...]:
+def _residual(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
     """M a - J^T lam - forcing, J a + gamma"""
-    a, lam = assembly.symbols.a, assembly.symbols.lam
+    a, lam = equations.symbols.a, equations.symbols.lam
     found: list[Scalar] = []
-    for i, (row, force) in enumerate(zip(assembly.M, assembly.forcing, strict=True)):
+    for i, (row, force) in enumerate(zip(equations.M, equations.forcing, strict=True)):
         inertia = sum((x * y for x, y in zip(row, a, strict=True)), start=-force)
-        found.append(sum((-row[i] * y for row, y in zip(assembly.J, lam, strict=True)), start=inertia))
-    for row, bias in zip(assembly.J, assembly.gamma, strict=True):
+        found.append(sum((-row[i] * y for row, y in zip(equations.J, lam, strict=True)), start=inertia))
+    for row, bias in zip(equations.J, equations.gamma, strict=True):
         found.append(sum((x * y for x, y in zip(row, a, strict=True)), start=bias))
     return tuple(found)

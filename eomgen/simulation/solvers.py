@@ -66,7 +66,7 @@ def quick(method: str) -> Any:
     return Quick
 
 
-def knots_of(model: Model) -> tuple[float, ...]:
+def breakpoints_of(model: Model) -> tuple[float, ...]:
     """The times of the samples of every motion and input, ascending [s]."""
     laws = (
         leaf.value
@@ -78,14 +78,21 @@ def knots_of(model: Model) -> tuple[float, ...]:
     return tuple(sorted({float(t) for each in sampled if each is not None for t in each.spline.bounds}))
 
 
-def step(solver: Any, knots: Sequence[float], end: float) -> None:
-    """One step of an integrator, to the next of the knots at the latest; it goes on until the end."""
-    if knots:
-        k = bisect_right(knots, solver.t + SOLVED * max(1.0, abs(solver.t)))
-        solver.t_bound = min([end, *knots[k : k + 1]])
+def step(solver: Any, breakpoints: Sequence[float], end: float) -> None:
+    """One step of an integrator, to the next breakpoint at the latest; it goes on until the end.
+
+    Raises:
+        NotFinite: the right-hand side or its slope has no value.
+    """
+    if breakpoints:
+        k = bisect_right(breakpoints, solver.t + SOLVED * max(1.0, abs(solver.t)))
+        solver.t_bound = min([end, *breakpoints[k : k + 1]])
         if hasattr(solver, "_lsoda_solver"):
             solver._lsoda_solver._integrator.rwork[0] = solver.t_bound
-    solver.step()
+    try:
+        solver.step()
+    except ValueError as error:  # what an implicit method makes of a slope that is beyond doubles
+        raise NotFinite from error
     if solver.status == "finished" and solver.t < end:
         solver.status = "running"
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from eomgen.mechanics.constraints.freedom import Freedom
 from eomgen.mechanics.structures.structure import Structure
+from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
+from eomgen.model.warnings import warnings_of
 from eomgen.report.document import Document, plain_document
 from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
@@ -19,7 +22,7 @@ def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    return plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
+    return replace(plain_document(model, lambda: _entries(found), Lines(tuple(lines))), cautions=found.cautions)
 
 
 def _entries(found: Checked) -> dict[str, Any]:
@@ -29,11 +32,15 @@ def _entries(found: Checked) -> dict[str, Any]:
 def _declared_lines(found: Checked) -> list[str]:
     model, missing = found.model, found.missing
     remark = dict.fromkeys(found.driven, " (driven)") | dict.fromkeys(found.dependent, " (dependent)")
-    lines = [f"{model.name}: no problems found", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
+    count = len(warnings_of(model)) + len(found.cautions)
+    told = "no problems found" if not count else f"{count} warning{'s' if count > 1 else ''}"
+    lines = [f"{model.name}: {told}", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
     lines += [f"trusses: {listed(_truss(*each) for each in model.trusses.items())}"] if model.trusses else []
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
-    return [*lines, f"parameters without a value: {listed(missing)}"] if missing else lines
+    lines += [f"parameters without a value: {listed(missing)}"] if missing else []
+    units = inferred_units(model)
+    return [*lines, f"units inferred: {listed(f'{name} [{unit}]' for name, unit in units.items())}"] if units else lines
 
 
 def _start_lines(found: Checked) -> list[str]:
@@ -79,6 +86,7 @@ def _declared(found: Checked) -> dict[str, Any]:
         "driven": found.driven,
         "dependent": found.dependent,
         "missing_values": found.missing,
+        "inferred_units": inferred_units(model),
         "unknowns": list(model.unknowns),
         "mobility": found.mobility,
         "indeterminacy": None if structure is None else structure.indeterminacy,

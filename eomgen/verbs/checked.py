@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import EomgenError, MissingValues, ModelError
+from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.constraints.freedom import Freedom, freedom_of
 from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.equations.wellposed import massless_motions
+from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.assembly_modes import Branches, branches_of_loops
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.instant.velocity_analysis import mobility_of
@@ -42,6 +44,7 @@ class Checked:
     Args:
         open: the contacts that do not touch at the start.
         mobility, structure: of what has no coordinates; None of all else.
+        cautions: what will be refused, or hardly is meant.
     """
 
     model: Model
@@ -50,6 +53,7 @@ class Checked:
     mobility: int | None
     structure: Structure | None
     start: LoopStart
+    cautions: tuple[Problem, ...] = ()
 
     @property
     def missing(self) -> list[str]:
@@ -86,14 +90,30 @@ def checked_model(model: Model) -> Checked:
     modes = contacts_at_start(model).modes
     freedom = freedom_of(model, modes)
     still = not model.coordinates and bool(model.constraints or model.trusses)
+    start = _start_of_loops(model, modes, freedom)
     return Checked(
         model,
         freedom,
         tuple(name for name, mode in modes.items() if not mode.closed),
         mobility=mobility_of(model) if still else None,
         structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
-        start=_start_of_loops(model, modes, freedom),
+        start=start,
+        cautions=(*_open(model, start), *(_idle(model, modes) if model.coordinates else ())),
     )
+
+
+def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:
+    """Ties that do not close."""
+    ties = [name for name in model.constraints if f"'{name}'" in start.refused]
+    return (Problem(f"constraints.{ties[0]}" if ties else "constraints", start.refused),) if start.refused else ()
+
+
+def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
+    """Coordinates that move no mass, or several that move none together."""
+    try:
+        return massless_motions(recursive.assembled_by_recursion(system_of(model, modes)))
+    except (DerivationError, ModelError):  # verbs that need equations of motion tell it
+        return ()
 
 
 def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> LoopStart:
@@ -114,5 +134,5 @@ def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> Loop
         return LoopStart()
     except ModelError:
         raise
-    except EomgenError as error:  # an error of the verbs that need a start
+    except DerivationError as error:  # an error of the verbs that need a start
         return LoopStart(refused=error.what)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import errno
+import io
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from eomgen.errors import ModelError, UsageError
+from eomgen.files import read
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Input, Model
 from eomgen.model.samples import samples
@@ -17,6 +19,7 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.verbs.assignments import assignments, nearest_name
 
 EXAMPLE = "--follow theta=run.csv"
+LARGEST = 100_000_000  # bytes of a file
 LAWS = ("motion", "rate", "acceleration")
 
 
@@ -63,8 +66,11 @@ def _read(path: str, name: str) -> Expression:
         UsageError: it cannot be read, or holds no samples.
     """
     try:
-        with Path(path).open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
+        data = read(path, LARGEST)
+        if len(data) > LARGEST:
+            raise OSError(errno.EFBIG, f"it is longer than {LARGEST // 10**6} MB")
+        lines = io.StringIO(data.decode("utf-8-sig"), newline="")
+        rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UsageError(f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}", path) from error
     heads = [word.strip() for word in rows.pop(0)] if rows and not _is_number(rows[0][0]) else []

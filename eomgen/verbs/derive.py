@@ -2,17 +2,47 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from eomgen import pipeline
+from eomgen.equations import Equations
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import balance_of
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.model.own_units import units_of_model
 from eomgen.model.parts import Model
 from eomgen.report.document import Document
+from eomgen.report.statements import Grid, Step
+
+HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
 
-def derive_document(model: Model, *, method: str, certify: bool, full: bool = False) -> Document:
+def derive_document(model: Model, *, method: str, certify: bool, full: bool = False, units: bool = False) -> Document:
     """The derivation, and its certificate.
 
     Args:
         full: everything is printed, however long.
+        units: those of names, equations, reactions and outputs too.
     """
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
-    return document.proven(equations.certify() if certify else None)
+    document = _with_units(equations, document) if units else document
+    return equations.proven(document) if certify else document.proven(None)
+
+
+def _with_units(equations: Equations, document: Document) -> Document:
+    """With a section of units, and the same for machines."""
+    found = units_of_model(equations.model, equations.speeds)
+    found = {**found, "reactions": {named.name: named.unit for named in _reacting(equations)}}
+    grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
+    entries = document.entries
+    steps = (*document.steps, Step("units", "Units", grids))
+    return replace(document, steps=steps, entries=lambda: {**entries(), "units": found})
+
+
+def _reacting(equations: Equations) -> tuple[NamedReaction, ...]:
+    """The reactions; () where forces act at no place, or a body is held by nothing."""
+    try:
+        return tuple(named_reactions(balance_of(equations.system)))
+    except DerivationError:
+        return ()

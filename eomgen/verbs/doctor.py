@@ -6,11 +6,8 @@ import os
 import platform
 import shutil
 from importlib import metadata
-from pathlib import Path
 
-import platformdirs
-
-from eomgen.codegen.build import compiler
+from eomgen.codegen.build import cache_folder, compiler
 from eomgen.report.document import Document, lines_document
 from eomgen.version import __version__
 
@@ -18,7 +15,7 @@ from eomgen.version import __version__
 def doctor_document() -> Document:
     """What this machine can do."""
     rows: list[tuple[str, str | None]] = [("eomgen", __version__), ("python", platform.python_version())]
-    for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs"):
+    for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs", "quicktions", "python-flint"):
         try:
             rows.append((package, metadata.version(package)))
         except metadata.PackageNotFoundError:
@@ -41,6 +38,8 @@ def _without(what: str) -> str:
 
 def _cache() -> str | None:
     """The folder of compiled code, where it can be written."""
-    place = Path(platformdirs.user_cache_dir("eomgen"))
+    place = cache_folder()
+    if place is None:
+        return None
     there = next(folder for folder in (place, *place.parents) if folder.exists())
     return str(place) if os.access(there, os.W_OK) else None

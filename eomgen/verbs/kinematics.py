@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.errors import ExpressionError, ModelError, UsageError
+from eomgen.errors import ModelError, UsageError
+from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
 from eomgen.report.kinematics.result import Kinematics
@@ -14,8 +15,8 @@ from eomgen.verbs.assignments import nearest_name
 def kinematics_asked(
     model: Model,
     *,
-    at: str | None = None,
-    given: Sequence[str] = (),
+    at: WrittenEquation | None = None,
+    given: Sequence[WrittenEquation] = (),
     relative: Sequence[str] = (),
 ) -> Kinematics:
     """The motion at one instant.
@@ -30,16 +31,10 @@ def kinematics_asked(
     pairs = tuple(_pair(model, text) for text in relative)
     try:
         return found_in(model, at, given=given, relative=pairs)
-    except ExpressionError as error:
-        raise UsageError(f"{error.what} (in {_asked(at, given)})", mend=error.mend) from error
     except ModelError as error:
         if not given:
             raise
         raise UsageError(f"--given: {error.what}", mend=error.mend) from error
-
-
-def _asked(at: str | None, given: Sequence[str]) -> str:
-    return " ".join([*([f'--at "{at}"'] if at else []), *(f'--given "{text}"' for text in given)])
 
 
 def _pair(model: Model, text: str) -> tuple[str, str]:

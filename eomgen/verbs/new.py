@@ -1,36 +1,36 @@
-"""eomgen new: a commented starter model."""
+"""eomgen new: a commented starter model, or an example that ships, as a file of one's own."""
 
 from __future__ import annotations
 
 import json
+import os
 import shlex
 from dataclasses import replace
 from pathlib import Path
 
-from eomgen.errors import RunFailed, UsageError
+from eomgen import files
+from eomgen.errors import UsageError
 from eomgen.report.document import Document, lines_document
+from eomgen.verbs.examples import example_named
 
 TEMPLATES = Path(__file__).parent.parent / "templates"
 
 
-def new_document(name: str) -> Document:
-    """A commented starter model NAME.toml; never over a file that is there.
+def new_document(name: str, example: str | None = None) -> Document:
+    """A commented starter model NAME.toml, or the example as it is; never over a file that is there.
 
     Raises:
-        UsageError: the file is there already, or the name is none.
-        RunFailed: it cannot be written.
+        UsageError: the file is there already, the name is none, or there is no such example.
+        WriteFailed: it cannot be written.
     """
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if not path.stem.isprintable() or path.stem.startswith(".") or path.name == ".toml":
         raise UsageError(f"{name!r} is no name for a model", mend="use letters, digits, _ and -")
-    text = (TEMPLATES / "starter.toml").read_text(encoding="utf-8")
-    text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", shlex.quote(str(path)))
-    try:
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise UsageError(f"'{path}' is there already", mend="take another name") from None
-    except OSError as error:
-        raise RunFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+    text = (example_named(example) if example else TEMPLATES / "starter.toml").read_text(encoding="utf-8")
+    if not example:
+        text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", shlex.quote(str(path)))
+    if os.path.lexists(path):
+        raise UsageError(f"'{path}' is there already", mend="take another name")
+    files.write(path, text)
     document = lines_document(lambda: {"file": str(path)}, str(path))
     return replace(document, notes=(f"now try: eomgen derive {shlex.quote(str(path))}",))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,11 +20,11 @@ from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.model.checks.outputs import FUNCTIONS
 from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.part import altered
+from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values, equation_typed, with_values
 from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
 from eomgen.proof.at_a_state import NumericState
@@ -38,9 +38,10 @@ from eomgen.report.reaction_payload import null_space, reaction_formulas
 from eomgen.report.statements import Found, Lines, Listing, Statement, prose
 from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expression.expressions import Expression, parse, parse_equation
+from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.tolerances import ROUNDING
-from eomgen.verbs.assignments import assignments, nearest_name
+from eomgen.symbolic.numeric.work import doing
+from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
 from eomgen.verbs.outcome import listed
 
 NO_VALUE = "it has no single value at the start"
@@ -69,17 +70,26 @@ class FoundReactions(dict[str, Quantity]):
         return self._proof(self)
 
 
-def reactions(model: ModelOrPath, *, at: str | None = None, from_rest: tuple[str, ...] = ()) -> FoundReactions:
+@doing("the reactions")
+def reactions(
+    model: ModelOrPath,
+    *,
+    at: WrittenEquation | AtRest | str | None = None,
+    from_rest: Values | Sequence[str] = (),
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> FoundReactions:
     """Every reaction: a function of coordinates and rates, or exact and a number at an instant.
 
     Args:
         at: the instant, an equation; the first time after the start at which it holds.
-        from_rest: positions `theta=0` from which the motion starts with all speeds 0; () for the model's own start.
+        from_rest: positions, {"theta": 0} or `theta=0`, from which the motion starts at rest; (): its own start.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: no equation, or no coordinate of that name.
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     held = bool(in_loads(model))
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
@@ -92,7 +102,11 @@ def reactions(model: ModelOrPath, *, at: str | None = None, from_rest: tuple[str
 
 
 def reactions_document(
-    model: Model, *, at: str | None = None, from_rest: tuple[str, ...] = (), certify: bool = True
+    model: Model,
+    *,
+    at: WrittenEquation | AtRest | None = None,
+    from_rest: Values | Sequence[str] = (),
+    certify: bool = True,
 ) -> Document:
     """Every reaction, as `reactions` finds it, in words and for machines.
 
@@ -107,7 +121,7 @@ def reactions_document(
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
-    space = null_space(system, equations.graph) if open_ and equations is not None else []
+    space = null_space(equations.graph) if open_ and equations is not None else []
     document = plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **({"null_space": space} if space else {})},
@@ -128,7 +142,7 @@ def _function(name: str) -> str:
 
 def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Quantity]:
     """Every reaction as a formula, and its value at the start."""
-    found = reaction_formulas(equations.system, equations.graph)
+    found = reaction_formulas(equations.graph)
     values, missing = _at_start(equations)
     answered = {}
     for named in asked:
@@ -160,27 +174,29 @@ def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> C
     """The equations of motion, then every formula and its number at the start."""
     texts = {name: answer.exact for name, answer in found.items() if answer.exact is not None}
     values = {name: answer.value for name, answer in found.items() if answer.value is not None}
-    system, assembly = equations.system, equations.graph
-    certificate = certificate_of_equations(system, assembly)
+    graph = equations.graph
+    certificate = certificate_of_equations(graph)
     try:
-        symbols, start = assembly.symbols, equations.start()
+        symbols, start = graph.symbols, equations.start()
         numbers = {symbols.t: 0.0, **dict(zip((*symbols.q, *symbols.u), start.tolist(), strict=True))}
-        state = NumericState(system, assembly, known_exactly(system.scope), numbers)
+        state = NumericState(graph, known_exactly(graph.system.scope), numbers)
     except (MissingValues, DerivationError):
-        return certificate + reaction_texts(system, assembly, texts)
-    return certificate + reaction_texts(system, assembly, texts) + reaction_numbers(state, texts, values)
+        return certificate + reaction_texts(graph, texts)
+    return certificate + reaction_texts(graph, texts) + reaction_numbers(state, texts, values)
 
 
 # -- at an instant, or from rest -------------------------------------------------------------------
 
 
-def _answers(model: Model, asked: list[NamedReaction], at: str | None, from_rest: bool) -> answers.Answers:
+def _answers(
+    model: Model, asked: list[NamedReaction], at: WrittenEquation | AtRest | str | None, from_rest: bool
+) -> answers.Answers:
     """The answers to outputs that ask for the reactions, in their order."""
-    instant = None if at is None else _instant(at)
+    instant = None if at is None else _instant(model, at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
     values = [parse(named.name, references=True) for named in asked]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
-    model = _checked(model, f"--at {at}", outputs=Table(outputs))
+    model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs))
     return answers.solve(model)
 
 
@@ -195,32 +211,26 @@ def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) ->
     return Certificate(tuple(map(told, solved.certify().checks)))
 
 
-def _instant(text: str) -> WrittenEquation | AtRest:
-    if text.strip() == AtRest.text:
+def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquation | AtRest:
+    if not isinstance(at, str):
+        return at
+    if at.strip() == AtRest.text:
         return AtRest()
     try:
-        return WrittenEquation(*parse_equation(text), text=text)
+        return equation_typed(model, at)[0]
     except ExpressionError as error:
-        raise UsageError(f"--at {text}: {error.what}", mend=error.mend or 'write --at "theta = pi/2"') from error
+        raise UsageError(f"at {at}: {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
 
 
-def _at_rest(model: Model, given: tuple[str, ...]) -> Model:
+def _at_rest(model: Model, given: Values | Sequence[str]) -> Model:
     """The model with these starting positions, all speeds 0; the same where none are given.
 
     Raises:
         UsageError: no coordinate of that name, a driven one, or no expression of parameters.
     """
-    coordinates: dict[str, Any] = dict(model.coordinates)
-    words = [word for text in given for word in re.split(r",(?=[^()]*=)", text)]
-    for name, text in assignments(words, '--from-rest "theta=0"'):
-        if name not in coordinates:
-            raise UsageError(f"--from-rest: there is no coordinate '{name}'", mend=nearest_name(name, coordinates))
-        if coordinates[name].driven:
-            raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", mend=_free(model))
-        coordinates[name] = altered(coordinates[name], start=_expression(name, text))
-    if not given:
-        return model
-    return _checked(model, "--from-rest", coordinates=Table(coordinates))
+    values = given if isinstance(given, Mapping) else dict(assignments(split_words(given), '"theta=0"'))
+    refuse_no_place(model, values)
+    return with_values(model, None, values, options=("parameters", "from_rest")).model
 
 
 def _checked(model: Model, where: str, **changes: Any) -> Model:
@@ -233,17 +243,6 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
         return replace(model, **changes)
     except ModelError as error:
         raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", mend=error.mend) from error
-
-
-def _free(model: Model) -> str:
-    return f"there are {listed(name for name, part in model.coordinates.items() if not part.driven)}"
-
-
-def _expression(name: str, text: str) -> Expression:
-    try:
-        return parse(text)
-    except ExpressionError as error:
-        raise UsageError(f"--from-rest {name}={text}: {error.what}", mend=error.mend) from error
 
 
 # -- as it is told -----------------------------------------------------------------------------------

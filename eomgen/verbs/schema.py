@@ -11,4 +11,4 @@ from eomgen.report.document import Document, lines_document
 def schema_document() -> Document:
     """The JSON Schema of a model file."""
     found = json_schema()
-    return lines_document(lambda: found, json.dumps(found, ensure_ascii=False, indent=2))
+    return lines_document(lambda: found, json.dumps(found, indent=2))

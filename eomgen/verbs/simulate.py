@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,17 +13,17 @@ from eomgen import pipeline
 from eomgen.codegen.accelerations import closing_accelerations
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
-from eomgen.errors import ExpressionError, UsageError
+from eomgen.errors import UsageError
+from eomgen.files import is_stream
+from eomgen.model.fields import WrittenEquation
+from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
 from eomgen.questions.run import run as simulated
 from eomgen.report.document import Document, plain_document
 from eomgen.report.statements import Grid, Statement, prose
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.verbs.assignments import assignments, nearest_name
-from eomgen.verbs.outcome import prepared
+from eomgen.symbolic.expression.units import Unit
 
 MOST_TOLD = 20  # phases in the text
 
@@ -32,25 +32,23 @@ def simulate_document(
     model: Model,
     *,
     time: float,
-    given: tuple[str, ...],
-    start: tuple[str, ...],
+    start: Mapping[str, float],
     how: Stepping,
     target: str | None,
     samples: int | None,
-    until: str | None,
+    until: WrittenEquation | None,
     output: str | None,
     plot: str | None,
+    units: bool = False,
     certify: bool = True,
 ) -> Document:
     """The motion from the start; trajectory and picture are written where they are asked for."""
-    parameters = _parameters(model, given)
     _check_ending(output)
     equations = pipeline.derive(model)
     run = simulated(
         equations,
         time=time,
-        parameters=parameters,
-        start=_start(equations, parameters, start),
+        start=start,
         target=target,
         samples=samples,
         how=how,
@@ -58,15 +56,16 @@ def simulate_document(
     )
     files = [path for path in (output, plot) if path]
     if output:
-        _write_run(run, output)
+        _write_run(run, output, units_of(model, run.columns()) if units else None)
     if plot:
         from eomgen.report.plots import plot_trajectory
 
-        units = {q: part.unit.si for q, part in model.coordinates.items() if part.unit is not None}
-        plot_trajectory(run, prepared(plot), title=model.name, units=units)
+        plot_trajectory(run, plot, title=model.name, units=units_of(model, run.coordinates))
     assembled = f"The start was {run.assembled}." if run.assembled else ""
-    notes = tuple(note for note in (assembled, run.remark if run.reactions else "") if note)
-    first = _first_instant(equations, run, parameters)
+    cut = {"interrupted": "it was interrupted", "out of patience": "there was no time left"}.get(run.status, "")
+    unproven = f"Nothing of it is proven: {cut}." if certify and cut else ""
+    notes = tuple(note for note in (unproven, assembled, run.remark if run.reactions else "") if note)
+    first = _first_instant(equations, run)
     document = plain_document(
         model,
         lambda: _run_payload(model, run, files) | first,
@@ -74,18 +73,20 @@ def simulate_document(
         failed="" if run.ok else run.message,
         notes=notes,
     )
+    if cut:
+        return replace(document.proven(None), interrupted=run.status == "interrupted")
     return document.proven(run.certify() if certify else None)
 
 
-def _first_instant(equations: Equations, run: Trajectory, parameters: Mapping[str, float]) -> dict[str, Any]:
+def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:
     """Accelerations and multipliers at the start; null where one has no single value."""
     if not len(run.t):
         return {"start_accelerations": {}, "start_multipliers": {}}
     phase, x = run.phases[0].model, dict(zip(run.coordinates + run.speeds, run.x[0].tolist(), strict=True))
-    system, assembly = phase.declared, phase.declared_assembly
-    state = np.array([x[node.name] for node in (*system.symbols.q, *system.symbols.u)])
-    p = parameter_vector(equations.model, parameters)
-    found = closing_accelerations(system, assembly, float(run.t[0]), state, p)
+    declared = phase.declared_equations
+    state = np.array([x[node.name] for node in (*declared.symbols.q, *declared.symbols.u)])
+    p = parameter_vector(equations.model)
+    found = closing_accelerations(declared, float(run.t[0]), state, p)
     return {"start_accelerations": found.a, "start_multipliers": found.lam}
 
 
@@ -95,23 +96,15 @@ def _check_ending(output: str | None) -> None:
     Raises:
         UsageError: the name ends in neither .csv nor .npz.
     """
-    if output and not _is_stream(output) and Path(output).suffix.lower() not in (".csv", ".npz"):
+    if output and not is_stream(output) and Path(output).suffix.lower() not in (".csv", ".npz"):
         raise UsageError(f"no trajectory can be written as '{output}'", mend="endings are .csv, .npz")
 
 
-def _is_stream(path: str) -> bool:
-    """A pipe or a terminal: nothing to move into place."""
-    return Path(path).exists() and not Path(path).is_file()
-
-
-def _write_run(run: Trajectory, output: str) -> None:
+def _write_run(run: Trajectory, output: str, units: Mapping[str, Unit] | None) -> None:
     if Path(output).suffix.lower() == ".npz":
-        run.to_npz(prepared(output))
-    elif _is_stream(output):
-        with open(output, "w", encoding="utf-8") as file:
-            run.to_csv(file)
+        run.to_npz(output)
     else:
-        run.to_csv(prepared(output))
+        run.to_csv(output, units)
 
 
 def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
@@ -119,7 +112,10 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     shown = run.phases[:MOST_TOLD] if len(run.phases) > 1 else ()
     lines = [f"from {phase.start:.6g} s: {phase.ended_by}" for phase in shown]
     lines += [f"and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
-    rows = tuple((name, f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in run.columns().items() if len(x))
+    units, columns = units_of(model, run.columns()), run.columns()
+    columns = {name: x / units[name].size if name in units else x for name, x in columns.items()}
+    heads = {name: f"{name} [{units[name]}]" if name in units else name for name in columns}
+    rows = tuple((heads[name], f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in columns.items() if len(x))
     table = (Grid(("", "start", "end"), rows),) if rows else ()
     return (prose(f"{model.name}: {run.summary()}"), *(prose(f"  {line}") for line in lines), *table)
 
@@ -141,7 +137,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "remark": run.remark,
         "files": files,
         "assembled": run.assembled,
-        "passages": [{"start": first, "end": last} for first, last in run.passages],
+        "passages": [{"start": first, "end": last} for first, last in run.carried],
         "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],
     }
     return payload if files else payload | {"trajectory": columns}
@@ -149,41 +145,3 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
 
 def _finite(x: float | None) -> float | None:
     return float(x) if x is not None and abs(x) < float("inf") else None
-
-
-def _parameters(model: Model, given: tuple[str, ...]) -> dict[str, float]:
-    """The values of `--set m=2`: numbers, or expressions of numbers.
-
-    Raises:
-        UsageError: no parameter of that name, or no number.
-    """
-    values = {}
-    for name, text in assignments(given, "--set m=2"):
-        if name not in model.parameters:
-            raise UsageError(f"--set: there is no parameter '{name}'", mend=nearest_name(name, model.parameters))
-        values[name] = _value(text, {}, f"--set {name}={text}")
-    return values
-
-
-def _start(equations: Equations, parameters: Mapping[str, float], given: tuple[str, ...]) -> dict[str, float]:
-    """The values of `--start theta=pi/2`, in which parameters may stand.
-
-    Raises:
-        UsageError: no coordinate or speed of that name, or no number.
-    """
-    known = exact_parameters(equations.model, parameters)
-    names = (*equations.coordinates, *equations.speeds)
-    values = {}
-    for name, text in assignments(given, "--start theta=1"):
-        if name not in names:
-            raise UsageError(f"--start: there is no coordinate or speed '{name}'", mend=nearest_name(name, names))
-        values[name] = _value(text, known, f"--start {name}={text}")
-    return values
-
-
-def _value(text: str, known: Mapping[str, Any], where: str) -> float:
-
-    try:
-        return float(parse(text).evaluate({**known, "pi": math.pi}))
-    except (ExpressionError, OverflowError) as error:
-        raise UsageError(f"{where}: {getattr(error, 'what', error)}", mend=getattr(error, "mend", "")) from error

@@ -16,7 +16,7 @@ from eomgen.mechanics.bodies.inertia import armature_energy
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.equations import articulated
 from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
 from eomgen.model.unbuilt import unbuilt
@@ -45,11 +45,11 @@ def system(request) -> System:
     return found
 
 
-def accelerations(assembly: Assembly, system: System) -> np.ndarray:
+def accelerations(equations: EquationsOfMotion, system: System) -> np.ndarray:
     """a at the first random state with values."""
     for seed in range(1, 20):
         try:
-            return accelerations_at(assembly, state_of(system, seed))
+            return accelerations_at(equations, state_of(system, seed))
         except NoValue:
             continue
     raise AssertionError("no state with values was found")
@@ -121,13 +121,13 @@ def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
 @formulations
 def test_an_assembly_has_the_shapes_that_it_promises(formulation, system):
     """N nq x nu; M nu x nu; c, Q, forcing nu; J k x nu; sigma, gamma, phi k."""
-    assembly = formulation.assemble(system)
+    equations = formulation.assemble(system)
     nq, nu, k = len(system.symbols.q), len(system.symbols.u), len(system.ties.closing)
-    assert [len(row) for row in assembly.N] == [nu] * nq and len(assembly.nu) == nq
-    assert [len(row) for row in assembly.M] == [nu] * nu
-    assert [len(row) for row in (assembly.c, assembly.Q, assembly.forcing)] == [nu] * 3
-    assert [len(row) for row in assembly.J] == [nu] * k
-    assert [len(row) for row in (assembly.sigma, assembly.gamma, assembly.phi, assembly.symbols.lam)] == [k] * 4
+    assert [len(row) for row in equations.N] == [nu] * nq and len(equations.nu) == nq
+    assert [len(row) for row in equations.M] == [nu] * nu
+    assert [len(row) for row in (equations.c, equations.Q, equations.forcing)] == [nu] * 3
+    assert [len(row) for row in equations.J] == [nu] * k
+    assert [len(row) for row in (equations.sigma, equations.gamma, equations.phi, equations.symbols.lam)] == [k] * 4
 
 
 @formulations

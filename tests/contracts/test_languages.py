@@ -91,7 +91,7 @@ forces.f = { kind = "force", point = "b.origin", force = ["F", 0] }
 PROGRAMS = {
     "every operation": every_operation,
     "pendulum": lambda: right_hand_side(pendulum()),
-    "inputs": lambda: right_hand_side(cart_pole(), {"F": 0}),
+    "inputs": lambda: right_hand_side(cart_pole(F=0)),
     "a loop": lambda: right_hand_side(spring_row(20)),
     "a tie": lambda: right_hand_side(tied_pendulum()),
     "a tie said three times": lambda: right_hand_side(tied_pendulum(3)),

@@ -98,7 +98,7 @@ ANSWERS: dict[str, dict[str, str]] = {
     "ch13_p1": {
         "M2": "72*m_plate/(72 - pi)",
         "M3": "pi*m_plate/(72 - pi)",
-        "J_O": "10000*a^2*(12*m_bar + m_plate*(11448 - 451/2*pi)/(72 - pi))",
+        "J_O": "a^2*(12*m_bar + m_plate*(11448 - 451/2*pi)/(72 - pi))",
     },
     "ch13_p2": {
         "M1": "72*M/(90 - pi)",
@@ -109,7 +109,7 @@ ANSWERS: dict[str, dict[str, str]] = {
         "J_xy": f"{NET}*(9*pi - 1782)",
         "J_Delta": f"{NET}*(756 - 41/20*pi)",
     },
-    "ch13_p3": {"J_O": "10000*(m_bar*l^2/3 + m_ring*((R^2 + r^2)/2 + d^2))"},
+    "ch13_p3": {"J_O": "m_bar*l^2/3 + m_ring*((R^2 + r^2)/2 + d^2)"},
     "ch13_p4": {"J_x": "141/14*M*a^2", "J_y": "141/14*M*a^2", "J_xy": "27/4*M*a^2", "J_Delta": "93/28*M*a^2"},
     "ch21_p1": {"V_A": "-9*p*a", "V_B": "18*p*a", "V_E": "7*p*a", "M_E": "20*p*a^2", "H_E": "0"},
     "ch21_p2": {"V_A": "6*p*a", "M_A": "16*p*a^2", "V_C": "7*p*a", "V_E": "3*p*a"},

@@ -78,7 +78,7 @@ rate = "theta1' - 2*phi'*cos(theta1)"
 [forces.push]
 kind = "force"
 point = "slider.center"
-force = ["-F*sign(x_c')*abs(x_c)", 0]
+force = ["-F*sign(x_c')*abs(x_c)/l_max", 0]
 [forces.spring]
 kind = "spring"
 points = ["crank_a.center", "slider.center"]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, Scalar
 from eomgen.symbolic.expression.symbols import Symbols
@@ -27,7 +28,15 @@ def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int 
     )
 
 
-def assembly(
+@dataclass(frozen=True)
+class Bare:
+    """What code generation asks of a system: its symbols, and the model's own expression of each input."""
+
+    symbols: Symbols
+    inputs: Mapping[str, Scalar] = field(default_factory=dict)
+
+
+def equations_of(
     symbols: Symbols,
     M: Sequence[Sequence[Scalar]],
     c: Sequence[Scalar],
@@ -39,11 +48,12 @@ def assembly(
     gamma: Sequence[Scalar] = (),
     phi: Sequence[Scalar] = (),
     accelerations: Sequence[Scalar] | None = None,
-) -> Assembly:
+    inputs: Mapping[str, Scalar] | None = None,
+) -> EquationsOfMotion:
     """Equations with q' = u."""
     n = len(symbols.q)
-    return Assembly(
-        symbols,
+    return EquationsOfMotion(
+        Bare(symbols, inputs or {}),
         N=tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
         nu=(0,) * n,
         M=tuple(map(tuple, M)),
@@ -60,27 +70,27 @@ def assembly(
     )
 
 
-def pendulum() -> Assembly:
+def pendulum() -> EquationsOfMotion:
     """A point mass on a massless rod: theta'' = -g/l sin(theta)."""
     s = symbols("theta", "m l g")
     m, l, g = s.parameters.values()
     theta, rate = s.q[0], s.u[0]
     T, V = Fraction(1, 2) * m * l**2 * rate**2, -m * g * l * cos(theta)
-    return assembly(s, [[m * l**2]], [0], [-m * g * l * sin(theta)], T=T, V=V)
+    return equations_of(s, [[m * l**2]], [0], [-m * g * l * sin(theta)], T=T, V=V)
 
 
-def cart_pole() -> Assembly:
-    """A cart M pushed by F, a point mass m on a rod l below it, theta from the vertical."""
+def cart_pole(**inputs: Scalar) -> EquationsOfMotion:
+    """A cart M pushed by F, a point mass m on a rod l below it, theta from the vertical; inputs: F of its own."""
     s = symbols("x theta", "M m l g", "F")
     M, m, l, g = s.parameters.values()
     (_, theta), (v, w) = s.q, s.u
     T = Fraction(1, 2) * (M * v**2 + m * (v**2 + 2 * l * cos(theta) * v * w + l**2 * w**2))
     inertia = [[M + m, m * l * cos(theta)], [m * l * cos(theta), m * l**2]]
     Q = [s.inputs["F"], -m * g * l * sin(theta)]
-    return assembly(s, inertia, [-m * l * sin(theta) * w**2, 0], Q, T=T, V=-m * g * l * cos(theta))
+    return equations_of(s, inertia, [-m * l * sin(theta) * w**2, 0], Q, T=T, V=-m * g * l * cos(theta), inputs=inputs)
 
 
-def tied_pendulum(copies: int = 1) -> Assembly:
+def tied_pendulum(copies: int = 1) -> EquationsOfMotion:
     """The pendulum in x, y with its rod as a closing tie, said `copies` times: phi = (x^2 + y^2 - l^2)/2."""
     s = symbols("x y", "m l g", ties=copies)
     m, l, g = s.parameters.values()
@@ -89,10 +99,10 @@ def tied_pendulum(copies: int = 1) -> Assembly:
     rows = [(k * x, k * y) for k in range(1, copies + 1)]
     gamma = [k * (vx**2 + vy**2) for k in range(1, copies + 1)]
     phi = [k * (x**2 + y**2 - l**2) / 2 for k in range(1, copies + 1)]
-    return assembly(s, [[m, 0], [0, m]], [0, 0], [0, -m * g], T=T, V=V, J=rows, gamma=gamma, phi=phi)
+    return equations_of(s, [[m, 0], [0, m]], [0, 0], [0, -m * g], T=T, V=V, J=rows, gamma=gamma, phi=phi)
 
 
-def spring_row(n: int) -> Assembly:
+def spring_row(n: int) -> EquationsOfMotion:
     """n unit masses in a row between n + 1 unit springs, with a mass matrix made full: M = 1 + e e^T, K = M K0."""
     s = symbols(" ".join(f"q{i}" for i in range(n)))
     q = s.q
@@ -101,4 +111,4 @@ def spring_row(n: int) -> Assembly:
     for f in force:
         total = total + f
     M = [[2 if i == j else 1 for j in range(n)] for i in range(n)]
-    return assembly(s, M, [0] * n, [f + total for f in force])
+    return equations_of(s, M, [0] * n, [f + total for f in force])

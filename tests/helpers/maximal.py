@@ -28,8 +28,8 @@ from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
-from eomgen.symbolic.numeric.dense import dense_solution, independent, without_rounding
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.dense import balanced, independent, without_rounding
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 
@@ -179,3 +179,21 @@ def _hold_norms(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, place: i
 
 def _tilde(a: np.ndarray) -> np.ndarray:
     return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
+def dense_solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
+    """A x = right: by elimination, whose error knows no units; where A is not regular, the least squares' x.
+
+    Args:
+        regular: whether A is (an x of least squares mixes units: milligrams beside tonnes would count as 0).
+        smallest: singular values of the scaled A below this part of the largest count as 0.
+    Raises:
+        NoValue: A was called regular and is not.
+    """
+    scaled, rows, columns = balanced(A)
+    if not regular:
+        return np.asarray(columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0])
+    try:
+        return columns * np.linalg.solve(scaled, rows * right)
+    except np.linalg.LinAlgError as error:
+        raise NoValue("the equations of motion are singular") from error

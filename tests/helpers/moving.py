@@ -36,14 +36,14 @@ def at(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 
 def solved(system: System, values: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
     """(a, lam) of M a = forcing + J^T lam, J a + gamma = 0 at a state; what is not named is 0."""
-    assembly = recursive.assembled_by_recursion(system)
+    equations = recursive.assembled_by_recursion(system)
     symbols = system.symbols
     state = {s: fifty_digits().number(0) for s in (*symbols.q, *symbols.u, symbols.t)}
     by_name = symbols.parameters | {s.name: s for s in (*symbols.q, *symbols.u)}
     state |= {by_name[name]: fifty_digits().number(1) * value for name, value in values.items()}
-    M, J = (np.array([at(row, state) for row in rows]) for rows in (assembly.M, assembly.J))
+    M, J = (np.array([at(row, state) for row in rows]) for rows in (equations.M, equations.J))
     n, k = len(M), len(J)
-    right = np.concatenate([at(assembly.forcing, state), -at(assembly.gamma, state)])
+    right = np.concatenate([at(equations.forcing, state), -at(equations.gamma, state)])
     found = np.linalg.solve(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right)
     return found[:n], found[n:]
 

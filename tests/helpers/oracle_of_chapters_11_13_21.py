@@ -319,9 +319,6 @@ def ch13_b4(n: Numbers) -> Numbers:
     return in_plane(body.scaled(n["M"] / body.mass), (0, 0))
 
 
-CM2 = 1e4  # kg cm^2 in one kg m^2
-
-
 @oracle
 def ch13_p1(n: Numbers) -> Numbers:
     """The areas share the plate's net mass; a hole is a plate of negative mass."""
@@ -330,7 +327,7 @@ def ch13_p1(n: Numbers) -> Numbers:
     density = n["m_plate"] / (whole.mass - hole.mass)
     bar = segment((0, 0), (6 * a, 0)).scaled(n["m_bar"] / (6 * a))
     body = bar + whole.scaled(density) + hole.scaled(-density)
-    return {"M2": density * whole.mass, "M3": density * hole.mass, "J_O": CM2 * body.polar((0, 0))}
+    return {"M2": density * whole.mass, "M3": density * hole.mass, "J_O": body.polar((0, 0))}
 
 
 @oracle
@@ -350,7 +347,7 @@ def ch13_p2(n: Numbers) -> Numbers:
 def ch13_p3(n: Numbers) -> Numbers:
     bar = segment((0, 0), (n["l"], 0)).scaled(n["m_bar"] / n["l"])
     ring = disc((n["d"], 0), n["R"]) + disc((n["d"], 0), n["r"]).scaled(-1)
-    return {"J_O": CM2 * (bar + ring.scaled(n["m_ring"] / ring.mass)).polar((0, 0))}
+    return {"J_O": (bar + ring.scaled(n["m_ring"] / ring.mass)).polar((0, 0))}
 
 
 @oracle

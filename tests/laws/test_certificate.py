@@ -12,6 +12,7 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
+from eomgen.mechanics import formulations
 from eomgen.mechanics.balance import balance, components, friction
 from eomgen.mechanics.balance import unit_wrenches as effects
 from eomgen.mechanics.balance.balance import Balance, BodyEquation
@@ -19,7 +20,7 @@ from eomgen.mechanics.bodies import contact_modes as contacts
 from eomgen.mechanics.bodies import inertia, kinematics, recursion, tree
 from eomgen.mechanics.constraints import ties
 from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions import reactions
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
@@ -67,23 +68,23 @@ def with_one_sign_turned(entry: Scalar):
         yield total
 
 
-def mutants(assembly: Assembly):
-    """Every assembly with one sign turned in one entry: (what, assembly)."""
+def mutants(equations: EquationsOfMotion):
+    """The equations with one sign turned in one entry: (what, equations)."""
     for field in ("c", "Q", "forcing", "sigma", "gamma", "nu"):
-        row = getattr(assembly, field)
+        row = getattr(equations, field)
         for i, entry in enumerate(row):
             for wrong in with_one_sign_turned(entry):
-                yield f"{field}[{i}]", replace(assembly, **{field: (*row[:i], wrong, *row[i + 1 :])})
+                yield f"{field}[{i}]", replace(equations, **{field: (*row[:i], wrong, *row[i + 1 :])})
     for field in ("M", "J", "N"):
-        rows = getattr(assembly, field)
+        rows = getattr(equations, field)
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
                 for wrong in with_one_sign_turned(entry):
                     changed = (*row[:j], wrong, *row[j + 1 :])
-                    yield f"{field}[{i}][{j}]", replace(assembly, **{field: (*rows[:i], changed, *rows[i + 1 :])})
+                    yield f"{field}[{i}][{j}]", replace(equations, **{field: (*rows[:i], changed, *rows[i + 1 :])})
     for field in ("T", "V"):
-        for wrong in with_one_sign_turned(getattr(assembly, field)):
-            yield field, replace(assembly, **{field: wrong})
+        for wrong in with_one_sign_turned(getattr(equations, field)):
+            yield field, replace(equations, **{field: wrong})
 
 
 @pytest.mark.parametrize("name", SMALL)
@@ -91,10 +92,26 @@ def test_a_wrong_sign_in_any_term_turns_it_red(name):
     """One term of one entry of M, c, Q, forcing, J, sigma, gamma, N, nu, T or V with the other sign."""
     equations = derived(name)
     planted = 0
-    for what, assembly in mutants(equations.graph):
+    for what, mutant in mutants(equations.graph):
         planted += 1
-        assert not certify(equations.system, assembly).ok, f"a wrong sign in {what} was not seen"
+        assert not certify(mutant).ok, f"a wrong sign in {what} was not seen"
     assert planted >= 7  # the parallelogram is short: M, c, Q, forcing, T and V of one crank
+
+
+@pytest.mark.parametrize("method", ["projection", "kinetostatic"])
+def test_a_method_goes_its_own_way_and_an_error_on_it_turns_it_red(monkeypatch, method):
+    """M, c and Q by the method's own way are those that are held; by the energies nothing is asked of the wrenches."""
+    right = formulations.PROJECTION
+
+    def wrong(system):
+        found = right.assemble(system)
+        return replace(found, c=tuple(-x for x in found.c))
+
+    monkeypatch.setitem(formulations.METHODS, method, replace(right, assemble=wrong))
+    model = eomgen.load(MODELS / "double_pendulum.toml")
+    found = eomgen.derive(model, method=method).certify()
+    assert [c.name for c in found.checks if not c.ok] == ["M, c and Q of the derivation are those of the equations"]
+    assert eomgen.derive(model, method="lagrange").certify().ok
 
 
 def turned_rate_matrix(w, wd):
@@ -137,7 +154,7 @@ def test_an_error_in_the_engine_turns_it_red(monkeypatch, name, place, attribute
     """A wrong sign or a lost term in a law itself, not in its result."""
     monkeypatch.setattr(place, attribute, wrong)
     equations = derived(name)
-    assert not certify(equations.system, equations.graph).ok
+    assert not certify(equations.graph).ok
 
 
 # -- the balance of the bodies ---------------------------------------------------------------------
@@ -231,13 +248,13 @@ def test_an_error_in_reactions_or_friction_turns_it_red(monkeypatch, name, place
     """A wrong sign or a lost term in what the balance of the bodies or the friction is made of."""
     monkeypatch.setattr(place, attribute, wrong)
     equations = derived(name)
-    assert not certify(equations.system, equations.graph).ok
+    assert not certify(equations.graph).ok
 
 
 def test_where_reactions_do_not_follow_the_balance_is_left_out():
     """A body that nothing holds has no reactions; the other checks stand."""
     equations = eomgen.derive(replace(eomgen.load(MODELS / "atwood.toml"), constraints={}, outputs={}))
-    names = [check.name for check in certify(equations.system, equations.graph).checks]
+    names = [check.name for check in certify(equations.graph).checks]
     assert "every body is in balance with its reactions" not in names and len(names) >= 7
 
 
@@ -304,3 +321,30 @@ def test_the_certificate_holds_where_a_closing_tie_rubs(name):
     assert certificate.ok, str(certificate)
     told = {check.name for check in certificate.checks}
     assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= told
+
+
+@pytest.mark.parametrize("law", ['motion = "w*t^2"', 'rate = "w*t^2"', 'acceleration = "w*t^2", speed = "w"'])
+def test_what_is_driven_moves_as_given(law):
+    """nu = f', f or f' = w + the integral of f: any other nu turns it red, at some t other than 0."""
+    equations = eomgen.derive(eomgen.loads(DRIVEN.format(law=law))).graph
+    name = "what is driven moves as given"
+    assert {check.name: check.ok for check in certify(equations).checks}[name]
+    for wrong in (0, equations.nu[0] + equations.symbols.t, -equations.nu[0]):
+        turned = replace(equations, nu=(wrong, *equations.nu[1:]))
+        assert not {check.name: check.ok for check in certify(turned).checks}[name]
+
+
+DRIVEN = """
+eomgen = 1
+space = "plane"
+parameters = {{ m = 2, l = 1, w = 3 }}
+[coordinates]
+a = {{ {law} }}
+b = 0.3
+[bodies.crank]
+shape = {{ kind = "rod", mass = "m", length = "l" }}
+joint = {{ kind = "revolute", angle = "a" }}
+[bodies.arm]
+shape = {{ kind = "rod", mass = "m", length = "l" }}
+joint = {{ kind = "revolute", on = "crank.end", angle = "b" }}
+"""

@@ -8,9 +8,15 @@ import numpy as np
 import pytest
 
 import eomgen
+from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError
-from eomgen.model.values import numeric_parameters
-from eomgen.simulation.history import history
+from eomgen.mechanics.constraints.freedom import freedoms
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.joined import phase_text
+from eomgen.simulation.motion import Plan, through
+from eomgen.simulation.phase_change import at_start
+from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.result import Trajectory
 
 pytestmark = pytest.mark.slow
@@ -157,6 +163,37 @@ def test_a_ball_falls_on_the_floor_and_stays():
     assert result.reactions["reaction_n(floor)"][-1] == pytest.approx(2 * G)
 
 
+def test_contacts_that_never_touch_at_once_are_left_one_by_one():
+    """A ball falls past a higher floor's wall and a slope: t = sqrt(2 h/g), though no place touches all three."""
+    text = """
+parameters = { m = 2, g = 9.81 }
+coordinates = { x = { start = 0.5 }, y = { start = 2 } }
+bodies.ball.shape = { kind = "particle", mass = "m" }
+bodies.ball.joint = { kind = "placed", at = ["x", "y"] }
+constraints.floor = { kind = "support", point = "ball.origin", normal = [0, 1], at = [0, 0], unilateral = true }
+constraints.wall = { kind = "support", point = "ball.origin", normal = [1, 0], at = [-1, 0], unilateral = true }
+constraints.slope = { kind = "support", point = "ball.origin", normal = [1, 1], at = [0, 0], unilateral = true }
+"""
+    result = run(text, 2)
+    assert ends(result)[0] == "the support 'floor' closes"
+    assert result.phases[0].end == pytest.approx(math.sqrt(4 / G), abs=1e-10) and result["y"][-1] == 0
+
+
+def test_what_two_contacts_hold_alike_becomes_free_once():
+    """A disc on two tracks in one line: of the second its push alone becomes free, its no-slip row is the first's."""
+    text = """
+parameters = { m = 2, g = 9.81, r = 0.5 }
+coordinates = { x = { speed = 1 }, phi = {} }
+bodies.disc.shape = { kind = "disc", mass = "m", radius = "r" }
+bodies.disc.joint = { kind = "placed", at = ["x", "r"], angle = "phi" }
+constraints.one = { kind = "rolling", body = "disc", line = { at = [0, 0], normal = [0, 1] } }
+constraints.other = { kind = "rolling", body = "disc", line = { at = [0, 0], normal = [0, 1] }, unilateral = true }
+"""
+    model = eomgen.loads(HEAD + text)
+    system = PhaseModels(model, parameter_vector(model), "numpy").without_contacts.system
+    assert {row.tie for row in system.ties.rows} == {"one"} and freedoms(system.ties) == 2
+
+
 def test_a_start_below_the_floor_is_refused():
     """What is passed through, and by how much."""
     text = """
@@ -238,6 +275,27 @@ def test_a_block_of_free_coordinates_slides_as_the_placed_one_does():
     one, other = run(BLOCK, 1.5), run(free, 1.5)
     assert one["x"][-1] == pytest.approx(other["X"][-1] / math.cos(0.5), abs=1e-7)
     assert [p.end for p in one.phases] == pytest.approx([p.end for p in other.phases], abs=1e-9)
+
+
+SLED = """
+parameters = { m = 10, g = 9.81, mu = 0.3, beta = BETA, s = SINE, c = COSINE }
+coordinates.x = { speed = 5 }
+coordinates.y = { dependent = true }
+bodies.sled.mass = "m"
+bodies.sled.joint = { kind = "planar", x = "x", y = "y", angle = 0 }
+constraints.floor = { kind = "support", point = "sled.center", normal = NORMAL, friction = "mu" }
+"""
+
+
+@pytest.mark.parametrize("normal", ['["-sin(beta)", "cos(beta)"]', '["-s", "c"]'])
+@pytest.mark.parametrize("beta", [-0.1, 0, 1e-9, 0.1])
+def test_a_sled_slides_on_a_slope_as_on_level_ground(beta, normal):
+    """N = m g cos b and x'' = -g (sin b + mu cos b) cos b: nothing is divided by sin b, which may be 0."""
+    sine, cosine = math.sin(beta), math.cos(beta)
+    text = SLED.replace("NORMAL", normal).replace("BETA", f"{beta!r}")
+    result = run(text.replace("COSINE", f"{cosine!r}").replace("SINE", f"{sine!r}"), 1)
+    assert result.reactions["reaction_n(floor)"] == pytest.approx(10 * G * cosine, rel=1e-9)
+    assert result["x"][-1] == pytest.approx(5 - G * (sine + 0.3 * cosine) * cosine / 2, rel=1e-9)
 
 
 def test_the_stop_is_found_to_the_order_of_the_tolerance():
@@ -472,36 +530,40 @@ def test_a_rough_path_holds_a_body_at_rest():
 # -- a condition on the way ------------------------------------------------------------------------
 
 
-def passages(text: str, name: str, level: int, time: float):
+def runs_until(text: str, name: str, level: int, time: float) -> tuple[PhaseModels, list[PhaseRun]]:
     """The phases until a coordinate or rate is at a level."""
     model = eomgen.loads(HEAD + text)
-    p = np.array(list(numeric_parameters(model).values()))
-    return history(model, p, until=lambda phase: phase.system.scope.names[name] - level, time=time)
+    models = PhaseModels(model, parameter_vector(model), "numpy")
+    fine = Stepping(rtol=1e-12, atol=1e-12)
+    plan = Plan(time, fine, until=lambda phase: phase.system.scope.names[name] - level)
+    return models, list(through(models, at_start(models, 0.0, None, None), plan))
 
 
 def test_a_condition_is_met_in_the_phase_in_which_it_holds():
     """Up the incline and back: x = 0 again is met in the second phase, after the stop."""
-    up, down = passages(BLOCK, "x", 0, 5.0)
-    assert (up.kind, up.owner, up.message[:31]) == ("stops", "plane", "the support 'plane' slides back")
-    assert (down.kind, down.after) == ("condition", None) and up.t_1 == down.t_0
+    models, (up, down) = runs_until(BLOCK, "x", 0, 5.0)
+    assert (up.bound.kind, up.bound.owner) == ("stops", "plane") and not up.is_met
+    assert phase_text(models, up)[:31] == "the support 'plane' slides back"
+    assert down.is_met and down.after is None and up.run.end == down.here.t
     climb, fall = math.sin(0.5) + 0.3 * math.cos(0.5), math.sin(0.5) - 0.3 * math.cos(0.5)
     assert down.end["x'"] == pytest.approx(-4 * math.sqrt(fall / climb), abs=1e-11)
 
 
 def test_a_condition_that_ends_a_phase_has_a_before_and_an_after():
     """x' = 0 is the stop itself: the phase before decelerates, the one after slides back."""
-    (only,) = passages(BLOCK, "x'", 0, 5.0)
-    phase, values = only.after
-    t, x = np.array([only.t_1]), phase.state(values)[None, :]
-    before, after = (s.evaluated(t, x, s.system.symbols.a)[0, 0] for s in (only.phase, phase))
-    assert only.kind == "condition" and only.t_1 == pytest.approx(4 / (G * (math.sin(0.5) + 0.3 * math.cos(0.5))))
+    models, (only,) = runs_until(BLOCK, "x'", 0, 5.0)
+    phase = models.of(only.after.configuration)
+    t, x = np.array([only.run.end]), phase.state(only.after.values)[None, :]
+    before, after = (s.functions.evaluated(t, x, s.system.symbols.a)[0, 0] for s in (only.phase, phase))
+    assert only.is_met and only.run.end == pytest.approx(4 / (G * (math.sin(0.5) + 0.3 * math.cos(0.5))))
     assert before == pytest.approx(-G * (math.sin(0.5) + 0.3 * math.cos(0.5)))
     assert after == pytest.approx(-G * (math.sin(0.5) - 0.3 * math.cos(0.5)))
 
 
 def test_a_condition_that_is_never_met_ends_with_the_time():
     """x = 100 up the incline."""
-    assert [passage.kind for passage in passages(BLOCK, "x", 100, 1.0)] == ["stops", "time"]
+    _, runs = runs_until(BLOCK, "x", 100, 1.0)
+    assert [run.run.status for run in runs] == ["event", "finished"] and not any(run.is_met for run in runs)
 
 
 # -- strings ---------------------------------------------------------------------------------------

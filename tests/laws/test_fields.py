@@ -19,7 +19,6 @@ from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.field import (
     VelocityField,
     acceleration_pole,
-    curvature_radius,
     field_of,
     inflection_center,
     least_speed,
@@ -28,6 +27,7 @@ from eomgen.mechanics.fields.field import (
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.instant.body_motion import body_motions
+from eomgen.model.outputs.path import curvature_radius
 from eomgen.questions import answers
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.motion_from_start import MotionFromStart

@@ -383,7 +383,7 @@ def test_change_points_are_passed_in_runs_with_contacts_too(until, at, passed):
     T = 1/3 a'^2 of both cranks and (m/2) a'^2 of the bar, which does not turn (m = 1); V = 2 g sin a.
     """
     run = eomgen.simulate(eomgen.loads(PARALLELOGRAM), time=4, until=until)
-    assert run.ok and len(run.passages) == passed and len(run.phases) == 2
+    assert run.ok and len(run.carried) == passed and len(run.phases) == 2
     a, da = run["a"], run["a'"]
     E = (1 / 3 + 1 / 2) * da**2 + 2 * 9.81 * np.sin(a)
     assert E == pytest.approx(np.full(len(E), E[0]), rel=1e-7)
@@ -485,3 +485,38 @@ along = [1, 0]
     d = np.array([np.cos(0.3), np.sin(0.3)])
     assert [run["x'"][0], run["y'"][0]] == pytest.approx((np.array([1, 2]) @ d) * d)
     assert run["phi'"][0] == pytest.approx(0, abs=1e-12)
+
+
+REACHING = """
+eomgen = 1
+space = "plane"
+[coordinates]
+a = 0.5
+b = 0.5
+[points]
+W = [{away}, 0]
+[bodies.p]
+shape = {{ kind = "rod", mass = 1, length = 1 }}
+joint = {{ kind = "revolute", angle = "a" }}
+[bodies.q]
+shape = {{ kind = "rod", mass = 1, length = 1 }}
+joint = {{ kind = "revolute", on = "p.end", angle = "b" }}
+[constraints.c]
+kind = "pin"
+points = ["q.end", "W"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("away", "says"),
+    [
+        ("2.0000000001", "'c' stays open: by 1"),
+        ("2.00000001", "'c' stays open: by 1"),
+        ("2", "all ties close at"),
+        ("3", "'c' stays open: by 1"),
+    ],
+)
+def test_a_gap_that_is_small_for_ever_is_not_closed(away, says):
+    """Two rods of length 1 against a point beyond 2: 1e-10 m is missing, whatever doubles take for 0."""
+    with pytest.raises(eomgen.DerivationError, match=says):
+        eomgen.simulate(eomgen.loads(REACHING.format(away=away)), time=1)

@@ -10,7 +10,7 @@ import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.first_integrals.integrals import first_integrals
+from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
@@ -228,7 +228,7 @@ def phase(text: str) -> PhaseEquations:
 def motion(each: PhaseEquations, end: float) -> tuple[np.ndarray, list[dict]]:
     """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
     system = each.system
-    rhs = compiled(right_hand_side(with_accelerations(system, each.assembly), system.inputs), "numpy")
+    rhs = compiled(right_hand_side(with_accelerations(each.equations)), "numpy")
     parameters = numeric_parameters(each.model)
     p = np.array(list(parameters.values()))
     q, u = start_values(each.model)
@@ -250,13 +250,17 @@ def exact_start(each: PhaseEquations) -> dict:
     return start | {u: scope.value(part[u.name[:-1]].speed) for u in scope.symbols.u}
 
 
+def _integrals(equations):
+    return (*energy_integral(equations), *momentum_integrals(equations))
+
+
 @pytest.mark.parametrize("name", ONE_WAY)
 def test_first_integrals_stay_constant(name):
     """E and p_k - integral of Q_k dt at seven instants of a motion."""
     text, end = ONE_WAY[name]
     each = phase(text)
     _, states = motion(each, end)
-    for integral in first_integrals(each.system, each.assembly):
+    for integral in _integrals(each.equations):
         values = [evaluate((integral.expression,), state, FLOAT)[0] for state in states]
         assert np.ptp(values) < 1e-8 * (1 + max(map(abs, values))), integral.name
 
@@ -277,7 +281,7 @@ def test_first_integrals_stay_constant(name):
 def test_the_integrals_of_a_system_are_found(name, expected):
     """Cyclic coordinates have momenta; energy stays where no force without potential works."""
     each = phase(ONE_WAY[name][0])
-    assert {integral.name for integral in first_integrals(each.system, each.assembly)} == expected
+    assert {integral.name for integral in _integrals(each.equations)} == expected
 
 
 def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
@@ -289,7 +293,7 @@ def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
         + ('joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "F*sin(c*t)" }\n')
     )
     each = phase(text)
-    (integral,) = first_integrals(each.system, each.assembly)
+    (integral,) = _integrals(each.equations)
     symbols = each.system.symbols
     names = {**symbols.parameters, "t": symbols.t, "x'": symbols.u[0]}
     expected = parse("m*x' - F/c*(1 - cos(c*t))").evaluate(names)
@@ -301,7 +305,7 @@ def test_speeds_by_the_integrals_are_those_of_the_motion(name):
     """u(q) of the energy theorem and the momenta against u(t) at q(t)."""
     text, end = ONE_WAY[name]
     each = phase(text)
-    rates = rates_of(each.system, each.assembly, exact_start(each), accelerations=each.accelerations)
+    rates = rates_of(each.equations, exact_start(each), accelerations=each.accelerations)
     assert rates is not None
     _, states = motion(each, end)
     for state in states[1:]:
@@ -313,7 +317,7 @@ def test_speeds_by_the_integrals_are_those_of_the_motion(name):
 def test_two_freedoms_without_momenta_have_no_speeds():
     """A double pendulum's speeds are no functions of its angles."""
     each = phase_equations_of(eomgen.load("models/double_pendulum.toml"))
-    assert rates_of(each.system, each.assembly, exact_start(each)) is None
+    assert rates_of(each.equations, exact_start(each)) is None
 
 
 def test_an_energy_with_an_unknown_start_is_refused():
@@ -321,7 +325,7 @@ def test_an_energy_with_an_unknown_start_is_refused():
     each = phase(PENDULUM)
     start = {node: x for node, x in exact_start(each).items() if node.name != "theta"}
     with pytest.raises(eomgen.EomgenError, match="no closed form: theta"):
-        rates_of(each.system, each.assembly, start)
+        rates_of(each.equations, start)
 
 
 # -- laws of motion ----------------------------------------------------------------------------------

@@ -206,7 +206,7 @@ def test_n_four_bars_pass_their_change_points_as_one_pendulum():
         atol=1e-12,
         t_eval=run.t,
     )
-    assert run.ok and len(run.passages) == 6 and run.drift < 1e-7
+    assert run.ok and len(run.carried) == 6 and run.drift < 1e-7
     for q in ("a0", "a1", "a2"):
         assert run[q] == pytest.approx(oracle.y[0], abs=1e-6)
     assert run["b1"] == pytest.approx(0, abs=1e-8) and run.gap < 1e-8

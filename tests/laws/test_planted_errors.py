@@ -1,4 +1,4 @@
-"""Errors planted one at a time are seen by the product itself: a sample of twenty of benchmarks/planted_errors.toml."""
+"""Errors planted one at a time are seen by the product: twenty of benchmarks/planted_errors.toml, of twenty rooms."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ ROOT = Path(__file__).parents[2]
 COMMAND = """
 import sys
 sys.path[:0] = ["benchmarks", "."]
-from planted_errors import entries, judged, warm
-known = [planted for planted in entries() if not planted.open]
+from planted_errors import judged, sample, warm
 warm()
-print(*sorted({seen for _, seen, _ in judged(known[:: len(known) // 20][:20], tests=False, verbose=False)}))
+print(*sorted({seen for _, seen, _ in judged(sample(20), tests=False, verbose=False)}))
 """
 
 
@@ -26,7 +25,7 @@ def test_each_old_text_stands_where_the_list_says():
     sys.path.insert(0, str(ROOT / "benchmarks"))
     from planted_errors import entries
 
-    assert all(planted.patched for planted in entries())
+    assert [planted.gone for planted in entries() if planted.gone] == []
     assert len({planted.name for planted in entries()}) == len(entries())
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from forked import needs_sh
 
 import eomgen
 from eomgen.cli import main
@@ -53,6 +54,7 @@ def test_a_wrong_letter_in_one_file_is_seen(target, role):
 
 
 @needs_cc
+@needs_sh
 def test_code_that_is_wrong_is_not_written(monkeypatch, tmp_path):
     """A compiler that bends sine: exit 3, no files, the certificate in JSON; with --no-certify the files come."""
     script = tmp_path / "cc"

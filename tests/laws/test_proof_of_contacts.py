@@ -1,4 +1,4 @@
-"""Contacts, dampers, springs are proved by what they are: surfaces that touch, power that is taken, V = 0 at rest."""
+"""Contacts and elements are proved by what they are declared to be: surfaces that touch, pulls along a line."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from pathlib import Path
 import pytest
 
 import eomgen
+from eomgen.mechanics.bodies import inertia, loads
 from eomgen.model.constraints import rolling, support
 from eomgen.model.constraints.round_bodies import Nearest, RollingBall, Wheel
+from eomgen.model.forces import damper, reach
 from eomgen.model.forces.damper import Damper
 from eomgen.model.forces.spring import Spring
 from eomgen.model.forces.torsion_damper import TorsionDamper
+from eomgen.model.forces.torsion_spring import TorsionSpring
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.expression.spatial import times
 
 MODELS = Path(__file__).parents[2] / "models"
 TOUCH = "contacts lie on both surfaces, and neither part nor slip"
-BRAKE = "dampers take power"
-SLACK = "springs have no energy at their rest length"
+DECLARED = "springs, dampers and drives act as they are declared, equal and opposite"
 
 DISC = """
 eomgen = 1
@@ -61,26 +63,41 @@ eomgen = 1
 space = "plane"
 [points]
 O = [0, 0]
+W = [-1, 0.2]
 [coordinates]
 x = { start = 0.9, speed = 0.3 }
-y = { start = 0.4, speed = -0.2 }
-a = { start = 0.3, speed = 0.7 }
+phi = { start = 20.5, speed = -0.2 }
+psi = { start = 0.3, speed = 0.7 }
+[bodies.cart]
+mass = 2
+joint = { kind = "prismatic", axis = [0.6, 0.8], displacement = "x", stiffness = 40, rest = 0.1, damping = 2 }
+[bodies.rod]
+shape = { kind = "rod", mass = 1, length = 0.5 }
+joint = { kind = "revolute", on = "cart", angle = "phi", stiffness = 7, damping = 0.5, rest = 0.5, torque = "3*t" }
 [bodies.bar]
 shape = { kind = "rod", mass = 1, length = 0.5 }
-joint = { kind = "planar", x = "x", y = "y", angle = "a" }
-[forces.spring]
-kind = "spring"
-points = ["O", "bar.end"]
-stiffness = 30
-length = 0.8
-[forces.damper]
-kind = "damper"
-points = ["O", "bar.start"]
-damping = 2
-[forces.turn]
-kind = "torsion_damper"
-body = "bar"
-damping = 0.3
+joint = { kind = "revolute", on = "rod.end", angle = "psi" }
+[forces]
+spring = { kind = "spring", points = ["O", "bar.end"], stiffness = 30, length = 0.8 }
+slope = { kind = "spring", points = ["rod.end", "W"], stiffness = 30, length = "start", along = [1, 2] }
+from_start = { kind = "spring", points = ["bar.end", "cart.origin"], stiffness = 30, length = "start" }
+damper = { kind = "damper", points = ["O", "bar.start"], damping = "2 + x^2" }
+pull = { kind = "between", points = ["W", "bar.end"], pull = "3/r^2 + r'" }
+turn = { kind = "torsion_damper", bodies = ["cart", "bar"], damping = 0.3 }
+twist = { kind = "torsion_spring", bodies = ["rod", "bar"], stiffness = 6, rest = "0.2*t + 0.1" }
+ground = { kind = "torsion_spring", body = "bar", stiffness = 6 }
+"""
+
+
+SOLID = """
+eomgen = 1
+space = "space"
+[coordinates]
+a = { start = 0.3, speed = 0.7 }
+[bodies.solid]
+mass = 2
+inertia = INERTIA
+joint = { kind = "revolute", axis = [1, 2, 2], angle = "a" }
 """
 
 
@@ -137,6 +154,20 @@ def test_an_error_in_where_things_touch_is_not_called_right(monkeypatch, model, 
     assert status(certificate_of(model) if "\n" in model else of_model(model), TOUCH) == "fails"
 
 
+def test_products_of_inertia_in_the_wrong_places_are_seen(monkeypatch):
+    """n . I n, by the places in which the model's file has them: all routes share the tensor."""
+    name, own = "moments and products of inertia stand where they are declared", inertia._inertia
+
+    def mixed(scope, body, declared):
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = own(scope, body, declared)
+        return ((xx, yz, xz), (yz, yy, xy), (xz, xy, zz))
+
+    text = SOLID.replace("INERTIA", "[3, 4, 5, 0.1, 0.2, 0.3]")
+    assert status(certificate_of(text), name) == "holds"
+    monkeypatch.setattr(inertia, "_inertia", mixed)
+    assert status(certificate_of(text), name) == "fails"
+
+
 def pushing(self, scene):
     return tuple(replace(load, force=times(-1, load.force)) for load in own_loads(self, scene))
 
@@ -146,20 +177,46 @@ def turning(self, scene):
 
 
 def stretched(self, scene, length):
-    return length - scene.value(self.length) / 2
+    return own_stretch(self, scene, length) + 1
 
 
-own_loads, own_turn = Damper.loads, TorsionDamper.loads
+def acting_once(self, scene):
+    return own_turn(self, scene)[:1]
+
+
+def relaxed_elsewhere(self, scene):
+    return own_twist(self, scene) + 2 * scene.value(self.rest)
+
+
+def along_the_gap(scene, points, along=None):
+    line = own_reach(scene, points, along)
+    return replace(line, rate=line.rate * line.length)
+
+
+def stiffer(motion, link):
+    return [replace(e, potential=2 * e.potential, effort=2 * e.effort - e.drive) for e in own_efforts(motion, link)]
+
+
+own_loads, own_turn, own_twist, own_stretch = Damper.loads, TorsionDamper.loads, TorsionSpring._twist, Spring._stretch
+own_reach, own_efforts = reach.reach, loads._joint_efforts
 ELEMENT_ERRORS = [
-    (BRAKE, Damper, "loads", pushing),
-    (BRAKE, TorsionDamper, "loads", turning),
-    (SLACK, Spring, "_stretch", stretched),
+    (Damper, "loads", pushing),
+    (TorsionDamper, "loads", turning),
+    (TorsionDamper, "loads", acting_once),
+    (TorsionSpring, "_twist", relaxed_elsewhere),
+    (Spring, "_stretch", stretched),
+    (damper, "reach", along_the_gap),
+    (loads, "_joint_efforts", stiffer),
 ]
 
 
-@pytest.mark.parametrize(("check", "place", "attribute", "wrong"), ELEMENT_ERRORS)
-def test_an_error_in_the_law_of_an_element_is_seen(monkeypatch, check, place, attribute, wrong):
-    """A damper that drives, a spring that is slack at another length: all routes share the law, and agree."""
-    assert status(certificate_of(ELEMENTS), check) == "holds"
+@pytest.mark.parametrize(("place", "attribute", "wrong"), ELEMENT_ERRORS)
+def test_an_error_in_the_law_of_an_element_is_seen(monkeypatch, place, attribute, wrong):
+    """A damper that drives, a spring that is slack elsewhere, a couple without its opposite: all routes share it."""
     monkeypatch.setattr(place, attribute, wrong)
-    assert status(certificate_of(ELEMENTS), check) == "fails"
+    assert status(certificate_of(ELEMENTS), DECLARED) == "fails"
+
+
+def test_elements_of_every_kind_act_as_they_are_declared():
+    """Along a direction, from the start, on the ground, in joints; an angle of several turns is the same couple."""
+    assert status(certificate_of(ELEMENTS), DECLARED) == "holds"

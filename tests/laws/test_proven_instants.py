@@ -17,6 +17,8 @@ from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_asked as verb
 from eomgen.verbs.outcome import shown
 
+pytestmark = pytest.mark.slow
+
 CRANK = MODELS / "slider_crank.toml"
 HOOP = MODELS / "bead_on_turning_hoop.toml"
 

@@ -209,7 +209,7 @@ along = [1, 0]
 def test_a_dependent_rate_that_declared_speeds_make_regular_is_not_called_singular():
     """y' = tan(theta) x' has no value where the sleigh stands across, y' = v sin(theta) has."""
     run = eomgen.simulate(eomgen.loads(SLEIGH), time=3, samples=20)
-    assert run["theta"].min() < np.pi / 2 < run["theta"].max() and not run.passages and run.ok
+    assert run["theta"].min() < np.pi / 2 < run["theta"].max() and not run.carried and run.ok
 
 
 def test_an_equation_of_rounding_alone_says_nothing_of_a_reaction():

@@ -130,7 +130,7 @@ def test_where_nothing_has_values_nothing_is_called_wrong():
 def test_every_piece_of_a_function_is_entered():
     """x goes through -5, 2 and 9: four pieces, each with a state of its own, and the start in one of them."""
     equations = eomgen.derive(eomgen.loads(wire("max(0, x - 9) + max(0, x - 2) + abs(x + 5)")))
-    states = Trials(equations.system, equations.graph).states
+    states = Trials(equations.graph).states
     (switch,) = [switch for switch in states.switches if switch.quantity is equations.system.symbols.q[0]]
     entered = [switch.piece(next(iter(supply)).state) for where, supply in states.supplies if where == "in a piece"]
     assert sorted(entered) == [0, 1, 2, 3]

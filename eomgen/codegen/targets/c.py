@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping, Sequence
 
-from eomgen.codegen.build import library
+from eomgen.codegen.build import function_of, library
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
@@ -195,7 +195,7 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
     """NAME_rhs of the files, compiled."""
     name = role.main(stem)
     text = texts[f"{name}.c"].replace(f'#include "{name}.h"\n', texts[f"{name}.h"], 1)
-    function, outputs = getattr(library(text, quickly=True), name), len(program.outputs)
+    function, outputs = function_of(library(text, quickly=True), name), len(program.outputs)
     reals = ctypes.POINTER(ctypes.c_double)
     function.argtypes = [ctypes.c_double, *[reals] * (5 if program.accelerations else 4)]
     function.restype = None

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.build import function_of
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Functions
 from eomgen.codegen.trial import Address
@@ -38,7 +39,7 @@ def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: i
     """The functions of `c_text` as Python's; the number of constants is that of its layout."""
     states, given, outputs = len(program.states), len(program.accelerations), len(program.outputs)
     arrays = 6 if given else 5
-    make, evaluate, many = (getattr(library, f"{stem}_{what}") for what in ("constants", "evaluate", "many"))
+    make, evaluate, many = (function_of(library, f"{stem}_{what}") for what in ("constants", "evaluate", "many"))
     make.argtypes, make.restype = [_ADDRESS] * 2, None
     evaluate.argtypes, evaluate.restype = [ctypes.c_double, *[_ADDRESS] * arrays], None
     many.argtypes, many.restype = [ctypes.c_size_t, *[_ADDRESS] * arrays], None

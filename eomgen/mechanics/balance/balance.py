@@ -14,7 +14,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.components import Component, components_of
-from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, in_turned_axes, joint_effects
+from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, joint_effects
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.ties import holds_identically, slide_power
@@ -24,7 +24,7 @@ from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import Vector, apply, cross, plus, times, vector_of
+from eomgen.symbolic.expression.spatial import Vector, apply, cross, in_turned_axes, plus, times, vector_of
 
 DIRECTIONS = ("x", "y", "z", "moment x", "moment y", "moment z")
 

@@ -14,7 +14,9 @@ from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -56,16 +58,21 @@ def solution_of_balance(
     flat = iter(entries)
     rows = [{j: next(flat) for j in row} for row in coefficients]
     parameters = frozenset(balance.system.symbols.parameters.values())
+    steady = _steady_parameters(balance.system)
 
     def simple(a: Scalar) -> int:
-        """Numbers, products of parameters, and what may vanish at some state or for some angle."""
-        return 0 if type(a) is not Node else 1 if _is_product(a, parameters) else 2
+        """Numbers, products of parameters that are not 0, and what may vanish at some state or for some angle."""
+        return 0 if type(a) is not Node else 1 if _is_product(a, steady) else 2
+
+    def has_sign(a: Node) -> bool:
+        """Whether it is such a parameter, or a sum or root of terms of one sign."""
+        return bool(sign_of_terms(a, steady))
 
     last = [j for j, c in enumerate(balance.components) if c.rubbing]
     values = values_at_a_state(balance.system, entries)
     return general_solution(
         LinearSystem(rows, needed, len(balance.names), values),
-        Pivots(rank=simple, last=last, sure=sure, tests=pushes, factors=parameters),
+        Pivots(rank=simple, last=last, sure=sure, tests=pushes, factors=parameters, steady=has_sign),
     )
 
 
@@ -108,6 +115,12 @@ def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
         j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
         for j in rubbing
     }
+
+
+def _steady_parameters(system: System) -> frozenset[Node]:
+    """The parameters that are not 0 in the model, and those that have no value."""
+    values = exact_parameters(system.scope.model)
+    return frozenset(x for name, x in system.symbols.parameters.items() if values.get(name, 1) != 0)
 
 
 def _is_product(a: Node, parameters: frozenset[Node]) -> bool:

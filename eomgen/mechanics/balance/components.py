@@ -12,7 +12,6 @@ from eomgen.mechanics.balance.unit_wrenches import (
     Effect,
     effects_at_joint,
     effects_of_load,
-    in_turned_axes,
     scaled_axes,
 )
 from eomgen.mechanics.bodies.contact_modes import CLOSED, friction_factor
@@ -23,7 +22,7 @@ from eomgen.model.driven import driven_coordinates
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, transposed, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, Vector, in_turned_axes, transposed, vector_of
 
 EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 

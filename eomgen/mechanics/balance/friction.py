@@ -1,4 +1,4 @@
-"""System, Assembly -> Assembly with friction: the contacts' own reactions solved together with the accelerations.
+"""Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.
 
     M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
 
@@ -19,7 +19,7 @@ from eomgen.mechanics.balance.balance_solution import combined_reaction, solutio
 from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, rubbing_of
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
@@ -56,24 +56,33 @@ class Rub:
         return tuple(self.factor * d for d in self.along)
 
 
-def with_friction(system: System, assembly: Assembly) -> Assembly:
+def equations_of_motion(system: System) -> EquationsOfMotion:
+    """The equations of motion of a system in their shortest form, friction in Q and forcing.
+
+    Raises:
+        DerivationError: as `with_friction`.
+    """
+    return with_friction(recursive.assembled_by_recursion(system))
+
+
+def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
     """The equations of motion, friction in Q and forcing, and the accelerations explicit; the same where nothing rubs.
 
     Raises:
         DerivationError: the normal reaction of a contact that rubs is indeterminate.
     """
-    if not rubs(system):
-        return assembly
-    rubbing = _Rubbing(system, assembly)
+    if not rubs(equations.system):
+        return equations
+    rubbing = _Rubbing(equations)
     a, forces = rubbing.accelerations, rubbing.normals
     friction = tuple(
         sum((rub.force[k] * N for rub, N in zip(rubbing.found, forces, strict=True)), start=0)
-        for k in range(len(assembly.M))
+        for k in range(len(equations.M))
     )
     return replace(
-        assembly,
-        Q=tuple(x + f for x, f in zip(assembly.Q, friction, strict=True)),
-        forcing=tuple(x + f for x, f in zip(assembly.forcing, friction, strict=True)),
+        equations,
+        Q=tuple(x + f for x, f in zip(equations.Q, friction, strict=True)),
+        forcing=tuple(x + f for x, f in zip(equations.forcing, friction, strict=True)),
         friction=friction,
         accelerations=a,
     )
@@ -87,7 +96,7 @@ def push_sizes(system: System) -> dict[str, Scalar]:
     """
     if not round_symbols(system):
         return {}
-    rubbing = _Rubbing(system, recursive.assembled_by_recursion(system))
+    rubbing = _Rubbing(recursive.assembled_by_recursion(system))
     pairs = zip(rubbing.found, rubbing.normals, strict=True)
     return {rub.name: N for rub, N in pairs if rub.normals}
 
@@ -137,13 +146,12 @@ def round_symbols(system: System) -> dict[str, Node]:
 class _Rubbing:
     """The equations of motion with friction; first with |N| of what holds on all sides left open."""
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
 
     @property
     def accelerations(self) -> ScalarRow:
         """a as a function of q, u and t."""
-        return substituted(self._values[: len(self.assembly.M)], self._sizes)
+        return substituted(self._values[: len(self.equations.M)], self._sizes)
 
     @property
     def normals(self) -> ScalarRow:
@@ -153,7 +161,7 @@ class _Rubbing:
 
     @cached_property
     def found(self) -> list[Rub]:
-        return rubbing_contacts(self.system, self._balance.components)
+        return rubbing_contacts(self.equations.system, self._balance.components)
 
     @property
     def _single(self) -> list[Rub]:
@@ -161,11 +169,11 @@ class _Rubbing:
 
     @cached_property
     def _symbols(self) -> dict[str, Node]:
-        return round_symbols(self.system)
+        return round_symbols(self.equations.system)
 
     @cached_property
     def _balance(self) -> Balance:
-        return balance_of(self.system, self._symbols)
+        return balance_of(self.equations.system, self._symbols)
 
     @cached_property
     def _solution(self) -> Solution:
@@ -174,26 +182,29 @@ class _Rubbing:
     @cached_property
     def _sizes(self) -> dict[Node, Scalar]:
         """|N| of what holds on all sides, by its symbol."""
-        known = dict(zip(self.system.symbols.a, self._values, strict=False))
+        known = dict(zip(self.equations.symbols.a, self._values, strict=False))
         pairs = {
             self._symbols[rub.name]: tuple(self._component(rub.name, j, known) for j in rub.normals)
             for rub in self.found
             if rub.normals
         }
         entries = [N for pair in pairs.values() for N in pair]
-        values = values_at_a_state(self.system, substituted(entries, dict.fromkeys(pairs, 0)))
+        values = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
         return sizes(pairs, values)
 
     def _component(self, name: str, j: int, known: dict[Node, Scalar]) -> Scalar:
         """A normal reaction, linear in |N| of all."""
-        m = _multiplier(self.system, self._balance.components[j], name, self._kept)
+        m = self._multiplier(j, name)
         if m is not None:
-            return self._values[len(self.assembly.M) + m]
+            return self._values[len(self.equations.M) + m]
         return substituted((self._by_balance(j),), known)[0]
+
+    def _multiplier(self, j: int, name: str) -> int | None:
+        return _multiplier(self.equations.system, self._balance.components[j], name, self._kept)
 
     @cached_property
     def _kept(self) -> list[int]:
-        return regular_rows(self.system)
+        return regular_rows(self.equations.system)
 
     @cached_property
     def _values(self) -> ScalarRow:
@@ -202,14 +213,14 @@ class _Rubbing:
         Raises:
             DerivationError: the normal reaction of a contact is indeterminate.
         """
-        rows, right = bordered_rows(self.assembly, self._kept)
-        n, first = len(self.assembly.M), len(right)
+        rows, right = bordered_rows(self.equations, self._kept)
+        n, first = len(self.equations.M), len(right)
         for rub in self.found:
             if rub.normals:
                 size = self._symbols[rub.name]
                 right[:n] = [b + force * size for b, force in zip(right[:n], rub.force, strict=True)]
         for k, rub in enumerate(self._single):
-            multiplier = _multiplier(self.system, self._balance.components[rub.component], rub.name, self._kept)
+            multiplier = self._multiplier(rub.component, rub.name)
             normal = first + k if multiplier is None else n + multiplier
             for row, force in zip(rows[:n], rub.force, strict=True):
                 row[normal] = row.get(normal, 0) - force
@@ -217,7 +228,7 @@ class _Rubbing:
             known, value = self._linear(rub.component) if multiplier is None else same
             rows.append({first + k: 1} | known)
             right.append(value)
-        return tuple(_solved(self.system, rows, right))
+        return tuple(_solved(self.equations.system, rows, right))
 
     def _by_balance(self, j: int) -> Scalar:
         """Component j, linear in the accelerations."""
@@ -225,7 +236,7 @@ class _Rubbing:
 
     def _linear(self, j: int) -> tuple[dict[int, Scalar], Scalar]:
         """(-m, n) of N = n + m a: the coefficients of the accelerations in N - m a = n, and its right side."""
-        a, value = self.system.symbols.a, self._by_balance(j)
+        a, value = self.equations.symbols.a, self._by_balance(j)
         slopes = gradient(value, a)
         return {j: -slope for j, slope in enumerate(slopes)}, substituted((value,), dict.fromkeys(a, 0))[0]
 

@@ -24,6 +24,7 @@ from eomgen.symbolic.expression.spatial import (
     apply,
     cross,
     dot,
+    in_turned_axes,
     minus,
     plus,
     times,
@@ -90,10 +91,6 @@ class Axes:
         """From the mass centre to a place given in body axes."""
         link = self.motion.links[i]
         return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
-
-
-def in_turned_axes(R: Matrix, a: Vector) -> Vector:
-    return a if R is IDENTITY else apply(R, a)
 
 
 def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) -> list[Effect]:

@@ -19,7 +19,7 @@ def joint_row(motion: Motion, body: str, variable: int) -> dict[int, Scalar]:
 def armature_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
     """Entries (k, l, value) that rotors behind gears add to M: armature D_k D_l."""
     rows = []
-    for link, k, armature in _armatures(motion):
+    for link, k, armature in armatures(motion):
         row = joint_row(motion, link.name, k)
         rows += [(i, j, armature * a * b) for i, a in row.items() for j, b in row.items()]
     return rows
@@ -28,14 +28,14 @@ def armature_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
 def armature_bias(motion: Motion, size: int) -> list[Scalar]:
     """What rotors behind gears add to c: armature D_k (d/dt s' at a = 0)."""
     c: list[Scalar] = [0] * size
-    for link, k, armature in _armatures(motion):
+    for link, k, armature in armatures(motion):
         bias = motion.scope.time_derivative((link.s_rate[k],))[0]
         for i, factor in joint_row(motion, link.name, k).items():
             c[i] = c[i] + armature * factor * bias
     return c
 
 
-def _armatures(motion: Motion) -> Iterator[tuple[BodyLink, int, Scalar]]:
+def armatures(motion: Motion) -> Iterator[tuple[BodyLink, int, Scalar]]:
     for link in motion.links:
         if link.joint is None:
             continue

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.model.composite import Composite, PlacedPiece, composite_of
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.exact.normal_form import readable_all
@@ -25,7 +24,7 @@ def _put_together(scope: Scope, body: str) -> Composite:
     part = scope.model.bodies[body]
     composite = composite_of(part.parts or (), part.mass, scope.value)
     everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
-    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, positive_parameters(scope))
+    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
     whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
     pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
     return Composite(pieces, whole)

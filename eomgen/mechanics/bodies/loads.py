@@ -15,9 +15,7 @@ from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, ground_place
 from eomgen.mechanics.bodies.scope import Scope, primitive
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.model.forces.load import BodyPoint, Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
-from eomgen.model.parts import Coordinate
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -230,9 +228,7 @@ class SystemScene:
     def start(self, scalar: Scalar) -> Scalar:
         """The scalar at the start values of the coordinates and t = 0."""
         scope = self.motion.scope
-        coordinates = scope.model.coordinates.values()
-        at = {q: start_value(scope, c) for q, c in zip(scope.symbols.q, coordinates, strict=True)}
-        at = with_unit_quaternions(scope, at)
+        at = with_unit_quaternions(scope, start_values(scope))
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
     def own_place(self, body: str, point: str | None) -> BodyPoint:
@@ -263,7 +259,7 @@ class SystemScene:
 
     def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """The scalars multiplied out, roots of squares of positive parameters taken."""
-        return readable_all(scalars, Work.ENTRY, positive_parameters(self.motion.scope))
+        return readable_all(scalars, Work.ENTRY, self.motion.scope.positive)
 
     def worth(self, scalar: Scalar) -> float | None:
         """The number that the scalar is at the start with the model's values (None: some are missing)."""
@@ -276,8 +272,20 @@ class SystemScene:
         return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
 
 
-def start_value(scope: Scope, coordinate: Coordinate) -> Scalar:
+def start_values(scope: Scope, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
+    """Where coordinates start, as expressions of the parameters; None: all of them."""
+    return {q: start_value(scope, q) for q in (scope.symbols.q if among is None else among)}
+
+
+def given_start(scope: Scope) -> dict[Node, Scalar]:
+    """q and u at the start, where every speed is a rate, as expressions of the parameters."""
+    parts = scope.model.coordinates
+    return start_values(scope) | {u: scope.value(parts[u.name.removesuffix("'")].speed) for u in scope.symbols.u}
+
+
+def start_value(scope: Scope, q: Node) -> Scalar:
     """Where a coordinate starts, as an expression of the parameters."""
+    coordinate = scope.model.coordinates[q.name]
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
     return scope.value(coordinate.near if coordinate.start is None else coordinate.start)

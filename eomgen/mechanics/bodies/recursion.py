@@ -25,6 +25,7 @@ from eomgen.symbolic.expression.spatial import (
     apply,
     cross,
     dot,
+    in_turned_axes,
     minus,
     plus,
     times,
@@ -99,13 +100,13 @@ def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector, a
         w_p, U_p, wd_p = still if branch.parent == GROUND else rates[branch.parent]
         acc_p = base_acceleration if branch.parent == GROUND else accelerations[branch.parent]
         E = branch.E
-        carried_w = _turned(E, w_p)
+        carried_w = in_turned_axes(E, w_p)
         w = plus(carried_w, branch.w)
-        wd = plus(plus(_turned(E, wd_p), branch.w_bias), cross(carried_w, branch.w))
+        wd = plus(plus(in_turned_axes(E, wd_p), branch.w_bias), cross(carried_w, branch.w))
         seat = plus(acc_p, plus(apply(U_p, branch.p), branch.p_bias))
         if any(not is_zero(x) for x in branch.p_rate):
             seat = plus(seat, times(2, cross(w_p, branch.p_rate)))
-        acc = _turned(E, seat)
+        acc = in_turned_axes(E, seat)
         if a:
             for k, (turning, sliding) in branch.columns.items():
                 wd, acc = plus(wd, times(a[k], turning)), plus(acc, times(a[k], sliding))
@@ -114,10 +115,6 @@ def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector, a
         accelerations.append(acc)
         wrenches.append(inertia_wrench(branch.moments, acc, U))
     return wrenches
-
-
-def _turned(E: Matrix, a: Vector) -> Vector:
-    return a if E is IDENTITY else apply(E, a)
 
 
 def composite_mass_matrix(branches: tuple[Branch, ...], size: int) -> list[list[Scalar]]:

@@ -13,9 +13,11 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.model.composite import Composite
 from eomgen.model.joints.orientation import spin_of_quaternion
+from eomgen.model.part import leaves_of
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -24,6 +26,7 @@ from eomgen.symbolic.expression.scalar_operations import through_samples
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.splines import Sampled
 from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.expression.traversal import order
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,19 @@ class Scope:
     @property
     def graph(self) -> Graph:
         return self.symbols.graph
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        """The parameters whose value is positive, that the model calls `positive`, or that are a mass or a length.
+
+        Roots may be taken of their squares.
+        """
+        values, sizes = exact_parameters(self.model), _sizes(self.model)
+        return frozenset(
+            node
+            for name, node in self.symbols.parameters.items()
+            if self.model.parameters[name].positive or (values[name] > 0 if name in values else name in sizes)
+        )
 
     @cached_property
     def combines(self) -> bool:
@@ -192,10 +208,15 @@ def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
     return F - substituted((F,), {t: 0})[0]
 
 
+LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
+
+
 def primitive(f: Scalar, x: Node) -> Scalar | None:
     """A function of x whose derivative is f, or None where no closed form was found."""
     if not depends_on(f, (x,)):
         return f * x
+    if len(order((f,))) > LONGEST_INTEGRAND:
+        return None
     from sympy import Integral
     from sympy.integrals.manualintegrate import manualintegrate
 
@@ -214,3 +235,10 @@ def primitive(f: Scalar, x: Node) -> Scalar | None:
 
 def _zero(a: Scalar) -> bool:
     return type(a) is int and a == 0
+
+
+def _sizes(model: Model) -> frozenset[str]:
+    """The names that stand alone where a negative number is an error: masses, lengths and radii of bodies."""
+    leaves = (leaf for body in model.bodies.values() for leaf in leaves_of(body, ()))
+    signed = (leaf.value for leaf in leaves if getattr(leaf.rule, "sign", "") and isinstance(leaf.value, Expression))
+    return frozenset(value.text for value in signed if len(value.code) == 1 and value.literal is None)

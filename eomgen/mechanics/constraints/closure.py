@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
@@ -66,7 +66,10 @@ def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dic
     given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
     state = {node: of_50_digits(value) for node, value in given.items()}
     for name, node in symbols.inputs.items():
-        state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
+        try:
+            state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
+        except NoValue:  # at t = 0, as 1/t: of another instant then
+            state[node] = of_50_digits(rng.uniform(-1, 1))
     return state, start_values(model, p)[0] | first_guesses(model, p)
 
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.closure import closed, gaps_of, generic_state, movable, scattered_state
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.parts import Model
@@ -126,7 +126,7 @@ def _another(ties: Ties, state: State, free: Sequence[Node]) -> State:
     """A configuration that is not special; where the gaps close in none but this one, they need not close there."""
     try:
         other = generic_state(ties)
-    except EomgenError:
+    except (DerivationError, MissingValues):
         return scattered_state(ties)
     same = all(abs(other[q] - state[q]) < SAME_PLACE for q in free)
     return scattered_state(ties) if same else other

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.scope import Scope, with_speeds_named
 from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.closure import generic_state, scattered_state
@@ -112,7 +112,7 @@ def _numbers(ties: Ties) -> np.ndarray:
     """J of the closing rows at a generic state in which they hold, or where none is near at any state."""
     try:
         state = generic_state(ties)
-    except EomgenError:
+    except (DerivationError, MissingValues):
         state = scattered_state(ties)
     width = len(ties.motion.scope.symbols.u)
     values = evaluate([x for row in ties.J for x in row], state, fifty_digits())

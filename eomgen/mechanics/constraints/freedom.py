@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.errors import EomgenError, NotYet
+from eomgen.errors import DerivationError, MissingValues, NotYet
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, motion_of
 from eomgen.mechanics.bodies.scope import scope_of
@@ -21,6 +21,7 @@ from eomgen.mechanics.constraints.elimination import dependent_coordinates, elim
 from eomgen.mechanics.constraints.integrability import Integrability, integrability_of
 from eomgen.mechanics.constraints.ties import Ties, ties_of
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
@@ -83,15 +84,22 @@ class Freedom:
         return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
 
 
-def freedom_of(model: ModelOrPath, modes: ContactModes | None = None) -> Freedom:
+def freedom_of(
+    model: ModelOrPath,
+    modes: ContactModes | None = None,
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Freedom:
     """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
 
     Args:
         modes: how contacts are that can end; what is not named is closed.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
@@ -106,7 +114,7 @@ def freedom_of(model: ModelOrPath, modes: ContactModes | None = None) -> Freedom
     closing = tuple((row.tie, row.number) for row in ties.closing)
     try:
         redundant, integrability = redundant_rows(ties), integrability_of(ties)
-    except EomgenError as error:
+    except (DerivationError, MissingValues) as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
     scope = ties.motion.scope
     speeds = len(scope.symbols.u) - len(scope.quaternions)

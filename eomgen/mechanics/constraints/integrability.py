@@ -19,10 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.bodies.scope import primitive
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.symbolic.exact.normal_form import simplest
@@ -199,14 +198,14 @@ def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
     """phi(q, t), 0 at the start, with dphi = k w for a factor k among 1, 1/w_i and 1/(w_i w_j); None: none found."""
     scope = ties.motion.scope
     y = (*scope.symbols.q, scope.symbols.t)
-    positive = positive_parameters(scope)
+    positive = scope.positive
     entries = [simplest(x, Work.FORMULA, positive) for x in form]
     if sum(text_size(x) for x in entries) > LONGEST:
         return None
     for factor in _factors(entries):
         try:
             found = _potential([simplest(x * factor, Work.FORMULA, positive) for x in entries], y)
-        except (EomgenError, NoValue, ZeroDivisionError):  # no closed form
+        except (DerivationError, NoValue, ZeroDivisionError):  # no closed form
             found = None
         if found is not None:
             return simplest(found - SystemScene(ties.motion).start(found), Work.FORMULA, positive)

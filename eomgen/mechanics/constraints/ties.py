@@ -18,7 +18,7 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.bodies.contact_modes import CLOSED, ContactMode, ContactModes, friction_factor, rows_in_mode
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, slide_of
-from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes, start_value
+from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes, start_values
 from eomgen.mechanics.bodies.simplify import shorter_row
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
@@ -267,7 +267,7 @@ def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
         return
     for _ in range(3):
         state = {p: digits.number(Fraction(known[name]) * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
-        starts = tuple(start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q)
+        starts = tuple(start_values(scope).values())
         state |= {
             q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
         }

@@ -1,4 +1,4 @@
-"""Assembly, state -> accelerations with more digits than doubles have."""
+"""Equations of motion, state -> accelerations with more digits than doubles have."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import balanced, independent, scaled_condition, weighted, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -18,26 +18,26 @@ BITS = 200  # of whole numbers that stand for numbers of 50 digits
 REFINEMENTS = 40  # each adds the digits that the condition number leaves of 16
 
 
-def accelerations_at(assembly: Assembly, state: State) -> np.ndarray:
+def accelerations_at(equations: EquationsOfMotion, state: State) -> np.ndarray:
     """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, right to double precision whatever the condition.
 
     Raises:
         NoValue: some motion that the ties allow moves no mass at the state.
     """
-    return np.array([float(x) for x in exact_accelerations(assembly, state)])
+    return np.array([float(x) for x in exact_accelerations(equations, state)])
 
 
-def exact_accelerations(assembly: Assembly, state: State) -> list[Any]:
+def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]:
     """The same with more digits than doubles have: what they leave of the right side is solved for again.
 
     Raises:
         NoValue: some motion that the ties allow moves no mass at the state.
     """
-    n, k = len(assembly.M), len(assembly.J)
+    n, k = len(equations.M), len(equations.J)
     if n == 0:
         return []
-    entries = [x for row in (*assembly.M, *assembly.J) for x in row]
-    values = evaluate((*entries, *assembly.forcing, *assembly.gamma), state, fifty_digits())
+    entries = [x for row in (*equations.M, *equations.J) for x in row]
+    values = evaluate((*entries, *equations.forcing, *equations.gamma), state, fifty_digits())
     wide = np.array(values[: n * (n + k)], dtype=object).reshape(n + k, n)
     M, J = wide[:n].astype(float), without_rounding(wide[n:].astype(float))
     if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the ties may say

@@ -16,8 +16,7 @@ from eomgen.mechanics.bodies.kinematics import GROUND, Motion
 from eomgen.mechanics.bodies.loads import Loads
 from eomgen.mechanics.bodies.recursion import applied_wrenches, inertia_wrench, rate_matrix
 from eomgen.mechanics.bodies.tree import Branch, branches_of
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -59,12 +58,13 @@ def is_articulated(motion: Motion, branches: tuple[Branch, ...]) -> bool:
     return sorted(owned) == list(range(size)) and size > 0 and not coupled
 
 
-def with_accelerations(system: System, assembly: Assembly) -> Assembly:
-    """The assembly with explicit accelerations, where articulated bodies give them."""
+def with_accelerations(equations: EquationsOfMotion) -> EquationsOfMotion:
+    """The equations with explicit accelerations, where articulated bodies give them."""
+    system = equations.system
     branches = branches_of(system.motion)
-    if assembly.J or assembly.friction or not is_articulated(system.motion, branches):
-        return assembly
-    return replace(assembly, accelerations=accelerations(system.loads, branches))
+    if equations.J or equations.friction or not is_articulated(system.motion, branches):
+        return equations
+    return replace(equations, accelerations=accelerations(system.loads, branches))
 
 
 def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, ...]:

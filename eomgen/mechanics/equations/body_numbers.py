@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class BodyNumbers:
     def array(self, scalars: Any) -> np.ndarray:
         """Values as floats, in the shape of the nested tuples."""
         flat, shape = _flattened(scalars)
-        return np.array([float(x) for x in self.at(flat)]).reshape(shape)
+        return np.array(floats_of(self.at(flat))).reshape(shape)
 
     def rate(self, scalars: Any) -> np.ndarray:
         """Time derivative at a = 0 by central differences."""

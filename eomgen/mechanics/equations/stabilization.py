@@ -1,4 +1,4 @@
-"""Assembly, rates -> Assembly: closing rows that pull back what has opened, after Baumgarte.
+"""Equations of motion, rates -> the same with closing rows that pull back what has opened, after Baumgarte.
 
     J a + gamma + 2 alpha (J u + sigma) + beta^2 phi = 0
 
@@ -13,14 +13,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.errors import UsageError
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.rational import Fraction
 
 PullBack = tuple[float, float]
 
 
-def stabilized(system: System, assembly: Assembly, rates: PullBack) -> Assembly:
+def stabilized(equations: EquationsOfMotion, rates: PullBack) -> EquationsOfMotion:
     """The equations of motion with rows that pull.
 
     Args:
@@ -29,16 +28,16 @@ def stabilized(system: System, assembly: Assembly, rates: PullBack) -> Assembly:
         UsageError: a rate that is no positive number; a tie that has no multiplier to pull by.
     """
     alpha, beta = (_exact(rate) for rate in rates)
-    taken = dict.fromkeys(row.tie for row in system.ties.rows if row.status == "eliminated")
+    taken = dict.fromkeys(row.tie for row in equations.system.ties.rows if row.status == "eliminated")
     if taken:
         names = ", ".join(f"'{name}'" for name in taken)
         raise UsageError(
             f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
             mend="take the projection, or declare no coordinate dependent",
         )
-    rows = zip(assembly.gamma, system.ties.closing, assembly.phi, strict=True)
+    rows = zip(equations.gamma, equations.system.ties.closing, equations.phi, strict=True)
     pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
-    return replace(assembly, gamma=tuple(pulling))
+    return replace(equations, gamma=tuple(pulling))
 
 
 def _exact(rate: float) -> Fraction:

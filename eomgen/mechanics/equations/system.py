@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.declared_speeds import Solved, with_declared_speeds
@@ -13,7 +15,8 @@ from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.ties import Ties, holds_identically, ties_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.symbols import Symbols
 
 
@@ -42,12 +45,19 @@ class System:
     def scope(self) -> Scope:
         return self.motion.scope
 
-    @property
+    @cached_property
     def inputs(self) -> dict[str, Scalar]:
         """The model's own expression of each input, in t and parameters."""
         return {name: self.scope.value(part.value.named(name)) for name, part in self.scope.model.inputs.items()}
 
-    @property
+    def standing(self, places: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+        """At t = 0, nothing moving: the coordinates where they are said to be, and the inputs there."""
+        symbols = self.symbols
+        still = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0), **places}
+        own = substituted(tuple(self.inputs[name] for name in symbols.inputs), still)
+        return still | dict(zip(symbols.inputs.values(), own, strict=True))
+
+    @cached_property
     def symbols(self) -> Symbols:
         """The symbols of the model, one multiplier for each closing row included."""
         symbols = self.scope.symbols

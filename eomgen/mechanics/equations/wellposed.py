@@ -1,4 +1,4 @@
-"""Assembly -> what can be said of its energy and its mass before anything moves."""
+"""Equations of motion -> what can be said of its energy and its mass before anything moves."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import from_potential
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -22,31 +22,31 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_d
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
 
 
-def is_conservative(system: System, assembly: Assembly) -> bool:
+def is_conservative(equations: EquationsOfMotion) -> bool:
     """Whether T + V stays: nothing moves by itself, and Q is -N^T dV/dq alone."""
-    t = assembly.symbols.t
-    by_itself = (*assembly.nu, *assembly.sigma)
-    if any(not is_zero(x) for x in by_itself) or depends_on(assembly.V, (t,)) or depends_on(assembly.T, (t,)):
+    t = equations.symbols.t
+    by_itself = (*equations.nu, *equations.sigma)
+    if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
         return False
-    elastic = from_potential(system.motion, assembly.V)
-    return equal_at_random_states(zip(assembly.Q, elastic, strict=True)).equal if elastic else True
+    elastic = from_potential(equations.system.motion, equations.V)
+    return equal_at_random_states(zip(equations.Q, elastic, strict=True)).equal if elastic else True
 
 
-def refuse_massless(system: System, assembly: Assembly) -> None:
+def refuse_massless(equations: EquationsOfMotion) -> None:
     """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
 
     Raises:
         ModelError: naming every such coordinate, or the body that can turn idly.
     """
-    if problems := massless_motions(system, assembly):
+    if problems := massless_motions(equations):
         raise ModelError(problems)
 
 
-def massless_motions(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+def massless_motions(equations: EquationsOfMotion) -> tuple[Problem, ...]:
     """The motions that move no mass; () where every acceleration is determined."""
-    held = [any(not is_zero(row[k]) for row in assembly.J) for k in range(len(assembly.M))]
-    moves_nothing = [u.name for k, u in enumerate(assembly.symbols.u) if is_zero(assembly.M[k][k]) and not held[k]]
-    return tuple(map(_massless, moves_nothing)) or _idle(system, assembly)
+    held = [any(not is_zero(row[k]) for row in equations.J) for k in range(len(equations.M))]
+    moves_nothing = [u.name for k, u in enumerate(equations.symbols.u) if is_zero(equations.M[k][k]) and not held[k]]
+    return tuple(map(_massless, moves_nothing)) or _idle(equations)
 
 
 def _massless(speed: str) -> Problem:
@@ -67,15 +67,16 @@ def _massless(speed: str) -> Problem:
 # -- motions that move no mass -----------------------------------------------------------------------
 
 
-def _idle(system: System, assembly: Assembly) -> tuple[Problem, ...]:
+def _idle(equations: EquationsOfMotion) -> tuple[Problem, ...]:
     """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
-    if not assembly.M or _is_full(system):
+    system = equations.system
+    if not equations.M or _is_full(system):
         return ()
     try:
-        if _has_energy(assembly, scattered_state(system.ties)):
+        if _has_energy(equations, scattered_state(system.ties)):
             return ()
         state = generic_state(system.ties)
-        u = _without_energy(assembly, state)
+        u = _without_energy(equations, state)
         return () if u is None else (_idle_problem(system, u, state),)
     except (MissingValues, DerivationError, NoValue):
         return ()  # whoever needs accelerations says what is missing
@@ -95,20 +96,20 @@ def _is_lean(system: System, link: BodyLink) -> bool:
     return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
 
 
-def _has_energy(assembly: Assembly, state: State) -> bool:
+def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
     """Whether all motions have, those that the ties forbid too: M is regular."""
     values = {node: float(x) for node, x in state.items()}
-    M = np.array(evaluate([x for row in assembly.M for x in row], values, FLOAT)).reshape(len(assembly.M), -1)
+    M = np.array(evaluate([x for row in equations.M for x in row], values, FLOAT)).reshape(len(equations.M), -1)
     sizes = np.diag(M)
     if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
         return False
     return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > RANK)
 
 
-def _without_energy(assembly: Assembly, state: State) -> dict[Node, float] | None:
+def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, float] | None:
     """Speeds with M u = 0 and J u = 0, the largest 1; None where there are none."""
-    u = assembly.symbols.u
-    entries = evaluate([x for row in (*assembly.M, *assembly.J) for x in row], state, fifty_digits())
+    u = equations.symbols.u
+    entries = evaluate([x for row in (*equations.M, *equations.J) for x in row], state, fifty_digits())
     rows = np.array(entries, dtype=float).reshape(-1, len(u))
     sizes = np.diag(rows[: len(u)])
     scale = 1 / np.sqrt(np.where(sizes > SQUARED_AT_50 * max(sizes), sizes, 1.0))

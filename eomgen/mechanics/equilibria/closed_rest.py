@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.loads import start_value
 from eomgen.mechanics.bodies.places import Located, places_of
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
@@ -76,7 +75,7 @@ class ClosedForms:
                 continue
             try:
                 found = {**known, **places_of(substituted(equations, known), unknowns, located)}
-            except EomgenError:  # too large, or a value that is not real
+            except DerivationError:  # too large, or a value that is not real
                 found = {}
             if all(q in found for q in self.statics.q):
                 place = {q: _short_turn(found[q], located.value(found[q]), q in self.turning) for q in self.statics.q}
@@ -115,7 +114,7 @@ class ClosedForms:
             candidates: list[Scalar] = [0 if quarters == 0 else Fraction(quarters, 2) * q.graph.pi]
             if q in turning:
                 candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
-            candidates += [start_value(scope, scope.model.coordinates[q.name])] * starts
+            candidates += [start_value(scope, q)] * starts
             near = [x for x in candidates if abs(located.value(x) - number) <= COMPUTED * (1 + abs(number))]
             if near:
                 found[q] = near[0]
@@ -141,7 +140,7 @@ class ClosedForms:
             return None
         if not all(map(_is_nothing, solution.left)):
             return None
-        positive = positive_parameters(self.statics.system.scope)
+        positive = self.statics.system.scope.positive
         lam = {statics.lam[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
         single = {statics.lam[j] for j in solution.constants if solution.determined(j)}
         place = {node: simplest(x, Work.VALUE, positive) for node, x in q.items()}

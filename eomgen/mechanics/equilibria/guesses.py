@@ -46,7 +46,7 @@ class Guess:
         near = scope.model.coordinates[q.name].near
         if q.name in self.asked:
             return Fraction(self.asked[q.name])
-        return start_value(scope, scope.model.coordinates[q.name]) if near is None else scope.value(near)
+        return start_value(scope, q) if near is None else scope.value(near)
 
     @cached_property
     def _numbers(self) -> dict[str, float]:

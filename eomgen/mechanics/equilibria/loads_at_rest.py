@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters, values_where_at_rest
@@ -57,7 +56,7 @@ def holding_of(system: System) -> Holding:
     place = {q: state[q] for q in statics.system.symbols.q}
     solution = _solved(statics, place)
     _refuse_undetermined(statics, solution)
-    positive = positive_parameters(statics.system.scope)
+    positive = statics.system.scope.positive
     found = {
         node: simplest(solution.constants[j], Work.VALUE, positive)
         for j, node in enumerate((*statics.loaded, *statics.lam))

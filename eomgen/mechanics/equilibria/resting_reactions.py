@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
@@ -55,7 +54,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
     """
     system, state = system_at_rest(place), state_at_rest(place)
     reactions = reactions_of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
-    positive = positive_parameters(system.scope)
+    positive = system.scope.positive
     found = []
     for named in named_reactions(reactions.balance):
         *factors, given = substituted((*named.combination.values(), named.given), state)

@@ -17,9 +17,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.loads import start_values
 from eomgen.mechanics.bodies.places import Located
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
@@ -71,6 +70,19 @@ class Equilibrium:
         state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
         values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
         return pulling_contacts(system, state, values)
+
+    def refuse_pulling(self) -> None:
+        """Refuse a place that a one-sided contact would have to hold.
+
+        Raises:
+            DerivationError: one pulls.
+        """
+        if pulls := self.pulling:
+            raise DerivationError(
+                f"'{pulls[0]}' would have to pull where the other forces balance",
+                f"constraints.{pulls[0]}",
+                "without it the system rests elsewhere",
+            )
 
 
 @dataclass(frozen=True)
@@ -175,7 +187,7 @@ class _Search:
         """Without the coordinates that no equation holds."""
         found, scope = self.whole.without(self.whole.indifferent), self.system.scope
         idle = unheld(found) if self._slides else ()
-        return found.holding({q: start_value(scope, scope.model.coordinates[q.name]) for q in idle}) if idle else found
+        return found.holding(start_values(scope, idle)) if idle else found
 
     @property
     def _indifferent(self) -> tuple[Node, ...]:
@@ -215,7 +227,7 @@ class _Search:
     def _fixed(self) -> dict[Node, Scalar]:
         """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
         scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
-        fixed = {q: start_value(scope, scope.model.coordinates[q.name]) for q in scope.symbols.q if q not in free}
+        fixed = start_values(scope, (q for q in scope.symbols.q if q not in free))
         return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
 
     @cached_property
@@ -265,7 +277,7 @@ class _Search:
     def _equilibrium(self, z: np.ndarray, forms: ClosedForms) -> Equilibrium | None:
         """The place, exact where it can be; None where only trial values of the parameters lead to it."""
         numbers = {**self.floats, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
-        located = Located(numbers, positive_parameters(self.system.scope))
+        located = Located(numbers, self.system.scope.positive)
         held = forms.at(located)
         if not self.valued and held is None:
             return None

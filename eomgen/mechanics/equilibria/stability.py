@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
@@ -186,7 +185,7 @@ class _Place:
         return np.asarray(Z.T @ self._numbers(self._H) @ Z)
 
     def _exact_K(self, along: Sequence[int]) -> StiffnessRows | None:
-        positive = positive_parameters(self.statics.system.scope)
+        positive = self.statics.system.scope.positive
         try:
             Z = self._exact_Z(along)
             H = [substituted(row, self.exact) for row in self._H]
@@ -247,7 +246,7 @@ class _Place:
         depends = "depends on the parameters", "stable where V has a minimum there"
         if K is None:
             return depends
-        positive = positive_parameters(self.statics.system.scope)
+        positive = self.statics.system.scope.positive
         signs = [sign_of_terms(x, positive) for x in minors]
         if all(sign == 1 for sign in signs):
             return STABLE, "V has a minimum there"

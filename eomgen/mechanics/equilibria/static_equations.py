@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.loads import start_values
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.work import generalized_forces, powered_forces
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
@@ -196,18 +196,12 @@ def with_norms(statics: StaticEquations) -> StaticEquations:
 
 def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
     """At rest, at t = 0."""
-    symbols, scope = free.symbols, free.scope
-    given: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
-    given |= {q: start_value(scope, scope.model.coordinates[q.name]) for q in driven}
-    inputs = substituted(tuple(free.inputs[name] for name in symbols.inputs), given)
-    return given | dict(zip(symbols.inputs.values(), inputs, strict=True))
+    return free.standing(start_values(free.scope, driven))
 
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
     """What the ties say of positions; constants that only the start fixes are taken from it."""
-    scope = system.scope
-    start = {x: start_value(scope, scope.model.coordinates[x.name]) for x in scope.symbols.q}
-    found = substituted(tuple(position_equations(system, start)), given)
+    found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
     return tuple(x for x in found if depends_on(x, q))
 
 
@@ -218,6 +212,7 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
     """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
     scope = system.scope
     bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
+    starts = {q.name: x for q, x in start_values(scope).items()}
     table = dict(scope.model.coordinates)
     moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
     if not moved:
@@ -227,7 +222,7 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
         if free and not depends_on(bias[name], (scope.symbols.t,)):
             what = f"'{name}' moves on at a constant rate, and nothing is at rest beside it"
             raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
-        place = as_expression(to_text(start_value(scope, table[name])))
+        place = as_expression(to_text(starts[name]))
         table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
     model = altered(scope.model, coordinates=Table(table))
     return system_of(model, system.modes), tuple(moved)

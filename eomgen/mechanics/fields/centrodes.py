@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.errors import DerivationError, EomgenError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Curve, curve_of
@@ -70,7 +70,7 @@ def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
     for link in kinds.system.motion.links:
         try:
             found.append(centrodes_of(kinds, link.name))
-        except EomgenError:  # no motion near the start at which it could be tried
+        except (DerivationError, MissingValues):  # no motion near the start at which it could be tried
             continue
     return tuple(each for each in found if each is not None)
 

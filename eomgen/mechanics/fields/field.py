@@ -141,53 +141,6 @@ def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callabl
     return sqrt(rest + over(nearest * nearest, square))
 
 
-# -- the way of a point ----------------------------------------------------------------------------
-
-
-def tangential_part(v: Vector, a: Vector) -> Scalar:
-    """The rate of the speed, a.v/|v|.
-
-    Raises:
-        DerivationError: the point is at rest.
-    """
-    return over(dot(a, v), _speed(v, "acceleration along its path"))
-
-
-def normal_part(v: Vector, a: Vector) -> Scalar:
-    """The acceleration across the path, |v x a|/|v|.
-
-    Raises:
-        DerivationError: the point is at rest.
-    """
-    _speed(v, "acceleration across its path")
-    n = cross(v, a)
-    return sqrt(over(dot(n, n), dot(v, v)))
-
-
-def curvature_radius(v: Vector, a: Vector) -> Scalar:
-    """rho = |v|^3/|v x a| of the point's path.
-
-    Raises:
-        DerivationError: the point is at rest, or its path is straight there.
-    """
-    speed, across = _speed(v, "radius of curvature"), _across(v, a)
-    if vanishes(across):
-        raise DerivationError("the path is straight there: its radius of curvature is infinite")
-    return over(dot(v, v) * speed, across)
-
-
-def _speed(v: Vector, what: str) -> Scalar:
-    if all(vanishes(x) for x in v):
-        raise DerivationError(f"the point is at rest: it has no {what}")
-    return sqrt(dot(v, v))
-
-
-def _across(v: Vector, a: Vector) -> Scalar:
-    """|v x a|, in the plane without a root."""
-    n = cross(v, a)
-    return function("abs", n[2]) if vanishes(n[0]) and vanishes(n[1]) else sqrt(dot(n, n))
-
-
 def inflection_center(field: VelocityField) -> Vector:
     """The centre of the circle through the centre of rotation on which the points are whose path is straight there.
 

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Constants, Curve, curve_of
 from eomgen.mechanics.fields.field import VelocityField, axis_point, field_of
@@ -69,7 +68,7 @@ class Kinds:
 
     @cached_property
     def constants(self) -> Constants:
-        return Constants(self.possible, self.start, positive_parameters(self.system.scope))
+        return Constants(self.possible, self.start, self.system.scope.positive)
 
     def of(self, body: str) -> Kind:
         """The kind of motion of one body.

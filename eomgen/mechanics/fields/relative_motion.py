@@ -9,7 +9,6 @@ body that the moving point passes. In the body's frame a particle moves as if -m
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from eomgen.mechanics.bodies.kinematics import Motion
@@ -26,8 +25,6 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-
-AXES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -109,28 +106,3 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
 def body_axes(motion: Motion, body: str) -> Matrix:
     """The body's axes in the ground; of the ground its own."""
     return motion.link(body).pose.R if body in motion.index else IDENTITY
-
-
-_VECTORS: dict[str, Callable[[Composition], Vector]] = {
-    "transport_v": lambda parts: parts.transport_velocity,
-    "transport_a": lambda parts: parts.transport_acceleration,
-    "coriolis_a": lambda parts: parts.coriolis,
-    "euler_a": lambda parts: parts.euler,
-    "centripetal_a": lambda parts: parts.centripetal,
-}
-COMPONENTS = {f"{name}{axis}": (name, i) for name in _VECTORS for i, axis in enumerate(AXES)}
-"""Functions (point, body[, body whose axes]): a part, and its component."""
-MAGNITUDES = {
-    "transport_speed": "transport_v",
-    "transport_acceleration": "transport_a",
-    "coriolis_acceleration": "coriolis_a",
-    "euler_acceleration": "euler_a",
-    "centripetal_acceleration": "centripetal_a",
-}
-"""Functions (point, body): a part, whose magnitude they are."""
-
-
-def part_of_motion(motion: Motion, part: str, point: str, body: str, axes: str = "ground") -> Vector:
-    """A part of the motion of a point, seen from a body, in the axes that are named."""
-    vector = _VECTORS[part](composition_of(motion, point, body))
-    return apply(transposed(body_axes(motion, axes)), vector)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.scope import primitive
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.mechanics.first_integrals.speeds import rates_of
@@ -30,14 +30,13 @@ class ClosedInstant:
     """What is asked: the state at which the condition holds.
 
     Args:
-        system, assembly, accelerations: the equations of motion.
+        equations, accelerations: the equations of motion.
         condition: of q, u, t and parameters; it vanishes.
         start: t, q and u at the start, scalars of the parameters.
         located: the state asked, in numbers.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     accelerations: Sequence[Scalar]
     condition: Scalar
     start: Mapping[Node, Scalar]
@@ -46,12 +45,12 @@ class ClosedInstant:
     def by_laws(self) -> State:
         """t, and q(t), u(t) of every coordinate that has a law; {} where the condition has no root in closed form."""
         named, constants = self._with_constants_named()
-        state = named._at_root(laws_of_motion(self.system, named.accelerations, named.start))
+        state = named._at_root(laws_of_motion(self.equations.system, named.accelerations, named.start))
         return dict(zip(state, substituted(tuple(state.values()), constants), strict=True))
 
     def _at_root(self, laws: State) -> State:
         """The laws at the time at which the condition holds."""
-        t = self.system.symbols.t
+        t = self.equations.symbols.t
         (equation,) = substituted((self.condition,), laws)
         if depends_on(equation, self._moving):
             return {}
@@ -64,7 +63,7 @@ class ClosedInstant:
     def _with_constants_named(self) -> tuple[ClosedInstant, State]:
         """(the same with a symbol for each sum of constants, what the symbols stand for): such sums stay together."""
         scalars = (*self.accelerations, self.condition, *self.start.values())
-        sums = constant_sums(scalars, (*self._moving, self.system.symbols.t))
+        sums = constant_sums(scalars, (*self._moving, self.equations.symbols.t))
         names = {node: node.graph.symbol(f"(constant {node.index})") for node in sums}
         written = substituted(scalars, names)
         n = len(self.accelerations)
@@ -72,19 +71,19 @@ class ClosedInstant:
         positive = self.located.positive | {symbol for symbol, value in values.items() if value > 0}
         located = Located({**self.located.numbers, **values}, frozenset(positive))
         start = dict(zip(self.start, written[n + 1 :], strict=True))
-        named = ClosedInstant(self.system, self.assembly, written[:n], written[n], start, located)
+        named = ClosedInstant(self.equations, written[:n], written[n], start, located)
         return named, {symbol: node for node, symbol in names.items()}
 
     def by_integrals(self) -> State:
         """Coordinates by the condition and the ties, speeds by the integrals; those that have a closed form."""
         speeds = self._rates({})
         equations = list(substituted((self.condition,), speeds))
-        equations += position_equations(self.system, self.start, self._relations({}))
-        others = (*self.system.symbols.u, self.system.symbols.t)
+        equations += position_equations(self.equations.system, self.start, self._relations({}))
+        others = (*self.equations.symbols.u, self.equations.symbols.t)
         equations = [x for x in equations if not depends_on(x, others)]
-        places = self._agreeing(places_of(equations, self.system.symbols.q, self.located))
+        places = self._agreeing(places_of(equations, self.equations.symbols.q, self.located))
         rates = self._agreeing(self._there(speeds, places))
-        if len(rates) < len(self.system.symbols.u):  # the place may be one where the functions have no value
+        if len(rates) < len(self.equations.symbols.u):  # the place may be one where the functions have no value
             rates |= self._agreeing(self._rates(places))
         return {**places, **rates}
 
@@ -99,8 +98,7 @@ class ClosedInstant:
         """The speeds as functions of the coordinates that are not in `at`."""
         try:
             found = rates_of(
-                self.system,
-                self.assembly,
+                self.equations,
                 self.start,
                 there=self.located.numbers,
                 accelerations=self.accelerations,
@@ -112,7 +110,7 @@ class ClosedInstant:
 
     def _relations(self, at: State) -> Relations | None:
         try:
-            return relations_of(self.system, self.assembly, self.start, at)
+            return relations_of(self.equations, self.start, at)
         except DerivationError:  # a division by 0 at this place, a start without closed form
             return None
 
@@ -120,7 +118,7 @@ class ClosedInstant:
         """Those values that hold parameters only and are the located numbers."""
         found = {}
         for node, x in state.items():
-            if not depends_on(x, (*self._moving, self.system.symbols.t)):
+            if not depends_on(x, (*self._moving, self.equations.symbols.t)):
                 try:
                     x = simplest(x, Work.ANSWER, self.located.positive)
                 except DerivationError:  # a division by 0 at this place
@@ -131,7 +129,7 @@ class ClosedInstant:
 
     @property
     def _moving(self) -> tuple[Node, ...]:
-        return (*self.system.symbols.q, *self.system.symbols.u)
+        return (*self.equations.symbols.q, *self.equations.symbols.u)
 
 
 def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Node]:

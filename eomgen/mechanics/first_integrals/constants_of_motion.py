@@ -1,4 +1,4 @@
-"""System, Assembly -> whether a function of the motion stays constant; momenta of the whole that do.
+"""Equations of motion -> whether a function of the motion stays constant; momenta of the whole that do.
 
     df/dt = g.a + r = 0  for all a with  M a = forcing        g = df/du,  r what is left at a = 0
 
@@ -16,7 +16,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, velocity_of
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
 from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
@@ -62,19 +62,19 @@ class Constant:
     expression: Scalar
 
 
-def stay_constant(system: System, assembly: Assembly, functions: Sequence[Scalar]) -> tuple[bool, ...]:
+def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
     """Of each function of q, u and t whether it stays constant along every motion.
 
     Where ties close or bodies rub none is said to be, nor where the prime field cannot tell.
     """
-    if assembly.J or assembly.friction or not assembly.M:
+    if equations.J or equations.friction or not equations.M:
         return (False,) * len(functions)
     try:
-        drifts = system.scope.time_derivative(tuple(functions))
+        drifts = equations.system.scope.time_derivative(tuple(functions))
     except DerivationError:  # an input, which a caller may replace
         return (False,) * len(functions)
-    slopes = [gradient(f, assembly.symbols.u) for f in functions]
-    rows = [[*row, force] for row, force in zip(assembly.M, assembly.forcing, strict=True)]
+    slopes = [gradient(f, equations.symbols.u) for f in functions]
+    rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
     asked = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
     return _following(rows, asked)
 
@@ -104,44 +104,44 @@ def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
     return real_values(flat, rng, fifty_digits())
 
 
-def jacobi(system: System, assembly: Assembly) -> Scalar | None:
+def jacobi(equations: EquationsOfMotion) -> Scalar | None:
     """u . dT/du - T + V where it stays constant: drives at a steady rate take energy in and out."""
-    symbols = assembly.symbols
-    if depends_on(assembly.V, (symbols.t,)) or all(is_zero(x) for x in assembly.nu):
+    symbols = equations.symbols
+    if depends_on(equations.V, (symbols.t,)) or all(is_zero(x) for x in equations.nu):
         return None
-    found = inner(symbols.u, gradient(assembly.T, symbols.u)) - assembly.T + assembly.V
-    return found if stay_constant(system, assembly, (found,))[0] else None
+    found = inner(symbols.u, gradient(equations.T, symbols.u)) - equations.T + equations.V
+    return found if stay_constant(equations, (found,))[0] else None
 
 
-def momenta_of_the_whole(system: System, assembly: Assembly, known: Sequence[Scalar]) -> tuple[Constant, ...]:
+def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) -> tuple[Constant, ...]:
     """Components of momentum and angular momentum that stay constant and are not among those known.
 
     Angular momenta about the point about which most of them stay, of such points the one about which least is new.
     """
+    system = equations.system
     bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
-    many = len(assembly.M) > MOST_SPEEDS
+    many = len(equations.M) > MOST_SPEEDS
     in_space = system.scope.model.space == "space"
     if not bodies or many or (in_space and shapeless(system.motion, bodies)):
         return ()
     heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
     P = _momentum(system, heavy)
-    constant = stay_constant(system, assembly, P) if heavy else (False,) * 3
+    constant = stay_constant(equations, P) if heavy else (False,) * 3
     places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
-    moments = [_constant_moments(system, assembly, bodies, about, point) for about, point in places.items()]
+    moments = [_constant_moments(equations, bodies, about, point) for about, point in places.items()]
     found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
     most = max(map(len, moments))
     new = [_new(each, known) for each in moments if len(each) == most]
     return (*_new(found, known), *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))))
 
 
-def _constant_moments(
-    system: System, assembly: Assembly, bodies: Sequence[str], about: str, point: Vector
-) -> list[Constant]:
+def _constant_moments(equations: EquationsOfMotion, bodies: Sequence[str], about: str, point: Vector) -> list[Constant]:
     """The components of the angular momentum about a point that stay, and in space the square of one body's."""
+    system = equations.system
     in_space = system.scope.model.space == "space"
     axes = "xyz" if in_space else "z"
     L = angular_momentum(system.motion, point, bodies)[-len(axes) :]
-    constant = stay_constant(system, assembly, L)
+    constant = stay_constant(equations, L)
     found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
     if in_space and all(constant) and len(bodies) == 1:
         found.append(Constant("L", "", about, _square(system, point, bodies[0])))

@@ -11,12 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 from eomgen.mechanics.bodies.scope import primitive
-from eomgen.mechanics.bodies.sign import positive_parameters
-from eomgen.mechanics.equations.assembly import Assembly
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, value_at_start
@@ -37,7 +34,7 @@ class FreeSpeed:
     """What the free speed follows from.
 
     Args:
-        system, assembly: the equations of motion.
+        equations: the equations of motion.
         relations: every speed by the free one.
         start: q and u at the start, scalars of the parameters.
         there: a state of the motion in numbers, parameters included, which says in which sense it goes.
@@ -45,8 +42,7 @@ class FreeSpeed:
         at: coordinates whose values are put in.
     """
 
-    system: System
-    assembly: Assembly
+    equations: EquationsOfMotion
     relations: Relations
     start: Mapping[Node, Scalar]
     there: Mapping[Node, float]
@@ -55,8 +51,8 @@ class FreeSpeed:
 
     def value(self) -> Scalar | None:
         """u_s as a function of the coordinates that are not in `at`; None where nothing gives it."""
-        for energy in energy_integral(self.system, self.assembly):
-            difference = energy.expression - value_at_start(energy.expression, self.start, self.system.symbols)
+        for energy in energy_integral(self.equations):
+            difference = energy.expression - value_at_start(energy.expression, self.start, self.equations.symbols)
             return self._root_of_energy(substituted((difference,), self.relations.speeds)[0])
         square = self._square_by_path()
         if square is None:
@@ -68,12 +64,8 @@ class FreeSpeed:
         assert self.relations.speed is not None
         return self.relations.speed
 
-    @cached_property
-    def _positive(self) -> frozenset[Node]:
-        return positive_parameters(self.system.scope)
-
     def _simple(self, x: Scalar) -> Scalar:
-        return simplest(x, Work.VALUE, self._positive)
+        return simplest(x, Work.VALUE, self.equations.system.scope.positive)
 
     # -- in which sense ---------------------------------------------------------------------------
 
@@ -97,8 +89,8 @@ class FreeSpeed:
     def _acceleration(self) -> Scalar:
         """Of the free speed, with the model's own inputs."""
         assert self.accelerations is not None
-        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
-        return substituted((self.accelerations[self.system.symbols.u.index(self._speed)],), inputs)[0]
+        inputs = {node: self.equations.inputs[name] for name, node in self.equations.symbols.inputs.items()}
+        return substituted((self.accelerations[self.equations.symbols.u.index(self._speed)],), inputs)[0]
 
     # -- by the energy ----------------------------------------------------------------------------
 
@@ -119,7 +111,7 @@ class FreeSpeed:
 
     def _square_by_path(self) -> Scalar | None:
         """y = u_s^2 as a function of q_s, from dy/dq_s = 2 F0 + 2 F2 y."""
-        symbols, s = self.assembly.symbols, self._speed
+        symbols, s = self.equations.symbols, self._speed
         q = next((q for q in symbols.q if q.name + "'" == s.name), None)
         if q is None or self.accelerations is None:
             return None
@@ -147,7 +139,7 @@ class FreeSpeed:
             if node.op != "sign":
                 continue
             k = self._simple(derivative(node.args[0], s))
-            sign = sign_of_terms(k, self._positive)
+            sign = sign_of_terms(k, self.equations.system.scope.positive)
             if sign and vanishes(node.args[0] - k * s):
                 known[node] = sense * sign
         return substituted((F,), known)[0] if known else F

@@ -1,4 +1,4 @@
-"""System, Assembly -> first integrals: what stays constant along every motion.
+"""Equations of motion -> first integrals: what stays constant along every motion.
 
 T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
 u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
 from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.first_integrals.constants_of_motion import jacobi
@@ -39,22 +39,17 @@ class Integral:
     coordinate: str = ""
 
 
-def first_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:
-    """The energy where it stays, and the momenta on which only known functions of time act."""
-    return (*energy_integral(system, assembly), *momentum_integrals(system, assembly))
-
-
-def energy_integral(system: System, assembly: Assembly) -> tuple[Integral, ...]:
+def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
 
     Where something moves by itself, Jacobi's integral if that stays.
     """
-    if not assembly.M:
+    if not equations.M:
         return ()
-    for V in (assembly.V, assembly.V - work_of_constant_forces(system)):
-        if is_conservative(system, replace(assembly, V=V)):
-            return (Integral("energy", assembly.T + V),)
-    found = jacobi(system, assembly)
+    for V in (equations.V, equations.V - work_of_constant_forces(equations.system)):
+        if is_conservative(replace(equations, V=V)):
+            return (Integral("energy", equations.T + V),)
+    found = jacobi(equations)
     return () if found is None else (Integral("jacobi", found),)
 
 
@@ -89,21 +84,21 @@ def _is_constant(system: System, *scalars: Scalar) -> bool:
     return not any(depends_on(x, moving) for x in scalars)
 
 
-def momentum_integrals(system: System, assembly: Assembly) -> tuple[Integral, ...]:
+def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     """p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one."""
-    symbols, scope = assembly.symbols, system.scope
-    momenta = gradient(assembly.T, symbols.u)
+    symbols, scope = equations.symbols, equations.system.scope
+    momenta = gradient(equations.T, symbols.u)
     drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
     found = []
     for k, (u, p) in enumerate(zip(symbols.u, momenta, strict=True)):
-        if not all(holds_identically(row[k]) for row in assembly.J):
+        if not all(holds_identically(row[k]) for row in equations.J):
             continue
-        rate = _of_time_alone(drifts[k] + assembly.forcing[k], (*symbols.q, *symbols.u, *symbols.inputs.values()))
+        rate = _of_time_alone(drifts[k] + equations.forcing[k], (*symbols.q, *symbols.u, *symbols.inputs.values()))
         if rate is None:
             continue
         try:
             gained = integral_from_zero(rate, symbols.t, "") if type(rate) is Node else rate * symbols.t
-        except EomgenError:  # no closed form
+        except DerivationError:  # no closed form
             continue
         name = u.name.removesuffix("'")
         found.append(Integral(f"momentum({name})", p - gained, name))

@@ -14,7 +14,6 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.coupled_motion import CoupledEquations, pair_solution
 from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion
@@ -38,7 +37,7 @@ def laws_of_motion(system: System, accelerations: Sequence[Scalar], start: Mappi
         accelerations: a as expressions of q, u, t and inputs.
         start: q and u at the start, scalars of the parameters; t where that is not 0.
     """
-    return _Laws(system, start, positive_parameters(system.scope)).found(tuple(accelerations))
+    return _Laws(system, start, system.scope.positive).found(tuple(accelerations))
 
 
 @dataclass(frozen=True)

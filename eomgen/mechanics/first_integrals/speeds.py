@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.free_speed import FreeSpeed
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
@@ -19,8 +19,7 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 
 def rates_of(
-    system: System,
-    assembly: Assembly,
+    equations: EquationsOfMotion,
     start: Mapping[Node, Scalar],
     *,
     there: Mapping[Node, float] | None = None,
@@ -37,14 +36,14 @@ def rates_of(
     Raises:
         DerivationError: a coordinate has no value at the start.
     """
-    relations = relations_of(system, assembly, start, at)
+    relations = relations_of(equations, start, at)
     if relations is None:
         return None
     speeds = relations.speeds
     if relations.speed is None:
         return speeds
-    there = start_in_numbers(system, start) if there is None else there
-    speed = FreeSpeed(system, assembly, relations, start, there, accelerations, at or {}).value()
+    there = start_in_numbers(equations.system, start) if there is None else there
+    speed = FreeSpeed(equations, relations, start, there, accelerations, at or {}).value()
     if speed is None:
         return None
     return dict(zip(speeds, substituted(tuple(speeds.values()), {relations.speed: speed}), strict=True))

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from eomgen.errors import DerivationError, EomgenError
-from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.integrals import momentum_integrals
 from eomgen.symbolic.exact.normal_form import simplest
@@ -43,7 +42,7 @@ class Relations:
 
 
 def relations_of(
-    system: System, assembly: Assembly, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
+    equations: EquationsOfMotion, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
 ) -> Relations | None:
     """What momenta and closing rows, all linear in the speeds, say of them; None where more than one stays free.
 
@@ -51,13 +50,13 @@ def relations_of(
         start: q and u at the start, scalars of the parameters.
         at: coordinates whose values are put in before anything is solved.
     """
-    symbols = assembly.symbols
-    by_itself = (*assembly.sigma, *assembly.nu)
+    symbols = equations.symbols
+    by_itself = (*equations.sigma, *equations.nu)
     if not 0 < len(symbols.u) <= MOST_SPEEDS or any(depends_on(x, (symbols.t,)) for x in by_itself):
         return None
-    rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in assembly.J]
-    right: list[Scalar] = [-sigma for sigma in assembly.sigma]
-    for integral in momentum_integrals(system, assembly):
+    rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in equations.J]
+    right: list[Scalar] = [-sigma for sigma in equations.sigma]
+    for integral in momentum_integrals(equations):
         if depends_on(integral.expression, (symbols.t,)):
             continue
         (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
@@ -66,10 +65,10 @@ def relations_of(
     if at:
         rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
         right = list(substituted(tuple(right), at))
-    solution = _solved(system, rows, right, len(symbols.u))
+    solution = _solved(equations.system, rows, right, len(symbols.u))
     if solution is None or len(solution.free) > 1:
         return None
-    positive = positive_parameters(system.scope)
+    positive = equations.system.scope.positive
     constants = {symbols.u[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
     if not solution.free:
         return Relations(None, dict.fromkeys(symbols.u, 0), constants)
@@ -86,7 +85,7 @@ def _solved(
     """The speeds by the rows, with pivots that do not vanish at a generic state of the motion."""
     try:
         state = generic_state(system.ties)
-    except EomgenError:
+    except (DerivationError, MissingValues):
         return None
     return general_solution(LinearSystem(rows, right, unknowns, digits_at(state)))
 

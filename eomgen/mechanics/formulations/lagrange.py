@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.equations.assembly import Assembly, assembled
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.symbolic.expression.derivative import gradient, jacobian, pullback, substituted, tangent
@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 
 
-def assembled_by_energies(system: System) -> Assembly:
+def assembled_by_energies(system: System) -> EquationsOfMotion:
     """The equations of motion from the energies; closing rows by multipliers."""
     if system.free is not None:
         return _reduced(system, system.free)
@@ -29,7 +29,7 @@ def assembled_by_energies(system: System) -> Assembly:
     return assembled(system, M=M, c=c, Q=generalized_forces(system.loads), T=T)
 
 
-def _reduced(system: System, free: System) -> Assembly:
+def _reduced(system: System, free: System) -> EquationsOfMotion:
     """The free system's M, c and Q along the motions that are left, its speeds in terms of the independent ones."""
     whole = assembled_by_energies(free)
     rates = free_rates(system, free)

@@ -11,7 +11,7 @@ from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import Loads, body_wrench, joint_wrenches, weights
-from eomgen.mechanics.equations.assembly import Assembly, assembled
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import placeless_forces
 from eomgen.symbolic.expression.derivative import pullback, tangent
@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus, vector_of
 
 
-def assembled_by_wrenches(system: System) -> Assembly:
+def assembled_by_wrenches(system: System) -> EquationsOfMotion:
     """The equations of motion from wrenches and twists; closing rows by multipliers."""
     M, c = inertia_by_twists(system.motion)
     return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))

@@ -8,14 +8,14 @@ from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import Loads
 from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces, composite_mass_matrix
 from eomgen.mechanics.bodies.tree import Branch, branches_of
-from eomgen.mechanics.equations.assembly import Assembly, assembled
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion, assembled
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, joint_forces, placeless_forces
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import ZERO, times
 
 
-def assembled_by_recursion(system: System) -> Assembly:
+def assembled_by_recursion(system: System) -> EquationsOfMotion:
     """The equations of motion by recursion over the tree; closing rows by multipliers."""
     motion = system.motion
     branches = branches_of(motion)

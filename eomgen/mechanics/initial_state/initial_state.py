@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.bifurcations import Fork, fork_at, is_at_rest, leads_on, speeds_along
 from eomgen.mechanics.constraints.closure import closed, gaps_of, of_50_digits
@@ -178,7 +178,7 @@ def _along_a_branch(
     """
     try:
         fork = fork_at(system.ties, state)
-    except EomgenError:  # the ties close nowhere near: there is but this place
+    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
         return state, None, ()
     if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
         return state, fork, ()

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.constraints.closure import gaps_of, movable, norms_of
+from eomgen.mechanics.constraints.closure import closed, gaps_of, movable, norms_of, of_50_digits
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
 from eomgen.symbolic.numeric.newton import least_left
-from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP, SAME_PLACE
+from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP, SAME_PLACE, SUMMED
 
 TRIES = 12
 REACH = 1.5  # how far from the place others are tried [rad, m]
@@ -59,7 +59,14 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
     named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
     places = {q.name: float(x) if abs(x) > SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
-    return Miss(places, size if size > COMPUTED else 0.0, tuple(dict.fromkeys(named)) if size > COMPUTED else ())
+    shut = size <= COMPUTED and (size <= SUMMED or _closes(system, state, dict(zip(free, best, strict=True))))
+    return Miss(places, 0.0, ()) if shut else Miss(places, size, tuple(dict.fromkeys(named)))
+
+
+def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
+    """Whether all ties close near a place, and not just nearly: with 50 digits."""
+    there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
+    return closed(system.ties, there, movable(system.ties)) is not None
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.equations.no_value import reason_without_value
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.nearest_miss import nearest_miss
 from eomgen.model.own_units import in_own_unit
@@ -31,12 +32,18 @@ def refuse_open_gaps(system: System, state: State) -> None:
     row, gap, size = found
     if size == float("inf"):
         raise DerivationError(
-            f"'{row.tie}' (row {row.number}) has no value at the start",
+            f"'{row.tie}' (row {row.number}) {_lacking(gap, state) or 'has no value at the start'}",
             f"constraints.{row.tie}",
             "give start values at which its roots and quotients have one",
         )
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
     raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
+
+
+def _lacking(gap: Scalar, state: State) -> str:
+    """Why a gap has no value: " is 0/0 at x = 0, where it starts"."""
+    found = reason_without_value(gap, {node: float(x) for node, x in state.items()})
+    return f"{found}, where it starts" if found else ""
 
 
 def _nearest(system: System, state: State) -> str:

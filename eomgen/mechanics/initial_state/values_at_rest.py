@@ -7,10 +7,9 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value, with_unit_quaternions
+from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.closure import gaps_of, of_50_digits
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
@@ -34,16 +33,11 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
         DerivationError: the ties do not close at the start, or not in closed form.
     """
     symbols, scope = system.symbols, system.scope
-    state: State = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
     sought = fixed_by_position(system)
-    given = {q: start_value(scope, scope.model.coordinates[q.name]) for q in symbols.q if q not in sought}
-    given = with_unit_quaternions(scope, given)
-    state |= {**given, **(places or {})}
+    given = with_unit_quaternions(scope, start_values(scope, (q for q in symbols.q if q not in sought)))
+    state = system.standing({**given, **(places or {})})
     left = [q for q in sought if q not in state]
-    if left:
-        state |= _closed_in(system, state, left)
-    inputs = substituted(tuple(system.inputs[name] for name in symbols.inputs), state)
-    return {**state, **dict(zip(symbols.inputs.values(), inputs, strict=True))}
+    return state | (_closed_in(system, state, left) if left else {})
 
 
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:
@@ -53,7 +47,7 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
         node: value
         for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
     }
-    located = Located(numbers, positive_parameters(system.scope))
+    located = Located(numbers, system.scope.positive)
     found = places_of(substituted(gaps_of(system.ties), state), sought, located)
     missing = [q.name for q in sought if q not in found]
     if missing:

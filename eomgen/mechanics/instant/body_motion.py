@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import DerivationError, EomgenError
-from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import (
     VelocityField,
@@ -19,36 +18,33 @@ from eomgen.mechanics.fields.field import (
 )
 from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
 from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
+from eomgen.symbolic.expression.spatial import Vector, dot, minus
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
 
 LARGE = 8000  # characters of a formula that is not made readable
 
 
 @dataclass(frozen=True)
 class Readable:
-    """Values at a state, in readable form.
+    """Values at a state, in readable form; what is very long stays as it is.
 
     Args:
         state: exact scalars in place of coordinates, speeds, accelerations and t; {} for functions of them.
-        positive: symbols that stand for positive numbers.
+        simple: how they are written.
     """
 
     state: Mapping[Node, Scalar]
-    positive: frozenset[Node]
+    simple: Legibly
 
     def scalar(self, x: Scalar) -> Scalar:
-        """A scalar at the state; what is very long stays as it is."""
-        (found,) = substituted((x,), self.state)
-        return found if text_size(found) > LARGE else simplest(found, Work.VALUE, self.positive)
+        return self.simple(substituted((x,), self.state)[0])
 
     def vector(self, x: Vector) -> Vector:
-        return vector_of(map(self.scalar, x))
+        return self.simple.vector(substituted(x, self.state))
 
     def field(self, field: VelocityField) -> VelocityField:
         """The field at the state."""
@@ -57,7 +53,7 @@ class Readable:
 
 def readable_at(system: System, state: Mapping[Node, Scalar]) -> Readable:
     """The readable values of a system at a state."""
-    return Readable(state, positive_parameters(system.scope))
+    return Readable(state, Legibly(Work.VALUE, system.scope.positive, LARGE))
 
 
 @dataclass(frozen=True)
@@ -157,7 +153,7 @@ def _kind(kinds: Kinds | None, body: str) -> Kind | None:
         return None
     try:
         return kinds.of(body)
-    except EomgenError:  # no motion near the start at which it could be tried
+    except (DerivationError, MissingValues):  # no motion near the start at which it could be tried
         return None
 
 

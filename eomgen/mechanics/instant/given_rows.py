@@ -9,7 +9,6 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_for, values_of_parameters
@@ -52,7 +51,7 @@ def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bo
     rates, right = (symbols.a, ties.gamma) if accelerations else (symbols.u, ties.sigma)
     width = len(rates)
     placed = substituted((*(x for row in ties.J for x in row), *right), state)
-    flat = readable_all(placed, Work.ANSWER, positive_parameters(system.scope))
+    flat = readable_all(placed, Work.ANSWER, system.scope.positive)
     lines = []
     for k, row in enumerate(ties.closing):
         entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
@@ -67,7 +66,7 @@ def _norm_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: 
     for four in scope.quaternions:
         gap = sum((e * scope.names[e.name + "'"] for e in four), start=0)
         gap = scope.with_accelerations((gap,))[0] if accelerations else gap
-        (placed,) = readable_all(substituted((gap,), state), Work.ANSWER, positive_parameters(scope))
+        (placed,) = readable_all(substituted((gap,), state), Work.ANSWER, scope.positive)
         yield linear_line(UNSAID, placed, rates, "")
 
 

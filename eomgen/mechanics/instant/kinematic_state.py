@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.freedom import is_particle
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
@@ -21,7 +20,7 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.spatial import Vector, dot, vector_of
+from eomgen.symbolic.expression.spatial import Vector, dot
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
@@ -46,7 +45,7 @@ class KinematicState:
         symbol: of it.
         exact: whether the state is known in closed form.
         rounded: whether the accelerations are numbers although the state has a closed form.
-        assembly: the equations of motion by which it goes on; None where only the instant is known.
+        equations: the equations of motion by which it goes on; None where only the instant is known.
     """
 
     system: System
@@ -60,7 +59,7 @@ class KinematicState:
     symbol: Node | None = None
     exact: bool = True
     rounded: bool = False
-    assembly: Assembly | None = None
+    equations: EquationsOfMotion | None = None
 
     @property
     def state(self) -> State:
@@ -124,20 +123,17 @@ class KinematicState:
 
     def put(self, scalars: Sequence[Scalar]) -> Vector:
         """A vector at the instant, readable."""
-        return vector_of(map(self.simple, substituted(tuple(scalars), self.state)))
+        return self.simple.vector(substituted(tuple(scalars), self.state))
 
     def _same(self, one: Sequence[Vector | None], other: Sequence[Vector | None]) -> bool:
         """Whether places, velocities and accelerations (None: not known) are the same."""
         pairs = ((u, v) for u, v in zip(one, other, strict=True) if u is not None and v is not None)
         return self.worth.vanish(x - y for u, v in pairs for x, y in zip(u, v, strict=True))
 
-    def simple(self, x: Scalar) -> Scalar:
-        """A scalar as a person writes it; as it is where it is very long."""
-        return self._legibly(x)
-
     @cached_property
-    def _legibly(self) -> Legibly:
-        return Legibly(Work.ANSWER, positive_parameters(self.system.scope), LARGE)
+    def simple(self) -> Legibly:
+        """Scalars as a person writes them; as they are where they are very long."""
+        return Legibly(Work.ANSWER, self.system.scope.positive, LARGE)
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""

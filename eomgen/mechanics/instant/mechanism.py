@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.centers import Homogeneous, homogeneous_center
 from eomgen.mechanics.fields.field import field_of
@@ -20,7 +19,7 @@ from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, minus
 from eomgen.symbolic.numeric.work import Work
 
 FIXED = "0"
@@ -79,7 +78,8 @@ class Mechanism:
         motion = self.system.motion
         bodies = [link for link in motion.links if not is_node(link.name)]
         return {
-            link.name: self._simple(homogeneous_center(field_of(motion, link.name).at(self.moving))) for link in bodies
+            link.name: self._simple.vector(homogeneous_center(field_of(motion, link.name).at(self.moving)))
+            for link in bodies
         }
 
     def _apart(self, block: str, body: str) -> Homogeneous:
@@ -104,12 +104,12 @@ class Mechanism:
         return {pair: self._center(pair) for pair in combinations(self.blocks, 2)}
 
     def _center(self, pair: tuple[str, str]) -> RotationCenter:
-        return RotationCenter(pair, self.normal(self._simple(self._apart(pair[0], pair[1]))))
+        return RotationCenter(pair, self.normal(self._simple.vector(self._apart(pair[0], pair[1]))))
 
     def normal(self, c: Homogeneous) -> Homogeneous:
         """A homogeneous point as (x, y, 1), or as (1, dy, 0) or (0, 1, 0) at infinity."""
         k = next(k for k in (2, 0, 1) if not self.is_zero((c[k],)))
-        x, y = (self._one(over(c[i], c[k])) for i in (0, 1))
+        x, y = (self._simple(over(c[i], c[k])) for i in (0, 1))
         return (x, y, 1) if k == 2 else (1, y, 0) if k == 0 else (0, 1, 0)
 
     # -- helpers -----------------------------------------------------------------------------------
@@ -119,8 +119,5 @@ class Mechanism:
         return self.worth.vanish(scalars)
 
     @cached_property
-    def _one(self) -> Legibly:
-        return Legibly(Work.ANSWER, positive_parameters(self.system.scope))
-
-    def _simple(self, v: Vector) -> Vector:
-        return vector_of(map(self._one, v))
+    def _simple(self) -> Legibly:
+        return Legibly(Work.ANSWER, self.system.scope.positive)

@@ -1,102 +1,56 @@
-"""System -> Quantities: the functions that outputs may call, as graph scalars.
+"""System -> Quantities: what output functions ask of it, as graph scalars.
 
-Positions are read off the poses; velocities and accelerations are their time derivatives, and the
-accelerations hold the symbols a, in which they are linear. Seen from a body: in that body's frame
-and axes, r = R^T (p - p_body), v = dr/dt, a = dv/dt.
+Positions are read off the poses; velocities and accelerations are their time derivatives, and the accelerations hold
+the symbols a, in which they are linear.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.inertia import kinetic_energy
-from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.mechanics.balance.balance import refuse_placeless
+from eomgen.mechanics.bodies.composition import made_of
+from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.fields.centers import finite_center
-from eomgen.mechanics.fields.field import (
-    VelocityField,
-    acceleration_pole,
-    curvature_radius,
-    field_of,
-    least_speed,
-    normal_part,
-    tangential_part,
-)
-from eomgen.mechanics.fields.relative_motion import COMPONENTS as PARTS_OF_MOTION
-from eomgen.mechanics.fields.relative_motion import MAGNITUDES as SIZES_OF_PARTS
-from eomgen.mechanics.fields.relative_motion import body_axes, part_of_motion
+from eomgen.mechanics.fields.field import VelocityField, acceleration_pole, field_of, least_speed
+from eomgen.mechanics.fields.relative_motion import Composition, body_axes, composition_of
 from eomgen.mechanics.first_integrals.energies import energy_of_force, energy_of_motion, power_of_loads
 from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.masses.inertia_about import FUNCTIONS as MOMENTS_OF_INERTIA
-from eomgen.mechanics.masses.inertia_about import Asked
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS, AskedReactions, output_name
-from eomgen.model.forces.load import BodyPoint
+from eomgen.mechanics.masses.inertia_about import angular_momentum, flat_bodies, shapeless, tensor_about
+from eomgen.mechanics.masses.principal import principal_moments
+from eomgen.mechanics.reactions.drive import drive, multiplier
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.statics.section_forces import SectionForces, section_forces
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.scene import GROUND
+from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import derivative, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression
-from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, transposed, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, vector_of
 from eomgen.symbolic.numeric.work import Work
-
-_ORDERS = {"": 0, "v": 1, "a": 2}  # x is a position, vx a velocity, ax an acceleration
-_AXES = {"x": 0, "y": 1, "z": 2}
-COMPONENTS = {kind + axis: (n, i) for kind, n in _ORDERS.items() for axis, i in _AXES.items()}
-"""Functions of a point: (time derivatives, component)."""
-
-GROUND = "ground"
-ALONG_THE_PATH: dict[str, Callable[[Vector, Vector], Scalar]] = {
-    "tangential_acceleration": tangential_part,
-    "normal_acceleration": normal_part,
-    "curvature_radius": curvature_radius,
-}
-"""Functions of a point's velocity and acceleration."""
-MAGNITUDES = {"speed": 1, "acceleration": 2}
-TURNING = {f"{name}_{axis}": (n, i) for name, n in (("omega", 1), ("epsilon", 2)) for axis, i in _AXES.items()}
-"""Functions of a body: (time derivatives, component)."""
-
-LINEARIZED = frozenset(("mass", "damping", "stiffness", "frequency"))
-"""Functions of the linearized system, which is none of a state."""
-
-
-OF_MOTION = frozenset(
-    (
-        *(name for name, (n, _) in COMPONENTS.items() if n),
-        *MAGNITUDES,
-        *TURNING,
-        *ALONG_THE_PATH,
-        *PARTS_OF_MOTION,
-        *SIZES_OF_PARTS,
-        "omega",
-        "epsilon",
-        "rotation_center_x",
-        "rotation_center_y",
-        "acceleration_pole_x",
-        "acceleration_pole_y",
-        "least_speed",
-        "kinetic_energy",
-        "power",
-        "angular_momentum_x",
-        "angular_momentum_y",
-        "angular_momentum_z",
-    )
-)
-"""Functions of velocities and accelerations."""
 
 
 def asks_motion(formula: Expression) -> bool:
     """Whether velocities or accelerations stand in a formula: functions of them, or rates of coordinates."""
-    return any(call.name in OF_MOTION for call in formula.calls) or any(name.endswith("'") for name in formula.names)
+    moves = any(call.name in FUNCTIONS and FUNCTIONS[call.name].moves for call in formula.calls)
+    return moves or any(name.endswith("'") for name in formula.names)
+
+
+def asks_of(formula: Expression, source: str) -> bool:
+    """Whether a formula calls functions that are found from this source."""
+    return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
 
 
 @dataclass(frozen=True)
 class Quantities:
-    """What the functions of the outputs are worth in one system.
+    """What the functions of the outputs are worth in one system: the scene in which they are written.
 
     Args:
         system: the system.
@@ -106,134 +60,165 @@ class Quantities:
     system: System
     at: Mapping[Node, Scalar] = field(default_factory=dict)
 
-    @property
-    def reactions(self) -> Reactions:
-        """All reactions, of generic coordinates or at the given ones."""
-        return self._asked.reactions
-
     def value(self, call: Call) -> Scalar:
         """One function at its arguments, in q, u, a, t and the parameters.
 
         Raises:
             DerivationError: it has no meaning here.
         """
-        if call.name in LINEARIZED:
-            raise DerivationError(f"'{call}' is of the linearized system, not of a state", mend="ask it by itself")
-        if call.name in ASKING_REACTIONS:
-            return self._asked.value(call)
-        if call.name in MOMENTS_OF_INERTIA:
-            asked = Asked(call, self.system.motion, lambda entries: substituted(tuple(entries), self.at))
-            return MOMENTS_OF_INERTIA[call.name](asked)
-        if call.name not in _OF_NAMES:
+        if call.name not in FUNCTIONS:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
-        return _OF_NAMES[call.name](self, *(output_name(call, argument) for argument in call.args))
+        return FUNCTIONS[call.name].value(self, call)
 
-    @cached_property
-    def _asked(self) -> AskedReactions:
-        return AskedReactions(self.system, self.at)
+    # -- places, and how they change ---------------------------------------------------------------
 
-    def size(self, vector: Vector) -> Scalar:
-        """|v|"""
-        (vector,) = self._here(vector)
-        return sqrt(dot(vector, vector))
+    @property
+    def is_plane(self) -> bool:
+        """Whether all motion is in the plane."""
+        return self.system.scope.model.space == "plane"
 
-    def of_point(self, order: int, point: str, frame: str = GROUND, axes: str = "") -> Vector:
-        """Position (order 0), velocity (1) or acceleration (2) of a point, seen from `frame` [m, s].
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies, without the ground."""
+        return tuple(link.name for link in self.system.motion.links)
 
-        Args:
-            axes: of the components: a body's or the ground's; those of `frame` where it is left out.
-        """
-        motion = self.system.motion
-        place = motion.position(self._place(point))
-        if frame in motion.index:
-            pose = motion.link(frame).pose
-            place = apply(transposed(pose.R), minus(place, pose.p))
-        seen = self._rate(place, order)
-        if axes in ("", frame):
-            return seen
-        return apply(transposed(body_axes(motion, axes)), apply(body_axes(motion, frame), seen))
+    @property
+    def names(self) -> Mapping[str, Scalar]:
+        """What the names of an expression stand for."""
+        return self.system.scope.names
 
-    def along_the_path(self, law: Callable[[Vector, Vector], Scalar], *names: str) -> Scalar:
-        """What depends on velocity and acceleration of a point, at the given state."""
-        return law(*self._here(self.of_point(1, *names), self.of_point(2, *names)))
+    def position(self, point: str) -> Vector:
+        """Where a point is, ground axes [m]."""
+        return self.system.motion.position(self.system.motion.place(point))
 
-    def _here(self, *vectors: Vector) -> tuple[Vector, ...]:
-        """The vectors at the given state, readable; as they are where none is given."""
-        if not self.at:
-            return vectors
-        positive = positive_parameters(self.system.scope)
-        values = substituted([x for vector in vectors for x in vector], self.at)
-        flat = iter([simplest(x, Work.VALUE, positive) for x in values])
-        return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
+    def body_of(self, point: str) -> str:
+        """The body on which a point is, or the ground."""
+        return self.system.motion.place(point)[0] or GROUND
 
-    def _field(self, body: str) -> VelocityField:
-        """The field of a body at the given state."""
-        field = field_of(self.system.motion, body)
-        return VelocityField(*self._here(field.p, field.v, field.a, field.w, field.e))
+    def origin(self, body: str) -> Vector:
+        """Where the frame of a body, or of the ground, begins [m]."""
+        return self.system.motion.link(body).pose.p if body in self.system.motion.index else ZERO
 
-    def center(self, body: str, other: str = GROUND) -> Vector:
-        """The centre of rotation of a body against the ground or another body.
+    def axes(self, body: str) -> Matrix:
+        """R from the axes of a body to the ground's."""
+        return body_axes(self.system.motion, body)
 
-        Raises:
-            DerivationError: it is at infinity, or there is none; in space there is no single one to be asked for.
-        """
-        if self.system.scope.model.space != "plane":
-            raise DerivationError(f"rotation_center({body}): it is asked of plane motion")
-        whose = f"body '{body}'" + (f" against '{other}'" if other != GROUND else "")
-        return finite_center(self._field(body).against(self._field(other)), whose)
+    def angle(self, body: str) -> Scalar:
+        """Angle of a body of the plane against the ground's axes; of the ground 0 [rad]."""
+        angle = self.system.motion.link(body).angle if body in self.system.motion.index else 0
+        assert angle is not None, "in the plane every body has an angle"
+        return angle
 
-    def pole(self, body: str) -> Vector:
-        """The point of a body that has no acceleration.
-
-        Raises:
-            DerivationError: there is none; in space there is no single one to be asked for.
-        """
-        if self.system.scope.model.space != "plane":
-            raise DerivationError(f"acceleration_pole({body}): it is asked of plane motion")
-        return acceleration_pole(self._field(body))
-
-    def least_speed(self, start: str, end: str) -> Scalar:
-        """The least speed of the points of a body between two of its points."""
-        places = [self._place(point) for point in (start, end)]
-        body, other = (GROUND if owner is None else owner for owner, _ in places)
-        if body != other:
-            what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"
-            raise DerivationError(what, mend="name two points of one body")
-        first, last = self._here(*map(self.system.motion.position, places))
-        positive = positive_parameters(self.system.scope)
-        return least_speed(self._field(body), first, last, lambda x: simplest(x, Work.VALUE, positive))
-
-    def of_body(self, order: int, body: str, frame: str = GROUND) -> Vector:
-        """Angular velocity (order 1) or acceleration (2) of a body, ground axes or those of `frame` [rad, s]."""
-        w = self._spin(body)
-        if frame in self.system.motion.index:
-            R = self.system.motion.link(frame).pose.R
-            w = apply(transposed(R), minus(w, self._spin(frame)))
-        return w if order == 1 else vector_of(self.system.scope.with_accelerations(w))
-
-    def _spin(self, body: str) -> Vector:
+    def spin(self, body: str) -> Vector:
         """Angular velocity in ground axes, from the twist; of the ground 0 [rad/s]."""
         if body not in self.system.motion.index:
             return ZERO
         link = self.system.motion.link(body)
         return link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
 
-    def angle(self, body: str, frame: str = GROUND) -> Scalar:
-        """Angle of a body in the plane, against the ground or another body [rad]."""
-        return self._angle(body) - self._angle(frame)
+    def rate(self, place: Vector) -> Vector:
+        """d/dt of what depends on q and t."""
+        return self.system.scope.rate_of(place)
 
-    def _angle(self, body: str) -> Scalar:
-        """Angle of a body against the ground's axes; of the ground 0 [rad]."""
-        if self.system.scope.model.space != "plane":
-            raise DerivationError(f"body '{body}' has no single angle in space")
-        angle = self.system.motion.link(body).angle if body in self.system.motion.index else 0
-        assert angle is not None, "in the plane every body has an angle"
-        return angle
+    def acceleration(self, velocity: Vector) -> Vector:
+        """d/dt of what depends on q, u and t."""
+        return vector_of(self.system.scope.with_accelerations(velocity))
 
-    def turning(self, order: int, body: str, frame: str = GROUND) -> Scalar:
-        """In the plane omega or epsilon, counter-clockwise positive; in space its magnitude."""
-        vector = self.of_body(order, body, frame)
-        return vector[2] if self.system.scope.model.space == "plane" else sqrt(dot(vector, vector))
+    def placed(self, *vectors: Vector) -> tuple[Vector, ...]:
+        """The vectors at the given state; as they are where none is given."""
+        if not self.at:
+            return vectors
+        flat = iter(substituted([x for vector in vectors for x in vector], self.at))
+        return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
+
+    def here(self, *vectors: Vector) -> tuple[Vector, ...]:
+        """The same, readable."""
+        if not self.at:
+            return vectors
+        return tuple(vector_of(map(self._short, vector)) for vector in self.placed(*vectors))
+
+    def _short(self, x: Scalar) -> Scalar:
+        return simplest(x, Work.VALUE, self.system.scope.positive)
+
+    # -- fields of velocities ----------------------------------------------------------------------
+
+    def parts_of_motion(self, point: str, body: str) -> Composition:
+        """The motion of a point against a body, in its parts."""
+        return composition_of(self.system.motion, point, body)
+
+    def _field(self, body: str) -> VelocityField:
+        """The field of a body at the given state."""
+        field = field_of(self.system.motion, body)
+        return VelocityField(*self.here(field.p, field.v, field.a, field.w, field.e))
+
+    def rotation_center(self, body: str, other: str = GROUND) -> Vector:
+        """The centre of rotation of a body against the ground or another body.
+
+        Raises:
+            DerivationError: it is at infinity, or there is none.
+        """
+        whose = f"body '{body}'" + (f" against '{other}'" if other != GROUND else "")
+        return finite_center(self._field(body).against(self._field(other)), whose)
+
+    def acceleration_pole(self, body: str) -> Vector:
+        """The point of a body that has no acceleration.
+
+        Raises:
+            DerivationError: there is none.
+        """
+        return acceleration_pole(self._field(body))
+
+    def least_speed(self, body: str, start: Vector, end: Vector) -> Scalar:
+        """The least speed of the points of a body between two places."""
+        return least_speed(self._field(body), start, end, self._short)
+
+    # -- masses and energies -------------------------------------------------------------------------
+
+    def mass(self, body: str) -> MassProperties:
+        """Mass, mass centre and inertia about it, body axes."""
+        return mass_properties(self.system.scope, body)
+
+    def parts(self, body: str) -> int | None:
+        """How many parts a body is made of; None where it is not."""
+        parts = self.system.scope.model.bodies[body].parts
+        return None if parts is None else len(parts)
+
+    def mass_of_part(self, body: str, number: int) -> Scalar:
+        """The mass of a part, counted from 1; of a hole positive [kg]."""
+        found: Scalar = made_of(self.system.scope, body).pieces[number - 1].mass.m
+        return found
+
+    def without_inertia(self, bodies: Sequence[str]) -> tuple[str, ...]:
+        """Those that have a mass and say nothing of its inertia."""
+        return shapeless(self.system.motion, bodies)
+
+    def known_about_z(self, bodies: Sequence[str]) -> tuple[str, ...]:
+        """Those of which only the moment about z is known."""
+        return flat_bodies(self.system.motion, bodies)
+
+    def tensor(self, point: Vector, bodies: Sequence[str]) -> Matrix:
+        """I_P of the bodies together [kg m^2]."""
+        return tensor_about(self.system.motion, point, bodies)
+
+    def principal_moments(self, tensor: Matrix) -> tuple[Scalar, ...]:
+        """Ascending [kg m^2]."""
+        return principal_moments(tensor, self.system.scope)
+
+    def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:
+        """L_P of the bodies together [kg m^2/s]."""
+        return angular_momentum(self.system.motion, point, bodies)
+
+    def kinetic_energy(self, body: str | None = None) -> Scalar:
+        """T of the whole, or of one body [J]."""
+        return energy_of_motion(self.system, body)
+
+    def potential_energy(self, name: str | None = None) -> Scalar:
+        """V of the whole, of one force, or of one body [J]."""
+        return energy_of_force(self.system, name)
+
+    def power(self, name: str | None = None) -> Scalar:
+        """Of everything applied, of one force, or of what acts on one body [W]."""
+        return power_of_loads(self.system, name)
 
     def generalized_force(self, coordinate: str) -> Scalar:
         """Q_k of everything applied."""
@@ -245,15 +230,52 @@ class Quantities:
         system, k = self._speed(coordinate, "momentum")
         return self._carried(system, derivative(kinetic_energy(system.motion), system.symbols.u[k]))
 
-    def _rate(self, vector: Vector, order: int) -> Vector:
-        scope = self.system.scope
-        if order == 0:
-            return vector
-        rate = scope.time_derivative(vector)
-        return vector_of(rate if order == 1 else scope.with_accelerations(rate))
+    # -- the balance of the bodies -------------------------------------------------------------------
 
-    def _place(self, point: str) -> BodyPoint:
-        return self.system.motion.place(point)
+    @cached_property
+    def reactions(self) -> Reactions:
+        """All reactions, of generic coordinates or at the given ones."""
+        return reactions_of(self.system, self.at, short=True)
+
+    def is_truss(self, name: str) -> bool:
+        """Whether a name is that of a truss."""
+        tie = self.system.scope.model.constraints.get(name)
+        return tie is not None and tie.table == "trusses"
+
+    def multiplier(self, tie: str) -> Scalar:
+        """lam of a tie of one row; where it or another action has no place, as it stands in the equations of motion."""
+        rows = [row for row in self.system.ties.rows if row.tie == tie]
+        if any(row.pushes for row in rows) and not self._acts_at_no_place:
+            return self.reactions.multiplier(tie)
+        return multiplier(self.system, tie)
+
+    @cached_property
+    def _acts_at_no_place(self) -> bool:
+        """Whether the bodies cannot be balanced one by one."""
+        try:
+            refuse_placeless(self.system)
+        except DerivationError:
+            return True
+        return False
+
+    def drive(self, coordinate: str) -> Scalar:
+        """What moves a driven coordinate as given."""
+        return drive(self.system, coordinate)
+
+    def section(self, body: str) -> SectionForces:
+        """The section forces along a body."""
+        if body not in self.system.motion.index:
+            raise DerivationError(f"'{body}' is no body with section forces")
+        if body not in self._sections:
+            self._sections[body] = section_forces(self.reactions, body)
+        return self._sections[body]
+
+    @cached_property
+    def _sections(self) -> dict[str, SectionForces]:
+        """The section forces of the bodies of which they were asked."""
+        return {}
+
+    # -- along coordinates ---------------------------------------------------------------------------
 
     def _speed(self, coordinate: str, function: str) -> tuple[System, int]:
         """The system among whose speeds it is, or its rate, and its place; of replaced rates the system over the rates.
@@ -282,51 +304,3 @@ class Quantities:
             return scalar
         rates = free_rates(self.system, system)
         return substituted((scalar,), dict(zip(system.symbols.u, rates, strict=True)))[0]
-
-
-def _of_point(order: int, axis: int) -> Callable[..., Scalar]:
-    return lambda quantities, *names: quantities.of_point(order, *names)[axis]
-
-
-def _size_of_point(order: int) -> Callable[..., Scalar]:
-    return lambda quantities, *names: quantities.size(quantities.of_point(order, *names))
-
-
-def _part(part: str, axis: int) -> Callable[..., Scalar]:
-    return lambda quantities, *names: part_of_motion(quantities.system.motion, part, *names)[axis]
-
-
-def _size_of_part(part: str) -> Callable[..., Scalar]:
-    return lambda quantities, *names: quantities.size(part_of_motion(quantities.system.motion, part, *names))
-
-
-def _of_body(order: int, axis: int) -> Callable[..., Scalar]:
-    return lambda quantities, *names: quantities.of_body(order, *names)[axis]
-
-
-def _along_the_path(law: Callable[[Vector, Vector], Scalar]) -> Callable[..., Scalar]:
-    return lambda quantities, *names: quantities.along_the_path(law, *names)
-
-
-_OF_NAMES: dict[str, Callable[..., Scalar]] = {
-    **{name: _of_point(*asked) for name, asked in COMPONENTS.items()},
-    **{name: _size_of_point(order) for name, order in MAGNITUDES.items()},
-    **{name: _part(*asked) for name, asked in PARTS_OF_MOTION.items()},
-    **{name: _size_of_part(part) for name, part in SIZES_OF_PARTS.items()},
-    **{name: _along_the_path(law) for name, law in ALONG_THE_PATH.items()},
-    **{name: _of_body(*asked) for name, asked in TURNING.items()},
-    "angle": Quantities.angle,
-    "omega": lambda quantities, *names: quantities.turning(1, *names),
-    "epsilon": lambda quantities, *names: quantities.turning(2, *names),
-    "rotation_center_x": lambda quantities, *names: quantities.center(*names)[0],
-    "rotation_center_y": lambda quantities, *names: quantities.center(*names)[1],
-    "acceleration_pole_x": lambda quantities, *names: quantities.pole(*names)[0],
-    "acceleration_pole_y": lambda quantities, *names: quantities.pole(*names)[1],
-    "least_speed": Quantities.least_speed,
-    "generalized_force": Quantities.generalized_force,
-    "momentum": Quantities.momentum,
-    "kinetic_energy": lambda quantities, *names: energy_of_motion(quantities.system, *names),
-    "potential_energy": lambda quantities, *names: energy_of_force(quantities.system, *names),
-    "power": lambda quantities, *names: power_of_loads(quantities.system, *names),
-}
-"""Functions of names: points, bodies, coordinates."""

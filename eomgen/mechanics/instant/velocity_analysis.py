@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System, free_system_of, reduced_system
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
 from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
@@ -177,7 +176,7 @@ class Snapshot:
 
     def simple(self, x: Scalar) -> Scalar:
         """A scalar as a person writes it; as it came where multiplying out made it longer still."""
-        return legible(x, Work.ANSWER, positive_parameters(self.system.scope), LONG)
+        return legible(x, Work.ANSWER, self.system.scope.positive, LONG)
 
     def refuse_impossible(self) -> None:
         """Refuse velocities that redundant ties allow to first order, as at a change point, and no motion has.

@@ -11,12 +11,11 @@ characteristic polynomial is split into factors; where it has none, its three re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
 
 from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.symbolic.exact.normal_form import common_factor, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -89,33 +88,41 @@ class _Tensor:
     given: Matrix
     scope: Scope
 
-    @cached_property
-    def positive(self) -> frozenset[Node]:
-        return positive_parameters(self.scope)
-
     def short(self, x: Scalar) -> Scalar:
-        return short_form(x, self.positive)
+        return short_form(x, self.scope.positive)
 
     @cached_property
     def tensor(self) -> Matrix:
         """The tensor in short form, what vanishes as 0."""
-        return matrix_of((0 if vanishes(x) else self.short(x) for x in row) for row in self.given)
+        I = self.given
+        upper = {(i, j): 0 if vanishes(I[i][j]) else self.short(I[i][j]) for i in range(3) for j in range(i, 3)}
+        return matrix_of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))
 
     @property
     def linked(self) -> list[tuple[int, int]]:
         """The pairs of axes whose product of inertia does not vanish."""
         return [(i, j) for i, j in ((0, 1), (1, 2), (0, 2)) if not is_zero(self.tensor[i][j])]
 
-    @cached_property
+    @property
     def moments(self) -> PrincipalMoments:
-        """The principal moments, in no order."""
+        """The principal moments; ascending where `is_ordered`, else in no order."""
+        return self._moments[0]
+
+    @property
+    def is_ordered(self) -> bool:
+        """Whether the moments come as the three cosines of the cubic, the smallest first."""
+        return self._moments[1]
+
+    @cached_property
+    def _moments(self) -> tuple[PrincipalMoments, bool]:
         I = self.tensor
         if not self.linked:
-            return I[0][0], I[1][1], I[2][2]
+            return (I[0][0], I[1][1], I[2][2]), False
         if len(self.linked) == 1:
             ((i, j),) = self.linked
-            return (I[3 - i - j][3 - i - j], *self._halves(I[i][i] + I[j][j], self._spread))
-        return self._cubic(I)
+            return (I[3 - i - j][3 - i - j], *self._halves(I[i][i] + I[j][j], self._spread)), False
+        rational = self._cubic(I)
+        return (self._trigonometric(I), True) if rational is None else (rational, False)
 
     @cached_property
     def _spread(self) -> Scalar:
@@ -127,20 +134,29 @@ class _Tensor:
     def _halves(self, total: Scalar, spread: Scalar) -> tuple[Scalar, Scalar]:
         return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
 
-    def _cubic(self, I: Matrix) -> PrincipalMoments:
-        """The roots of J^3 - tr J^2 + minors J - det; without a determinant, as of masses in line, 0 is one."""
-        is_long = sum(text_size(x) for row in I for x in row) > LONGEST
-        short: Callable[[Scalar], Scalar] = (lambda x: x) if is_long else self.short
+    @cached_property
+    def _is_long(self) -> bool:
+        return sum(text_size(x) for row in self.tensor for x in row) > LONGEST
+
+    def _short_unless_long(self, x: Scalar) -> Scalar:
+        return x if self._is_long else self.short(x)
+
+    def _cubic(self, I: Matrix) -> PrincipalMoments | None:
+        """The roots of J^3 - tr J^2 + minors J - det where one is rational in the entries; None where none is found.
+
+        Without a determinant, as of masses in line, 0 is one.
+        """
+        short = self._short_unless_long
         trace = short(I[0][0] + I[1][1] + I[2][2])
         if vanishes(dot(I[0], cross(I[1], I[2]))):
             square = trace * trace - 4 * self._minors(I)
             spread = 0 if vanishes(square) else sqrt(square)
             return 0, short(HALF * (trace - spread)), short(HALF * (trace + spread))
-        if is_long:
-            return self._trigonometric(I, short)
+        if self._is_long:
+            return None
         minors, determinant = self.short(self._minors(I)), self.short(dot(I[0], cross(I[1], I[2])))
         J = self.scope.graph.symbol("J of the characteristic equation")
-        found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.positive)
+        found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.scope.positive)
         if len(found) >= 2:
             first, second = found[:2]
             return first, second, self.short(trace - first - second)
@@ -148,13 +164,15 @@ class _Tensor:
             total = trace - found[0]
             square = self.short(total * total - 4 * (minors - found[0] * total))
             return (found[0], *self._halves(total, self.short(sqrt(square))))
-        return self._trigonometric(I, self.short)
+        return None
 
     @staticmethod
     def _minors(I: Matrix) -> Scalar:
         return sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
 
-    def _trigonometric(self, I: Matrix, short: Callable[[Scalar], Scalar]) -> PrincipalMoments:
+    def _trigonometric(self, I: Matrix) -> PrincipalMoments:
+        """q + 2 p cos(turn + 2 pi k/3), 0 <= turn <= pi/3, ascending."""
+        short = self._short_unless_long
         q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
         A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
         p = short(sqrt(short(over(sum(x * x for row in A for x in row), 6))))
@@ -179,12 +197,12 @@ class _Tensor:
 
     def sign(self, x: Scalar) -> int | None:
         """The sign of x, where all its terms have it, or where it is a constant times positive symbols."""
-        known = sign_of_terms(x, self.positive)
+        known = sign_of_terms(x, self.scope.positive)
         if known is not None:
             return known
         _, product = common_factor((self.short(x),))
         rest = self.short(over(x, product))
-        if symbols_of((rest,)) or sign_of_terms(product, self.positive) != 1:
+        if symbols_of((rest,)) or sign_of_terms(product, self.scope.positive) != 1:
             return None
         return 1 if number_of(rest) > 0 else -1
 
@@ -274,6 +292,8 @@ class _Tensor:
 def _ascending(tensor: _Tensor) -> list[int] | None:
     """The indices of the moments, ascending; None where nothing tells."""
     moments = tensor.moments
+    if tensor.is_ordered:
+        return [0, 1, 2]
     numbers = numbers_in(moments, tensor.scope)
     if numbers is not None:
         return sorted(range(3), key=lambda k: numbers[k])

@@ -15,7 +15,7 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.constraints.freedom import redundant_rows
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.reactions.reactions import reactions_of
@@ -47,9 +47,9 @@ def drive(system: System, coordinate: str) -> Scalar:
         )
     freed = altered(part, motion=None, rate=None, acceleration=None)
     free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
-    assembly = recursive.assembled_by_recursion(free)
+    equations = recursive.assembled_by_recursion(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
-    return _carried(drive_residual(free, assembly, k), system) - _friction(system, free, k)
+    return _carried(drive_residual(equations, k), system) - _friction(system, free, k)
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:
@@ -63,11 +63,11 @@ def _friction(system: System, free: System, k: int) -> Scalar:
     return sum((share * reactions.normal(name) for name, share in shares.items()), start=0)
 
 
-def drive_residual(system: System, assembly: Assembly, k: int, without: Container[tuple[str, int]] = ()) -> Scalar:
+def drive_residual(equations: EquationsOfMotion, k: int, without: Container[tuple[str, int]] = ()) -> Scalar:
     """(M a + c - Q - J^T lam)_k, the multipliers of some rows left out."""
-    symbols = system.symbols
-    value = sum((m * a for m, a in zip(assembly.M[k], symbols.a, strict=True)), start=-assembly.forcing[k])
-    for row, J, lam in zip(system.ties.closing, assembly.J, symbols.lam, strict=True):
+    symbols = equations.system.symbols
+    value = sum((m * a for m, a in zip(equations.M[k], symbols.a, strict=True)), start=-equations.forcing[k])
+    for row, J, lam in zip(equations.system.ties.closing, equations.J, symbols.lam, strict=True):
         value = value if (row.tie, row.number) in without else value - J[k] * lam
     return value
 
@@ -116,10 +116,10 @@ def _eliminated(system: System, own: Row) -> Scalar:
     assert free is not None, "a row is eliminated from the free system"
     gone = [row for row in system.ties.rows if row.status == "eliminated"]
     names = {(row.tie, row.number) for row in gone}
-    speeds, assembly = [u.name for u in free.symbols.u], recursive.assembled_by_recursion(free)
+    speeds, equations = [u.name for u in free.symbols.u], recursive.assembled_by_recursion(free)
     d = [speeds.index(f"{row.eliminates}'") for row in gone]
-    J = {(row.tie, row.number): line for row, line in zip(free.ties.closing, assembly.J, strict=True)}
-    right = [(drive_residual(free, assembly, k, names) - _friction(system, free, k),) for k in d]
+    J = {(row.tie, row.number): line for row, line in zip(free.ties.closing, equations.J, strict=True)}
+    right = [(drive_residual(equations, k, names) - _friction(system, free, k),) for k in d]
     columns = [J[row.tie, row.number] for row in gone]
     lines = [{j: line[k] for j, line in enumerate(columns) if not is_zero(line[k])} for k in d]
     lam, _ = cramer.solution_by_minors(lines, right, vanishes=holds_identically)

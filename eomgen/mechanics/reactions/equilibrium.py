@@ -43,15 +43,14 @@ def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
     numbers = BodyNumbers(reactions.balance.system, state)
     x = _values(reactions, numbers, rng)
     wrenches = _Wrenches(reactions.balance, numbers)
-    return _of_bodies(reactions.balance, numbers, x) or _of_pairs(wrenches) or _of_the_whole(wrenches, x)
+    by_components = x[: len(reactions.components)]
+    return _of_bodies(reactions.balance, numbers, x) or _of_pairs(wrenches) or _of_the_whole(wrenches, by_components)
 
 
 def _values(reactions: Reactions, numbers: BodyNumbers, rng: Random) -> np.ndarray:
-    """Every component: x_j = constant - sum of share * x_free."""
-    solution = reactions.solution
-    x = np.zeros(len(reactions.components))
-    for f in solution.free:
-        x[f] = rng.uniform(-1, 1)
+    """Every component, then every unknown of the loads: x_j = constant - sum of share * x_free."""
+    solution, loads = reactions.solution, numbers.array(reactions.balance.unknowns)
+    x = np.concatenate([[rng.uniform(-1, 1) for _ in reactions.components], loads])
     x[list(solution.constants)] = numbers.array(tuple(solution.constants.values()))
     shares = [(j, f, share) for j, own in solution.shares.items() for f, share in own.items()]
     for (j, f, _), value in zip(shares, numbers.array(tuple(share for _, _, share in shares)), strict=True):
@@ -86,14 +85,14 @@ class _Wrenches:
 
     @cached_property
     def of_components(self) -> tuple[np.ndarray, np.ndarray]:
-        """(resultant of a unit of each component, components x 6; sum of the sizes of its parts)."""
+        """(resultant of a unit of each component, components x 6; sum of the sizes of what makes it up, likewise)."""
         components = self.balance.components
         owners = [j for j, c in enumerate(components) for _ in (*c.effects, *c.rubbing)]
         effects = [e for c in components for e in (*c.effects, *c.rubbing)]
         total, size = (np.zeros((len(components), 6)) for _ in range(2))
-        for j, wrench in zip(owners, self.of_effects(effects), strict=True):
+        for j, wrench, arm in zip(owners, self.of_effects(effects), self._arms(effects), strict=True):
             total[j] += wrench
-            size[j] += abs(wrench)
+            size[j] += abs(wrench) + arm * np.linalg.norm(wrench[:3])
         return total, size
 
     def of_effects(self, effects: Sequence[Effect]) -> list[np.ndarray]:
@@ -103,6 +102,14 @@ class _Wrenches:
         return [
             self.about_origin(effect.link, np.concatenate([force, couple + np.cross(arm, force)]))
             for effect, (force, couple, arm) in zip(effects, values, strict=True)
+        ]
+
+    def _arms(self, effects: Sequence[Effect]) -> list[float]:
+        """How far a force may act from the origin: what cancels in its moment was no larger than force times arm."""
+        arms = self.numbers.array(tuple(e.arm for e in effects)).reshape(-1, 3)
+        return [
+            float(np.linalg.norm(arm) + np.linalg.norm(self._places[effect.link][1]))
+            for effect, arm in zip(effects, arms, strict=True)
         ]
 
     def about_origin(self, link: int, wrench: np.ndarray) -> np.ndarray:

@@ -199,6 +199,10 @@ class Reactions:
             raise DerivationError(f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them")
         return self.value(found[0])
 
+    def labels(self, owner: str) -> list[str]:
+        """What the components of one tie or joint are called."""
+        return [c.label for c in self.components if c.owner == owner]
+
     def _labelled(self, owner: str, label: str, words: str) -> Scalar:
         found = [j for j, c in enumerate(self.components) if c.owner == owner and c.label == label]
         if len(found) != 1:

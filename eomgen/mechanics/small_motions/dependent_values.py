@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.small_motions.field import Exact
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.small_motions.reduction import dependent_speeds
@@ -23,7 +22,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
     guessed = _guessed(first, choice)
     if (reference.is_exact and not guessed) or len(choice.du) > MOST:
         return reference
-    positive = positive_parameters(first.system.scope)
+    positive = first.system.scope.positive
     located = Located({x: float(v) for x, v in reference.numbers.items()}, positive)
     known = {x: value for x, value in reference.exact.items() if x not in guessed}
     try:
@@ -31,7 +30,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
         exact = {**reference.exact, **places_of(substituted(first.relations, known), unknown, located)}
         if all(x in exact for x in (*symbols.q, *(symbols.u[k] for k in choice.u))):
             exact |= dependent_speeds(first, choice, Exact(exact, positive, reference.trial))
-    except (EomgenError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
+    except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
         return reference
     found = {x: value for x, value in exact.items() if x in (*symbols.q, *symbols.u) and located.agrees(value, x)}
     return in_closed_form(reference, found)

@@ -14,7 +14,7 @@ from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
@@ -49,7 +49,7 @@ class Numbers:
     state: Mapping[Node, Any]
 
     def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
-        return [float(x) for x in evaluate(tuple(scalars), self.state, fifty_digits())]
+        return floats_of(evaluate(tuple(scalars), self.state, fifty_digits()))
 
     def tidy(self, x: MatrixEntry) -> MatrixEntry:
         return x

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.balance.friction import with_friction
-from eomgen.mechanics.bodies.loads import start_value
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.balance.friction import equations_of_motion
+from eomgen.mechanics.bodies.loads import start_values
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
-from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.small_motions.field import Entries, Numbers, at
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
@@ -62,15 +61,15 @@ class FirstOrder:
     relations: tuple[Scalar, ...]
 
     @cached_property
-    def assembly(self) -> Assembly:
-        assembly = with_friction(self.system, recursive.assembled_by_recursion(self.system))
-        refuse_massless(self.system, assembly)
-        return assembly
+    def equations(self) -> EquationsOfMotion:
+        equations = equations_of_motion(self.system)
+        refuse_massless(equations)
+        return equations
 
     @cached_property
     def residual(self) -> tuple[Scalar, ...]:
         """M a - forcing - J^T lam."""
-        graph, symbols = self.assembly, self.system.symbols
+        graph, symbols = self.equations, self.system.symbols
         pushes = list(zip(*graph.J, strict=True)) if graph.J else [()] * len(graph.M)
         return tuple(
             inner(row, symbols.a) - force - inner(push, symbols.lam)
@@ -80,14 +79,14 @@ class FirstOrder:
     @cached_property
     def seen(self) -> frozenset[str]:
         """The names of what stands in the equations of motion."""
-        e = self.assembly
+        e = self.equations
         rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma)
         return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
 
     @cached_property
     def rows(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
         """(J u + sigma, J a + gamma)."""
-        graph, symbols = self.assembly, self.system.symbols
+        graph, symbols = self.equations, self.system.symbols
         velocities = tuple(inner(row, symbols.u) + bias for row, bias in zip(graph.J, graph.sigma, strict=True))
         return velocities, tuple(inner(row, symbols.a) + bias for row, bias in zip(graph.J, graph.gamma, strict=True))
 
@@ -112,8 +111,7 @@ class FirstOrder:
 def first_order_of(system: System) -> FirstOrder:
     """The equations of a system to first order."""
     scope = system.scope
-    start = {q: start_value(scope, scope.model.coordinates[q.name]) for q in scope.symbols.q}
-    relations = [x for x in position_equations(system, start) if depends_on(x, scope.symbols.q)]
+    relations = [x for x in position_equations(system, start_values(scope)) if depends_on(x, scope.symbols.q)]
     relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
     return FirstOrder(system, tuple(relations))
 
@@ -163,7 +161,7 @@ def choice_of(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[st
 def _rows(first: FirstOrder) -> tuple[tuple[ScalarRows, Sequence[Node]], ...]:
     """The rows between positions, and those between speeds, with what their columns stand for."""
     symbols = first.system.symbols
-    return (first.derivatives["G"], symbols.q), (first.assembly.J, symbols.u)
+    return (first.derivatives["G"], symbols.q), (first.equations.J, symbols.u)
 
 
 def _elsewhere(reference: ReferenceMotion) -> dict[Node, Any]:

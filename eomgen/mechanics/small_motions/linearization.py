@@ -8,8 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, NotYet
-from eomgen.mechanics.bodies.sign import positive_parameters
+from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.dependent_values import with_followers
 from eomgen.mechanics.small_motions.field import Exact, Numbers
@@ -130,7 +129,7 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
         try:
             there = at_the_start(system, at_rest=False, given=given)
             yield _about(first, replace(there, exact={}, about=reference.about), wanted)
-        except (EomgenError, NoValue, ZeroDivisionError):  # angles at a pole
+        except (DerivationError, NoValue, ZeroDivisionError):  # angles at a pole
             yield None
 
 
@@ -212,7 +211,7 @@ def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) 
     long = operations(x for row in first.derivatives["R_q"] for x in row).total > MOST_OPERATIONS
     if not reference.is_exact or not small or long:
         return None
-    return Exact(reference.exact, positive_parameters(reference.system.scope), reference.trial)
+    return Exact(reference.exact, reference.system.scope.positive, reference.trial)
 
 
 # -- whether it is a reference ---------------------------------------------------------------------------------
@@ -268,7 +267,7 @@ def _other_rest(
     first = first_order_of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())
     ways: tuple[Callable[[], ReferenceMotion], ...] = (
-        lambda: relative_rest(system, first.assembly, guess),
+        lambda: relative_rest(first.equations, guess),
         lambda: at_the_start(system, at_rest=True),
     )
     for way in ways[0 if driven else 1 :]:
@@ -276,7 +275,7 @@ def _other_rest(
             reference = way()
             if not _accelerated(first, reference):
                 return _with_family(first, reference) if reference.moving else reference, first
-        except (EomgenError, NoValue, ZeroDivisionError):
+        except (DerivationError, MissingValues, NoValue, ZeroDivisionError):
             continue
     raise why
 

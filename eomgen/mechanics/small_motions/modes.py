@@ -8,7 +8,6 @@ from itertools import pairwise
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.conditions import Conditions, stability_conditions
 from eomgen.mechanics.small_motions.field import MatrixEntry
@@ -53,9 +52,9 @@ class Modes:
 
     small: SmallMotions
 
-    @cached_property
+    @property
     def positive(self) -> frozenset[Node]:
-        return positive_parameters(self.small.reference.system.scope)
+        return self.small.reference.system.scope.positive
 
     @cached_property
     def spectrum(self) -> Spectrum:

@@ -84,11 +84,11 @@ class Reducing:
     @cached_property
     def J(self) -> Entries:
         """The closing rows that are looked at; the others follow from them."""
-        return at(self.field, [self.first.assembly.J[i] for i in self.choice.ties])
+        return at(self.field, [self.first.equations.J[i] for i in self.choice.ties])
 
     @cached_property
     def M(self) -> Entries:
-        return at(self.field, self.first.assembly.M)
+        return at(self.field, self.first.equations.M)
 
     def following(self, right: Entries) -> Entries:
         """x of all speeds with x_i = 0 and J x + right = 0."""
@@ -104,13 +104,13 @@ class Reducing:
         """Accelerations, the independent ones 0: J a + gamma = 0."""
         if not self.choice.ties:
             return [0] * len(self.first.system.symbols.u)
-        gamma = self.field.of([self.first.assembly.gamma[i] for i in self.choice.ties])
+        gamma = self.field.of([self.first.equations.gamma[i] for i in self.choice.ties])
         return [row[0] for row in self.following([[x] for x in gamma])]
 
     @cached_property
     def forces(self) -> list[MatrixEntry]:
         """M a - forcing: what the ties must push."""
-        forcing = self.field.of(self.first.assembly.forcing)
+        forcing = self.field.of(self.first.equations.forcing)
         return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
 
     @cached_property
@@ -120,7 +120,7 @@ class Reducing:
         J_d = [[row[k] for row in self.J] for k in choice.du]
         found = matrix_solution(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
         by_row = dict(zip(choice.ties, (row[0] for row in found), strict=True))
-        return [by_row.get(i, 0) for i in range(len(self.first.assembly.J))]
+        return [by_row.get(i, 0) for i in range(len(self.first.equations.J))]
 
     @cached_property
     def unbalanced(self) -> list[MatrixEntry]:
@@ -205,7 +205,7 @@ def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> d
         return {}
     there, u = Reducing(first, choice, field), first.system.symbols.u
     independent = [[x] for x in field.of([u[k] for k in choice.u])]
-    sigma = field.of([first.assembly.sigma[i] for i in choice.ties])
+    sigma = field.of([first.equations.sigma[i] for i in choice.ties])
     pushed = matrix_product(field, [[row[k] for k in choice.u] for row in there.J], independent)
     found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
     return {u[k]: found[k][0] for k in choice.du}
@@ -218,7 +218,7 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
         share: of the largest force, below which one is none.
     """
     found = reducing.unbalanced
-    scale = max(map(abs, (*reducing.field.of(reducing.first.assembly.forcing), *reducing.forces)), default=0)
+    scale = max(map(abs, (*reducing.field.of(reducing.first.equations.forcing), *reducing.forces)), default=0)
     left = [i for i, x in enumerate(found) if abs(x) > share * scale]
     if not left:
         return []

@@ -9,11 +9,10 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.loads import start_values
 from eomgen.mechanics.bodies.places import Located, places_of
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import Row
-from eomgen.mechanics.equations.assembly import Assembly
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
@@ -84,16 +83,12 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
         NotYet: speeds that are not rates.
     """
     place = nearest_equilibrium(static_equations(system), guess)
-    if contacts_of(system.scope.model) and (pulls := place.pulling):
-        raise DerivationError(
-            f"'{pulls[0]}' would have to pull where the other forces balance",
-            f"constraints.{pulls[0]}",
-            "without it the system rests elsewhere",
-        )
+    if contacts_of(system.scope.model):
+        place.refuse_pulling()
     return _place(place)
 
 
-def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
+def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
     """The place at which all is at rest beside what the model drives at a steady rate: a bead on a hoop that turns.
 
     forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
@@ -101,14 +96,12 @@ def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float]
     Raises:
         DerivationError: none was found.
     """
+    system = equations.system
     symbols, coordinates = system.symbols, system.scope.model.coordinates
-    start = {q: start_value(system.scope, coordinates[q.name]) for q in symbols.q}
+    start = start_values(system.scope)
     driven = [q for q in symbols.q if coordinates[q.name].driven]
-    given: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
-    given |= {q: start[q] for q in driven}
-    inputs = substituted(tuple(system.inputs[name] for name in symbols.inputs), given)
-    given |= dict(zip(symbols.inputs.values(), inputs, strict=True))
-    forcing = substituted(assembly.forcing, given)
+    given = system.standing({q: start[q] for q in driven})
+    forcing = substituted(equations.forcing, given)
     own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
         raise DerivationError("rest beside drives is sought of coordinates that are all free or driven")
@@ -119,7 +112,7 @@ def relative_rest(system: System, assembly: Assembly, guess: Mapping[str, float]
         given,
         tuple(forcing[k] for k in own.values()),
         tuple(forcing[k] for k in own.values()),
-        tuple(substituted(row, given) for row in assembly.J),
+        tuple(substituted(row, given) for row in equations.J),
         symbols.lam,
         substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
     )
@@ -152,8 +145,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
     sought = fixed_by_position(system)
-    exact: dict[Node, Scalar] = {symbols.t: 0}
-    exact |= {q: start_value(scope, model.coordinates[q.name]) for q in symbols.q if q not in sought}
+    exact = {symbols.t: 0} | start_values(scope, (q for q in symbols.q if q not in sought))
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
         exact[u] = 0 if at_rest else scope.value(speed)
@@ -162,7 +154,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
             **{x: float(v) for x, v in numbers.items()},
             **{x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)},
         },
-        positive_parameters(scope),
+        scope.positive,
     )
     gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
     exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}

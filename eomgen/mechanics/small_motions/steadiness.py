@@ -94,7 +94,7 @@ def _unsteady(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> list[dict[Node, Any]]:
     """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
-    moving, t, graph = reference.moving, first.system.symbols.t, first.assembly
+    moving, t, graph = reference.moving, first.system.symbols.t, first.equations
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
     timed = any(depends_on(x, (t,)) for x in (*graph.forcing, *graph.gamma, *graph.sigma))
     times = (*TIMES, *LATER) if timed else TIMES

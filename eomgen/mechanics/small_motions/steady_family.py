@@ -15,9 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equilibria.rest_places import places_of_rest
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.small_motions.family import Family
@@ -59,7 +58,7 @@ def family_of(
         return None
     try:
         return _Writing(first, reference, choice, tuple(following)).family()
-    except (EomgenError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
+    except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
         return None
 
 
@@ -68,7 +67,7 @@ def _is_small(first: FirstOrder, choice: Choice) -> bool:
     driven = sum(part.driven for part in first.system.scope.model.coordinates.values())
     if len(choice.dq) - driven + len(choice.du) > MOST_FOLLOWING or operations(first.residual).total > MOST_OPERATIONS:
         return False
-    rows = [x for i in choice.ties for x in (*first.assembly.J[i], first.assembly.gamma[i])]
+    rows = [x for i in choice.ties for x in (*first.equations.J[i], first.equations.gamma[i])]
     return operations(rows).total <= MOST_OF_TIES
 
 
@@ -129,7 +128,7 @@ class _Writing:
         return fixed | dependent_speeds(self.first, self.choice, self._at(fixed))
 
     def _at(self, state: State) -> Exact:
-        return Exact(state, positive_parameters(self.first.system.scope), self.reference.numbers)
+        return Exact(state, self.first.system.scope.positive, self.reference.numbers)
 
     @cached_property
     def _unknowns(self) -> tuple[Node, ...]:
@@ -151,7 +150,7 @@ class _Writing:
         if not self._zeros:
             return self._all
         left = substituted(self._all, dict.fromkeys(self._zeros, 0))
-        positive = positive_parameters(self.first.system.scope)
+        positive = self.first.system.scope.positive
         return tuple(simplest(x, Work.VALUE, positive) for x in left if not is_zero(x) and not vanishes(x))
 
     @cached_property
@@ -167,7 +166,7 @@ class _Writing:
     @cached_property
     def _located(self) -> Located:
         numbers = {x: float(v) for x, v in self.reference.numbers.items()}
-        return Located(numbers, positive_parameters(self.first.system.scope))
+        return Located(numbers, self.first.system.scope.positive)
 
     def _solved(self, conditions: Sequence[Scalar], located: Located | None = None) -> State:
         """The unknowns in closed form; {} where there is none."""
@@ -176,7 +175,7 @@ class _Writing:
         try:
             found = places_of(conditions, self._unknowns, located or self._located)
             left = substituted(tuple(conditions), found)
-        except (EomgenError, NoValue, ZeroDivisionError):
+        except (DerivationError, NoValue, ZeroDivisionError):
             return {}
         return found if len(found) == len(self._unknowns) and all(map(vanishes, left)) else {}
 
@@ -191,7 +190,7 @@ class _Writing:
             return {}
         at = start | dict(zip(found, substituted(tuple(found.values()), start), strict=True))
         whole = {**at, **dict(zip(self._fixed, substituted(tuple(self._fixed.values()), at), strict=True))}
-        positive = positive_parameters(self.first.system.scope)
+        positive = self.first.system.scope.positive
         state = {x: simplest(whole[x], Work.VALUE, positive) for x in (*symbols.q, *symbols.u) if x in whole}
         return state if all(self._located.agrees(value, x) for x, value in state.items()) else {}
 

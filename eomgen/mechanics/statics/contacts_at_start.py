@@ -13,13 +13,12 @@ from functools import cached_property
 from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.balance.friction import frictions, with_friction
+from eomgen.mechanics.balance.friction import equations_of_motion, frictions
 from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.ties import rows_of_tie
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
@@ -134,14 +133,14 @@ class _StartNumbers:
         still = self._still(opened)
         modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
         system = system_of(self.model, {**opened, **modes})
-        assembly = with_friction(system, recursive.assembled_by_recursion(system))
+        equations = equations_of_motion(system)
         reactions = reactions_of(system)
         normals = {c.name: reactions.normal(c.name) for c in contacts}
-        entries = (*normals.values(), *assembly.forcing, *(x for row in assembly.M for x in row))
+        entries = (*normals.values(), *equations.forcing, *(x for row in equations.M for x in row))
         if lacking := [x.name for x in symbols_of(entries) if x.name in self.missing]:
             raise _Lacking(tuple(lacking))
         state = _state(system, self.drawn)
-        state |= dict(zip(system.symbols.a, exact_accelerations(assembly, state), strict=True))
+        state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
         values = evaluate(tuple(normals.values()), state, fifty_digits())
         return {name: -1 if N < -CARRIED else 1 for name, N in zip(normals, values, strict=True)}
 

@@ -14,7 +14,6 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -77,7 +76,7 @@ class Sizes:
 def sizes_of(motion: Motion, at: Mapping[Node, Scalar] | None = None) -> Sizes:
     """Sizes at the model's values."""
     scope = motion.scope
-    return Sizes(scope.graph, positive_parameters(scope), values_of_parameters(scope, None), at or {})
+    return Sizes(scope.graph, scope.positive, values_of_parameters(scope, None), at or {})
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""
     system = structure.system
     balance = reactions_of(system, structure.at)
-    asked, positive = asked_reactions(structure), structure.positive
+    asked, positive = asked_reactions(structure), structure.system.scope.positive
     one = None if only is None else _one_of((*asked, *(unknown.name for unknown in structure.unknowns)), only)
     found = []
     for named in asked.values():

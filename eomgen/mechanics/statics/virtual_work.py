@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
 from eomgen.mechanics.bodies.loads import SystemScene
-from eomgen.mechanics.statics.reaction_outputs import ASKING_REACTIONS
 from eomgen.mechanics.structures.blocks import turning_by_one
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
+from eomgen.model.outputs import FUNCTIONS
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -98,7 +98,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
 def asked_reactions(structure: Structure) -> dict[str, NamedReaction]:
     """The reactions that have a name in outputs."""
     named = named_reactions(structure.balance)
-    return {n.name: n for n in named if n.name.partition("(")[0] in ASKING_REACTIONS}
+    return {n.name: n for n in named if n.name.partition("(")[0] in FUNCTIONS}
 
 
 def by_virtual_work(structure: Structure, named: NamedReaction) -> WorkEquation | None:

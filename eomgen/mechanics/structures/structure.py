@@ -22,7 +22,6 @@ from eomgen.mechanics.balance.balance import Balance, balance_of
 from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import Axes
 from eomgen.mechanics.balance.unknown_loads import slope
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_for, values_where_at_rest
@@ -183,12 +182,7 @@ class Structure:
         return VelocityPlan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
 
     def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return readable_all(tuple(scalars), Work.ANSWER, self.positive)
-
-    @cached_property
-    def positive(self) -> frozenset[Node]:
-        """The parameters that stand for positive numbers."""
-        return positive_parameters(self.system.scope)
+        return readable_all(tuple(scalars), Work.ANSWER, self.system.scope.positive)
 
     # -- the solution of G^T xi = delta --------------------------------------------------------------
 
@@ -263,7 +257,7 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
 def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) -> tuple[dict[int, Scalar], ...]:
     """The rows at the configuration, zeros left out."""
     entries = substituted(tuple(x for row in rows for x in row.values()), state)
-    flat = iter(readable_all(entries, Work.ANSWER, positive_parameters(system.scope)))
+    flat = iter(readable_all(entries, Work.ANSWER, system.scope.positive))
     placed = [{k: next(flat) for k in row} for row in rows]
     return tuple({k: x for k, x in row.items() if not is_zero(x)} for row in placed)
 

@@ -13,7 +13,6 @@ from typing import Any
 
 from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.bodies.loads import in_ground_axes
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, rotation_center
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
@@ -63,7 +62,7 @@ class VelocityPlan:
         """k times as fast."""
         if k == 1:
             return self
-        flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self._positive)
+        flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self.system.scope.positive)
         return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
 
     def plus(self, other: VelocityPlan, k: Scalar = 1) -> VelocityPlan:
@@ -82,15 +81,15 @@ class VelocityPlan:
 
     def spin(self, body: str | None) -> Vector:
         """Angular velocity in ground axes; of the ground (None) 0."""
-        return self._simple(self.raw_spin(body))
+        return self.simple.vector(self.raw_spin(body))
 
     def center_velocity(self, body: str) -> Vector:
         """Of the mass centre, ground axes."""
-        return self._simple(self.field(body).v)
+        return self.simple.vector(self.field(body).v)
 
     def velocity(self, place: BodyPoint) -> Vector:
         """Of a place of a body, ground axes; of the ground 0."""
-        return self._simple(self.raw_velocity(place))
+        return self.simple.vector(self.raw_velocity(place))
 
     def raw_spin(self, body: str | None) -> Vector:
         """`spin`, not written out."""
@@ -125,8 +124,8 @@ class VelocityPlan:
     def center(self, field: VelocityField) -> PlanCenter:
         """The centre of rotation of what moves so in the plane."""
         if self.vanishes(field.w):
-            return PlanCenter(None, ZERO if self.vanishes(field.v) else self._simple(field.v))
-        return PlanCenter(self._simple(rotation_center(field)))
+            return PlanCenter(None, ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
+        return PlanCenter(self.simple.vector(rotation_center(field)))
 
     # -- work ----------------------------------------------------------------------------------------
 
@@ -170,24 +169,14 @@ class VelocityPlan:
 
     # -- helpers -------------------------------------------------------------------------------------
 
-    def simple(self, x: Scalar) -> Scalar:
-        """A scalar as a person writes it."""
-        return self._legibly(x)
-
-    def _simple(self, vector: Vector) -> Vector:
-        return vector_of(map(self.simple, vector))
-
     @cached_property
-    def _legibly(self) -> Legibly:
-        return Legibly(Work.VALUE, self._positive)
+    def simple(self) -> Legibly:
+        """Scalars as a person writes them."""
+        return Legibly(Work.VALUE, self.system.scope.positive)
 
     @cached_property
     def _fields(self) -> dict[str, VelocityField]:
         return {}
-
-    @cached_property
-    def _positive(self) -> frozenset[Node]:
-        return positive_parameters(self.system.scope)
 
     @cached_property
     def _axes(self) -> Axes:

@@ -1,16 +1,14 @@
 """Expressions: every name in them is known, may stand there, and has the unit that the field needs."""
 
 from collections.abc import Iterator
-from functools import cache
-from typing import Any
 
 from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import Catalog
-from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed, named
+from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed
 from eomgen.model.findings import Finding, article, nearest, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.expression.habits import DEGREES, degrees, meant_name
 
 LONGEST_TRAIL = 10  # names of a ring that are shown
 
@@ -28,7 +26,6 @@ def formulas(catalog: Catalog) -> Iterator[Finding]:
         unit = leaf.part.unit if leaf.part is not None and leaf.path[-1] in leaf.part.in_unit else None
         if unit is not None and expression.names <= allowed and is_mixed(expression, unit):
             yield mixed(expression, unit, leaf.path)
-        yield from _unit(catalog, leaf, expression)
     yield from _rings(catalog)
 
 
@@ -37,7 +34,11 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     kind = catalog.symbols.get(base)
     where = whereabouts(leaf.path)
     if kind is None:
-        what, mend = f"unknown name '{name}' in {where}", nearest(name, allowed) or _declare(catalog, name)
+        other = meant_name(name, allowed)
+        mend = (
+            f"write {other}" if other else _in_degrees(name, leaf) or nearest(name, allowed) or _declare(catalog, name)
+        )
+        what = f"unknown name '{name}' in {where}"
     elif name != base and kind not in ("coordinate", "speed"):
         what, mend = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
@@ -49,51 +50,16 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
     return Finding(leaf.path, what, mend, column, len(name))
 
 
+def _in_degrees(name: str, leaf: Leaf) -> str:
+    return degrees(leaf.value.text) if name in DEGREES and isinstance(leaf.value, Expression) else ""
+
+
 def _declare(catalog: Catalog, name: str) -> str:
     if name in catalog.table("outputs"):
         return "outputs do not refer to outputs: write its expression here"
     if name in catalog.table("bodies"):
         return "this is a body: ask for one of its quantities, like angle(...)"
     return f"declare '{name.rstrip(chr(39))}' in [parameters]"
-
-
-@cache
-def _si(text: str) -> Unit:
-    return parse_unit(text)
-
-
-def _unit(catalog: Catalog, leaf: Leaf, expression: Expression) -> Iterator[Finding]:
-    """A field whose value is one parameter has that parameter's unit."""
-    name = next(iter(expression.names), "")
-    if len(expression.code) != 1 or expression.code[0][0] != "name":
-        return
-    unit = _unit_of(catalog, name)
-    needed = _needed(leaf)
-    if unit is not None and needed is not None and not unit.fits(needed):
-        kind = catalog.symbols[name]
-        what = f"{kind} '{name}' is in {unit.text}, but {whereabouts(leaf.path)} is in {named(needed.text)}"
-        yield Finding(leaf.path, what, f"give another {kind}, or mend its unit", 0, len(name))
-
-
-def _unit_of(catalog: Catalog, name: str) -> Unit | None:
-    for table in ("parameters", "coordinates", "inputs", "unknowns"):
-        part = catalog.table(table).get(name)
-        if part is not None:
-            return _unit_given(part)
-    return None
-
-
-def _unit_given(part: Any) -> Unit | None:
-    unit: Unit | None = part.unit
-    return unit
-
-
-def _needed(leaf: Leaf) -> Unit | None:
-    """The unit of a field, from its rule or from the part whose own unit its numbers are in."""
-    if leaf.path[0] == "coordinates" and leaf.path[-1] in ("start", "near", "motion"):
-        return _unit_given(leaf.part)
-    unit = getattr(leaf.rule, "unit", None)
-    return None if unit is None else _si(unit)
 
 
 def _rings(catalog: Catalog) -> Iterator[Finding]:

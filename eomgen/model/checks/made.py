@@ -8,6 +8,7 @@ from eomgen.model.arithmetic import AnyNumber, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.triangle import possible
 from eomgen.model.composite import Composite, about, composite_of
+from eomgen.model.fields import VectorRule
 from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
@@ -28,7 +29,7 @@ def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]
         ]
         wrong = [_impossible(where, what, shape, values) for where, what, shape in shapes]
         yield from filter(None, wrong)
-        if body.parts is not None and not any(wrong) and _complete(body):
+        if body.parts is not None and not any(wrong) and _complete(body) and all(map(_placed, body.parts)):
             yield from _whole((*path, "parts"), name, body, values)
 
 
@@ -59,6 +60,12 @@ def _complete(body: Any) -> bool:
     """Whether the masses of all parts follow (else it is told where masses are checked)."""
     sharing = [piece for piece in body.parts if piece.shape.mass is None]
     return not sharing or (body.mass is not None and len({piece.shape.dimension for piece in sharing}) == 1)
+
+
+def _placed(piece: Any) -> bool:
+    """Whether no vector of a piece has more components than space (told where references are checked)."""
+    vectors = [leaf.value for leaf in leaves_of(piece, ()) if isinstance(leaf.rule, VectorRule)]
+    return all(len(components) <= 3 for components in vectors)
 
 
 def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:

@@ -1,83 +1,18 @@
 """Outputs: the functions of the motion that they call, and what each can be asked of."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.references import missing_point
-from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, nearest, whereabouts
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import AXES, SIDES
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.functions import NAMES
-
-
-@dataclass(frozen=True)
-class Signature:
-    """What a function takes: the kind of each argument, the least number of them, and of what there may be more."""
-
-    kinds: tuple[str, ...]
-    least: int
-    more: str = ""
-
-
-def _along(*names: str) -> tuple[str, ...]:
-    """Each name with x, y and z in place of its star."""
-    return tuple(name.replace("*", axis) for name in names for axis in AXES)
-
-
-AXES = ("x", "y", "z")
-_BY_SIGNATURE = (
-    (Signature(("point", "body", "body"), 1), _along("*", "v*", "a*")),
-    (
-        Signature(("point", "body"), 1),
-        ("speed", "acceleration", "tangential_acceleration", "normal_acceleration", "curvature_radius"),
-    ),
-    (
-        Signature(("point", "body", "body"), 2),
-        _along("transport_v*", "transport_a*", "coriolis_a*", "euler_a*", "centripetal_a*"),
-    ),
-    (
-        Signature(("point", "body"), 2),
-        (
-            "transport_speed",
-            "transport_acceleration",
-            "coriolis_acceleration",
-            "euler_acceleration",
-            "centripetal_acceleration",
-        ),
-    ),
-    (Signature(("body",), 1), ("acceleration_pole_x", "acceleration_pole_y")),
-    (Signature(("point", "point"), 2), ("least_speed",)),
-    (
-        Signature(("body", "body"), 1),
-        ("angle", "omega", "epsilon", "rotation_center_x", "rotation_center_y", *_along("omega_*", "epsilon_*")),
-    ),
-    (
-        Signature(("reaction", "body"), 1),
-        ("reaction_n", "reaction_t", "reaction_s", "reaction_couple", *_along("reaction_*", "reaction_couple_*")),
-    ),
-    (Signature(("tie or truss", "any", "any"), 1), ("tension",)),
-    (Signature(("tie",), 1), ("multiplier",)),
-    (Signature(("body", "number", "side"), 2), ("axial_force", "shear_force", "bending_moment")),
-    (Signature(("body", "number"), 1), ("mass_of",)),
-    (Signature(("point",), 1, "body"), ("inertia_point", *_along("angular_momentum_*"))),
-    (Signature(("point", "point or axis"), 2, "body"), ("inertia_axis",)),
-    (Signature(("point", "axis"), 2, "body"), ("inertia_plane",)),
-    (Signature(("point", "axis", "axis"), 3, "body"), ("inertia_product", "inertia_tensor")),
-    (Signature(("point", "number"), 2, "body"), ("principal_moment",)),
-    (Signature(("body",), 0), ("kinetic_energy",)),
-    (Signature(("body or force",), 0), ("potential_energy", "power")),
-    (Signature(("coordinate",), 1), ("generalized_force", "drive")),
-    (Signature(("coordinate or speed",), 1), ("momentum",)),
-    (Signature(("coordinate", "coordinate"), 2), ("mass", "damping", "stiffness")),
-    (Signature(("number",), 1), ("frequency",)),
-)
-SIDES = ("before", "after")
-FUNCTIONS = {name: signature for signature, names in _BY_SIGNATURE for name in names}
-"""The functions of the motion, by name."""
+from eomgen.symbolic.expression.habits import rate_of_call
 
 
 def outputs(catalog: Catalog) -> Iterator[Finding]:
@@ -96,9 +31,10 @@ def _calls_in(expression: Expression) -> Iterator[Call]:
 
 
 def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
-    signature = FUNCTIONS.get(call.name)
-    if signature is None:
-        mend = nearest(call.name, [*FUNCTIONS, *NAMES])
+    function = FUNCTIONS.get(call.name)
+    if function is None:
+        there = [name for name in FUNCTIONS if catalog.model.space != "plane" or name[-1] != "z" or name == "omega_z"]
+        mend = rate_of_call(str(call)) or nearest(call.name, [*there, *NAMES])
         yield Finding(leaf.path, f"unknown function '{call.name}'", mend, call.column, len(call.name))
         return
     functions = getattr(leaf.rule, "functions", None)
@@ -107,38 +43,20 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
         few = "name one body, whose axes are meant too"
         yield Finding(leaf.path, what, few if call.name in functions else mend, call.column, len(call.name))
         return
-    kinds = signature.kinds + (signature.more,) * (len(call.args) - len(signature.kinds) if signature.more else 0)
-    if not signature.least <= len(call.args) <= len(kinds):
-        most = len(signature.kinds)
-        count = str(most) if most == signature.least else f"{signature.least} to {most}"
-        count = f"at least {signature.least}" if signature.more else count
+    kinds = function.kinds + (function.more,) * (len(call.args) - len(function.kinds) if function.more else 0)
+    if not function.least <= len(call.args) <= len(kinds):
+        most = len(function.kinds)
+        count = str(most) if most == function.least else f"{function.least} to {most}"
+        count = f"at least {function.least}" if function.more else count
         what = f"{call.name} takes {count} argument{'' if count in ('1', 'at least 1') else 's'}, not {len(call.args)}"
-        yield Finding(leaf.path, what, _usage(call.name, signature), call.column, len(call.name))
+        yield Finding(leaf.path, what, f"{call.name}{function.arguments}", call.column, len(call.name))
         return
-    if call.name == "tension" and isinstance(call.args[0], Reference):
-        yield from _member(catalog, leaf, call, call.args[0].name)
+    yield from function.findings(catalog, leaf, call)
     for argument, kind in zip(call.args, kinds, strict=False):
         wrong = _argument(catalog, argument, kind)
         if wrong is not None:
             what, mend, column, length = wrong
             yield Finding(leaf.path, f"{what} (in {call})", mend, column, length)
-
-
-def _member(catalog: Catalog, leaf: Leaf, call: Call, owner: str) -> Iterator[Finding]:
-    """Of a truss the tension of one of its members can be asked."""
-    truss = catalog.table("trusses").get(owner)
-    if truss is None or truss.members is None:
-        return
-    ends = ends_asked(call)
-    if ends is None or set(ends) not in [set(member.split("-")) for member in truss.members]:
-        what = f"truss '{owner}' has no member '{'-'.join(ends)}'" if ends else f"'{call}' names no member"
-        mend = nearest("-".join(ends or ()), truss.members) or f"tension({owner}, {truss.members[0]})"
-        yield Finding(leaf.path, what, mend, call.column, len(call.name))
-
-
-def _usage(name: str, signature: Signature) -> str:
-    shown = [k if i < signature.least else f"[{k}]" for i, k in enumerate(signature.kinds)]
-    return f"{name}({', '.join([*shown, *([f'[{signature.more}, ...]'] if signature.more else [])])})"
 
 
 def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int, int] | None:

@@ -10,10 +10,10 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
         moments: xx, yy, zz and then, where there are any, xy, yz, zx.
         size: of what they were added up from, where that is larger than they are.
     """
-    xx, yy, zz, xy, yz, zx = moments if len(moments) == 6 else (*moments, 0.0, 0.0, 0.0)
+    size = max(size, *map(abs, moments)) or 1.0
+    xx, yy, zz, xy, yz, zx = (x / size for x in (*moments, 0.0, 0.0, 0.0)[:6])
     half = (xx + yy + zz) / 2
     a, b, c = half - xx, half - yy, half - zz
-    size = max(size, *(abs(x) for x in (xx, yy, zz, xy, yz, zx))) or 1.0
     determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
     second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
-    return min(a, b, c) >= -SOLVED * size and min(second) >= -SOLVED * size**2 and determinant >= -SOLVED * size**3
+    return min(a, b, c, *second, determinant) >= -SOLVED

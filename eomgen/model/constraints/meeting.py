@@ -13,13 +13,14 @@ class TouchingPoint:
 
 @dataclass(frozen=True)
 class TouchingRound:
-    """A ball, in the plane a disc; with an axis a thin wheel, with a tube the tyre about its rim.
+    """A ball, in the plane a disc; with an axis a thin wheel, with a tube the tyre about its rim; an ellipsoid.
 
     Args:
         body, center: about which point of which body it is round; None: its origin.
         radius: None: that of the body's shape.
         axis: body axes; None: it is round all about.
         tube: None: 0.
+        semiaxes: of an ellipsoid, body axes.
     """
 
     body: str
@@ -27,6 +28,7 @@ class TouchingRound:
     radius: Any
     axis: Any = None
     tube: Any = None
+    semiaxes: Any = None
 
 
 @dataclass(frozen=True)
@@ -40,12 +42,25 @@ class FlatSurface:
 
 @dataclass(frozen=True)
 class RoundSurface:
-    """A circle or ball about `at`, in the axes of `on`; radius None: that of the shape of `on`, about its origin."""
+    """A circle or ball about `at`, in the axes of `on`; radius None: that of the shape of `on`, about its origin.
+
+    With an axis a pipe.
+    """
 
     on: str | None
     at: Any
     radius: Any
     inside: bool = False
+    axis: Any = None
+
+
+@dataclass(frozen=True)
+class Groove:
+    """What the edge of a skate cuts, along `along` of the body `on`, in ice of a normal (ground axes; None: z)."""
+
+    on: str | None
+    along: Any
+    normal: Any
 
 
 @dataclass(frozen=True)
@@ -60,5 +75,5 @@ class Meeting:
     """Two things that touch; `sticks`: they do not slide on one another."""
 
     what: TouchingPoint | TouchingRound
-    surface: FlatSurface | RoundSurface | BodyLine
+    surface: FlatSurface | RoundSurface | BodyLine | Groove
     sticks: bool = False

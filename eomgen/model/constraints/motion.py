@@ -6,7 +6,7 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Scene
-from eomgen.model.kinds import CoordinateName, MotionLaw
+from eomgen.model.kinds import CoordinateName, MotionOfCoordinate
 from eomgen.symbolic.expression.expressions import as_expression
 
 
@@ -16,7 +16,7 @@ class Motion(Constraint):
 
     kind: ClassVar[str] = "motion"
     coordinate: CoordinateName
-    value: MotionLaw
+    value: MotionOfCoordinate
 
     def drives(self) -> str:
         """Its coordinate."""

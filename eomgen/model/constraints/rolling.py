@@ -127,20 +127,16 @@ class Rolling(Constraint):
                 what = f"'{path[1]}': {where}, '{self.body}' has '{key}'"
                 yield Finding((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)
 
-    def meeting(self) -> Meeting | None:
-        """The round body and its track; None of an ellipsoid, of a pipe, and of a wheel on something round."""
-        body = TouchingRound(self.body, self.center, self.radius, self.axis, self.tube)
-        flat = self.line or self.plane
-        if self.ellipsoid is not None:
-            return None
+    def meeting(self) -> Meeting:
+        """The round body and its track."""
+        body = TouchingRound(self.body, self.center, self.radius, self.axis, self.tube, self.ellipsoid)
+        flat, track = self.line or self.plane, self.circle
         if flat is not None:
             return Meeting(body, FlatSurface(self.on, flat.at, flat.normal), not self.slip)
-        if self.axis is not None or (self.circle is not None and self.circle.axis is not None):
-            return None
-        if self.circle is None:
+        if track is None:
             return Meeting(body, RoundSurface(self.on, None, None), not self.slip)
-        track = RoundSurface(self.on, self.circle.at, self.circle.radius, bool(self.circle.inside))
-        return Meeting(body, track, not self.slip)
+        surface = RoundSurface(self.on, track.at, track.radius, bool(track.inside), track.axis)
+        return Meeting(body, surface, not self.slip)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.

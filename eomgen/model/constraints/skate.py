@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from eomgen.model.catalog import Catalog, not_in_the_plane
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import Groove, Meeting, TouchingPoint
 from eomgen.model.constraints.plane import left
 from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
@@ -35,6 +36,12 @@ class Skate(Constraint):
     def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """The ice has no normal in the plane."""
         yield from not_in_the_plane(catalog, path, self, ("normal",))
+
+    def meeting(self) -> Meeting:
+        """The point, in the groove that it cuts."""
+        return Meeting(
+            TouchingPoint(self.point), Groove(self.point.rpartition(".")[0] or None, self.along, self.normal)
+        )
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """n . v = 0; a row of velocities alone, which no gap has for a rate.

@@ -45,7 +45,7 @@ class Slider(Constraint):
         if self.unilateral and catalog.model.space == "space":
             what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
             yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
-        if owner_of(self.point) == self.on:
+        if self.point is not None and owner_of(self.point) == self.on:
             what = f"the point '{self.point}' of '{path[1]}' is on the body along which it should slide"
             yield Finding((*path, "point"), what)
 

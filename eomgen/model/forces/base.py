@@ -6,10 +6,10 @@ from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
@@ -33,18 +33,8 @@ class Force(Part):
         yield from ()
 
     @property
-    def spring_ends(self) -> tuple[str, ...]:
-        """The two points between which a spring is drawn; () for what is none."""
-        return ()
-
-    @property
-    def damping_law(self) -> Expression | None:
-        """The coefficient of what brakes; None for what does something else."""
-        return None
-
-    @property
-    def rest_length(self) -> Expression | str | None:
-        """The distance of its ends at which a spring is slack, or "start"; None for what is none between two points."""
+    def element(self) -> Element | None:
+        """What it is between two points or two bodies; None for what acts otherwise."""
         return None
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Pull, TwoPoints
@@ -22,6 +23,10 @@ class Between(Force):
     kind: ClassVar[str] = "between"
     points: TwoPoints
     pull: Pull
+
+    @property
+    def element(self) -> Element:
+        return Element(points=self.points, pull=self.pull)
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull f(r, r')."""

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
-from eomgen.model.kinds import Direction, Law, TwoPoints
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.model.kinds import Direction, LinearDamping, TwoPoints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,12 +22,12 @@ class Damper(Force):
 
     kind: ClassVar[str] = "damper"
     points: TwoPoints
-    damping: Law
+    damping: LinearDamping
     along: Direction | None = None
 
     @property
-    def damping_law(self) -> Expression:
-        return self.damping
+    def element(self) -> Element:
+        return Element(points=self.points, along=self.along, damping=self.damping)
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull c l'."""

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import GeneralizedForce, Load, Scene
-from eomgen.model.kinds import CoordinateName, Law
+from eomgen.model.kinds import CoordinateName, WorkingForce
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,7 +19,7 @@ class Generalized(Force):
 
     kind: ClassVar[str] = "generalized"
     coordinate: CoordinateName
-    value: Law
+    value: WorkingForce
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         return (GeneralizedForce(self.coordinate, scene.value(self.value)),)

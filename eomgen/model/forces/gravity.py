@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, PointForce, Scene, UniformField
-from eomgen.model.kinds import Acceleration, Bodies
+from eomgen.model.kinds import Acceleration, Bodies, Flag
 from eomgen.symbolic.expression.spatial import AnyScalar, dot, times
 
 
@@ -16,12 +16,14 @@ class Gravity(Force):
     Args:
         acceleration: g, ground axes, 2 or 3 [m/s^2].
         bodies: on which it acts (None: all).
+        axis_down: the last axis points down: a weight along it is meant.
     """
 
     kind: ClassVar[str] = "gravity"
     by_mass: ClassVar[bool] = True
     acceleration: Acceleration
     bodies: Bodies | None = None
+    axis_down: Flag = False
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A uniform field, or m g at the mass centre of each named body."""

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
-from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -31,12 +31,8 @@ class Spring(Force):
     along: Direction | None = None
 
     @property
-    def spring_ends(self) -> tuple[str, ...]:
-        return self.points
-
-    @property
-    def rest_length(self) -> Expression | str | None:
-        return self.length if self.along is None else None
+    def element(self) -> Element:
+        return Element(points=self.points, along=self.along, stiffness=self.stiffness, slack=self.length)
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A pull k (l - l0)."""

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.twist import relative, turned
-from eomgen.model.kinds import BodyName, Law, TwoBodies
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.model.kinds import AngularDamping, BodyName, TwoBodies
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,11 +24,11 @@ class TorsionDamper(Force):
     one_of: ClassVar[tuple[str, ...]] = ("bodies", "body")
     bodies: TwoBodies | None = None
     body: BodyName | None = None
-    damping: Law
+    damping: AngularDamping
 
     @property
-    def damping_law(self) -> Expression:
-        return self.damping
+    def element(self) -> Element:
+        return Element(bodies=self.bodies or (None, self.body), damping=self.damping)
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A couple - c theta' on the second body, the opposite on the first."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, Scene
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
@@ -29,6 +30,10 @@ class TorsionSpring(Force):
     body: BodyName | None = None
     stiffness: AngularStiffness
     rest: RestAngle | None = None
+
+    @property
+    def element(self) -> Element:
+        return Element(bodies=self.bodies or (None, self.body), stiffness=self.stiffness, slack=self.rest)
 
     def loads(self, scene: Scene) -> tuple[Load, ...]:
         """A couple - k (theta - rest) on the second body, the opposite on the first."""

@@ -10,10 +10,10 @@ from eomgen.model.kinds import (
     Direction,
     Displacement,
     ForceFormula,
-    Law,
+    LinearDamping,
     LinearStiffness,
     RestLength,
-    RotorInertia,
+    SlideInertia,
     ValueOf,
 )
 from eomgen.symbolic.expression.expressions import Expression
@@ -39,9 +39,9 @@ class Prismatic(AxisJoint):
     angle: ConstantAngle | None = None
     force: ForceFormula | None = None
     stiffness: LinearStiffness | None = None
-    damping: Law | None = None
+    damping: LinearDamping | None = None
     rest: RestLength | None = None
-    armature: RotorInertia | None = None
+    armature: SlideInertia | None = None
 
     def turns(self) -> tuple[Expression, ...]:
         return ()

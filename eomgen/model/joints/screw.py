@@ -6,7 +6,16 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
-from eomgen.model.kinds import Angle, AngularStiffness, Law, RestAngle, RotorInertia, SpaceDirection, Torque, ValueOf
+from eomgen.model.kinds import (
+    Angle,
+    AngularDamping,
+    AngularStiffness,
+    RestAngle,
+    RotorInertia,
+    SpaceDirection,
+    Torque,
+    ValueOf,
+)
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -34,7 +43,7 @@ class Screw(AxisJoint):
     pitch: Pitch
     torque: Torque | None = None
     stiffness: AngularStiffness | None = None
-    damping: Law | None = None
+    damping: AngularDamping | None = None
     rest: RestAngle | None = None
     armature: RotorInertia | None = None
 

@@ -14,6 +14,7 @@ from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import numbers_in
 from eomgen.model.findings import nearest
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.report.document import Document, document_of
@@ -43,6 +44,7 @@ from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, minus
+from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import readable_text, text_size
 
 TENSOR = Law(
@@ -101,8 +103,15 @@ class Inertia(Result):
         return {"name": self.system.scope.model.name, "results": self.results, "principal_axes": self.axes}
 
 
+@doing("masses and inertia")
 def inertia(
-    model: ModelOrPath, bodies: Sequence[str] = (), *, about: str | None = None, axis: str | None = None
+    model: ModelOrPath,
+    bodies: Sequence[str] = (),
+    *,
+    about: str | None = None,
+    axis: str | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
 ) -> Inertia:
     """Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes.
 
@@ -112,11 +121,12 @@ def inertia(
         bodies: by name; none: all.
         about: a point, "O" or "arm.end", about which they are taken together too.
         axis: "A,B": the axis through two points; or x, y, z through `about`.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: no such body, point or axis.
         DerivationError: a model without bodies.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     return _Report(system_of(model), tuple(bodies), about, axis).made()
 
 

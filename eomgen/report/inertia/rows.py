@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property, partial
 
 from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.sign import positive_parameters
 from eomgen.mechanics.masses.principal import numbers_in, short_form
 from eomgen.model.composite import about, matrix_times
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
@@ -82,19 +81,10 @@ class InertiaSum:
     def _worth(self) -> dict[Scalar, float]:
         return {}
 
-    def short(self, x: Scalar) -> Scalar:
+    @cached_property
+    def short(self) -> Callable[[Scalar], Scalar]:
         """x in readable form; what was read once is not read again."""
-        if x not in self._known:
-            self._known[x] = short_form(x, self.positive)
-        return self._known[x]
-
-    @cached_property
-    def _known(self) -> dict[Scalar, Scalar]:
-        return {}
-
-    @cached_property
-    def positive(self) -> Collection[Node]:
-        return positive_parameters(self.motion.scope)
+        return cache(partial(short_form, positive=self.motion.scope.positive))
 
     @cached_property
     def m(self) -> Scalar:

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.mechanics.masses.inertia_about import about_axis, polar, second_moments
 from eomgen.mechanics.masses.principal import Principal, principal_of
+from eomgen.model.outputs.moments_of_inertia import about_axis, polar, second_moments
 from eomgen.report.inertia.rows import InertiaSum
 from eomgen.report.latex_names import letter_law
 from eomgen.report.statements import Cell, Formula, Grid, Law, Side, Statement, prose

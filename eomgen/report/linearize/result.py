@@ -21,9 +21,10 @@ from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
-from eomgen.mechanics.statics.reaction_outputs import output_name
+from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.report.document import Document, document_of
@@ -37,6 +38,7 @@ from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.sure_numbers import numbers_of
+from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
 
 METHOD = "linearization"
@@ -139,7 +141,7 @@ class Linearization(Result):
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
         first = self.small.first
-        return certify(first.system, first.assembly) + small_motion_checks(self.modes)
+        return certify(first.equations) + small_motion_checks(self.modes)
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 
@@ -151,7 +153,7 @@ class Linearization(Result):
         """
         if call.name == "frequency":
             return self._frequency(call)
-        found, exact = self.modes.entry(call.name, *(output_name(call, argument) for argument in call.args))
+        found, exact = self.modes.entry(call.name, *names_of(call))
         return found if exact else self._rounded(found), exact
 
     def _frequency(self, call: Call) -> tuple[Scalar, bool]:
@@ -295,17 +297,26 @@ def _polynomial(polynomial: Polynomial | None) -> list[str] | None:
     return [repr(c) if isinstance(c, float) else to_text(c) for c in polynomial.coefficients]
 
 
-def linearize(model: ModelOrPath, about: str | None = None, coordinates: Sequence[str] = ()) -> Linearization:
+@doing("small motions")
+def linearize(
+    model: ModelOrPath,
+    about: str | None = None,
+    coordinates: Sequence[str] = (),
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Linearization:
     """The small motions of a model about a place of rest, or about its start, a steady motion.
 
     Args:
         about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
         coordinates: in which they are asked; (): as the model says, or all.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a coordinate that the model does not have.
         DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     part = model.linearize
     asked = coordinates or (part.coordinates if part is not None else None) or ()
     wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))

@@ -20,7 +20,7 @@ from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_pa
 from eomgen.mechanics.small_motions.first_order import first_order_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, unchecked
-from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, resting_checks
+from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, pushes_check, resting_checks
 from eomgen.report.document import Document, document_of
 from eomgen.report.drawing import Sketch, draw_model
 from eomgen.report.figures import Picture
@@ -60,13 +60,13 @@ class Resting(Result):
         """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
         if not self.places:
             return Certificate(())
-        balanced = balance_check(self.places)
+        balanced = (balance_check(self.places), pushes_check(self.places))
         first = first_order_of(self.places[0].statics.system)
         try:
-            base = certify(first.system, first.assembly)
+            base = certify(first.equations)
         except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
-            return Certificate((balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
-        return Certificate((*base.checks, balanced, *resting_checks(first, self.places)))
+            return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
+        return Certificate((*base.checks, *balanced, *resting_checks(first, self.places)))
 
     @cached_property
     def derivation(self) -> Document:

@@ -20,6 +20,7 @@ from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.proof.structure import structure_checks
 from eomgen.report.document import Document
@@ -39,6 +40,7 @@ from eomgen.report.statics.section_steps import (
 from eomgen.report.statics.steps import contacts_step, statics_derivation
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
 
 
@@ -209,17 +211,26 @@ def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
     return {**moved, **{key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}}
 
 
-def statics(model: ModelOrPath, *, reaction: str | None = None, influence: str | None = None) -> Statics | Resting:
+@doing("the forces at rest")
+def statics(
+    model: ModelOrPath,
+    *,
+    reaction: str | None = None,
+    influence: str | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Statics | Resting:
     """A structure at rest; of a system that is free to move, its places of rest.
 
     Args:
         influence: the reaction, member force or section force whose influence line is asked too.
         reaction: the only one that is found by virtual work too; None: all.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: no reaction of that name; one is asked by itself of a system that is free to move.
         DerivationError: bodies can move; a force acts at no place.
     """
-    model = model_at(model)
+    model = model_at(model, parameters, start)
     system = system_of(model, modes_at_rest(model))
     if has_freedoms(system):
         _refuse_for_resting(reaction=reaction, influence=influence)

@@ -37,6 +37,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
+from eomgen.symbolic.numeric.work import check_patience
 
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one
@@ -212,6 +213,7 @@ class Expansion:
         return result
 
     def _spend(self, work: int) -> None:
+        check_patience()
         self.work += work
         if self.work > self.limit:
             raise TooLarge(f"more than {self.limit} products of terms")

@@ -7,7 +7,7 @@ a number of products of terms; where it is not enough, what is readable stays as
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from eomgen.errors import DerivationError
@@ -21,6 +21,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted, tange
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.node import Owner
+from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
@@ -274,6 +275,10 @@ class Legibly:
             stays = self.longest is not None and text_size(x) > self.longest
             self._found[x] = x if stays else simplest(x, self.work, self.positive)
         return self._found[x]
+
+    def vector(self, v: Iterable[Scalar]) -> Vector:
+        """Each of three."""
+        return vector_of(map(self, v))
 
 
 def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:

@@ -2,35 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from math import comb
 
-from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number
+from eomgen.symbolic.exact.rational_polynomial import Exponents, PowerSum
+from eomgen.symbolic.exact.spheres import with_square_replaced
+from eomgen.symbolic.exact.terms import AngleSum, Monomial, Terms, TooLarge, Wave, common_number
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
 from eomgen.symbolic.expression.rational import Fraction
-
-CirclePowers = tuple[tuple[int, int], ...]  # for each axis the exponents of its cosine and sine
-CirclePolynomial = dict[CirclePowers, Number]
 
 LARGEST_DEGREE = 12  # of a wave to be written in powers
 KEPT = 20_000  # waves and sets of angles of which the form is remembered
 
 
-def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> CirclePolynomial | None:
-    """The waves as a polynomial in the axes' cosines and sines, s^2 eliminated; None where that is too large."""
-    polynomial: CirclePolynomial = {}
+def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> PowerSum | None:
+    """The waves as a polynomial in cosine and sine of each axis, s^2 eliminated; None where that is too large."""
+    found: dict[Exponents, Number] = {}
     for w, c in waves.items():
         multiples = _multiples(w[1], axes) if w else (0,) * len(axes)
         if multiples is None or sum(abs(m) for m in multiples) > LARGEST_DEGREE:
             return None
         for powers, share in _wave_in_powers(w[0] if w else "cos", multiples).items():
-            polynomial[powers] = tidy(polynomial.get(powers, 0) + c * share)
-    polynomial = {powers: c for powers, c in polynomial.items() if c}
+            found[powers] = tidy(found.get(powers, 0) + c * share)
+    polynomial: PowerSum = {powers: c for powers, c in found.items() if c}
     for axis in range(len(axes)):
         polynomial = eliminated(polynomial, axis, "cos")
     return polynomial
+
+
+def in_powers(terms: Terms, axes: tuple[AngleSum, ...]) -> Iterator[tuple[Monomial, Exponents, Number]]:
+    """(monomial, exponents of cosine and sine of each axis, coefficient) of each term, s^2 eliminated.
+
+    Raises:
+        TooLarge: a wave of too high a multiple of its angle.
+    """
+    groups: dict[Monomial, dict[Wave, Number]] = {}
+    for (monomial, w), c in terms.items():
+        groups.setdefault(monomial, {})[w] = c
+    for monomial, waves in groups.items():
+        powers = power_form(waves, axes)
+        if powers is None:
+            raise TooLarge("a wave of too high a multiple of its angle")
+        yield from ((monomial, exponents, c) for exponents, c in powers.items())
 
 
 def axes_of(waves: Iterable[Wave]) -> tuple[AngleSum, ...]:
@@ -75,10 +90,10 @@ def _multiples(k: AngleSum, axes: tuple[AngleSum, ...]) -> tuple[int, ...] | Non
 
 
 @lru_cache(maxsize=KEPT)
-def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> CirclePolynomial:
+def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> PowerSum:
     """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
-    real: CirclePolynomial = {(): 1}
-    imaginary: CirclePolynomial = {}
+    real: PowerSum = {(): 1}
+    imaginary: PowerSum = {}
     for m in multiples:
         c_part, s_part = _one_axis(m)
         real, imaginary = (
@@ -88,31 +103,24 @@ def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> CirclePolynomial:
     return real if kind == "cos" else imaginary
 
 
-def _one_axis(m: int) -> tuple[dict[tuple[int, int], int], dict[tuple[int, int], int]]:
+def _one_axis(m: int) -> tuple[PowerSum, PowerSum]:
     """(cos(m a), sin(m a)) in powers of cos a and sin a, by de Moivre."""
     n, sense = abs(m), 1 if m >= 0 else -1
-    cosine = {(n - j, j): (-1) ** (j // 2) * comb(n, j) for j in range(0, n + 1, 2)}
-    sine = {(n - j, j): sense * (-1) ** (j // 2) * comb(n, j) for j in range(1, n + 1, 2)}
+    cosine: PowerSum = {(n - j, j): (-1) ** (j // 2) * comb(n, j) for j in range(0, n + 1, 2)}
+    sine: PowerSum = {(n - j, j): sense * (-1) ** (j // 2) * comb(n, j) for j in range(1, n + 1, 2)}
     return cosine, sine
 
 
-def _joined(*products: tuple[CirclePolynomial, dict[tuple[int, int], int], int]) -> CirclePolynomial:
-    total: CirclePolynomial = {}
+def _joined(*products: tuple[PowerSum, PowerSum, int]) -> PowerSum:
+    total: dict[Exponents, Number] = {}
     for left, right, sign in products:
         for powers, c in left.items():
             for pair, d in right.items():
-                total[(*powers, pair)] = total.get((*powers, pair), 0) + sign * c * d
+                total[(*powers, *pair)] = total.get((*powers, *pair), 0) + sign * c * d
     return {powers: c for powers, c in total.items() if c}
 
 
-def eliminated(polynomial: CirclePolynomial, axis: int, keep: str) -> CirclePolynomial:
+def eliminated(polynomial: PowerSum, axis: int, keep: str) -> PowerSum:
     """With s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") used up for one axis."""
-    total: CirclePolynomial = {}
-    for powers, coefficient in polynomial.items():
-        c, s = powers[axis]
-        kept, gone = (c, s) if keep == "cos" else (s, c)
-        for j in range(gone // 2 + 1):
-            pair = (kept + 2 * j, gone % 2) if keep == "cos" else (gone % 2, kept + 2 * j)
-            key = (*powers[:axis], pair, *powers[axis + 1 :])
-            total[key] = tidy(total.get(key, 0) + coefficient * comb(gone // 2, j) * (-1) ** j)
-    return {powers: c for powers, c in total.items() if c}
+    pair = (2 * axis, 2 * axis + 1)
+    return with_square_replaced(polynomial, pair[keep == "cos"], pair)

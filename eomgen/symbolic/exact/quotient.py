@@ -1,12 +1,12 @@
-"""A sum of terms with divisors -> numerator and denominator without a common factor, by sympy.polys."""
+"""A sum of terms with divisors -> numerator and denominator without a common factor."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import gcd
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import Polynomials
-from eomgen.symbolic.exact.squares import holds_no_square
 from eomgen.symbolic.exact.terms import Key, Terms, TooLarge, common_monomial, constant
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
@@ -55,11 +55,11 @@ def _divided(expansion: Expansion, numerator: Terms, denominator: Terms) -> tupl
     if len(numerator) * len(denominator) > LARGEST_PRODUCT:
         return numerator, denominator
     try:
-        ring = Polynomials(expansion, (numerator, denominator))
+        ring = Polynomials((numerator, denominator), expansion.product)
         above, below = ring.of(numerator), ring.of(denominator)
     except TooLarge:
         return numerator, denominator
-    if len(above) * len(below) > LARGEST_PRODUCT:
+    if len(above.terms) * len(below.terms) > LARGEST_PRODUCT:
         return numerator, denominator
     above, below = ring.without_common_divisor(above, below)
     return ring.terms(above), ring.terms(below)
@@ -74,13 +74,11 @@ def _rational_below(expansion: Expansion, above: Terms, below: Terms) -> tuple[T
     roots = _roots(below)
     if not roots:
         return None
-    from sympy import primefactors
-
-    primes = {p for root in roots for p in primefactors(root)}
-    largest = (len(above) + len(below)) * len(below) ** (2 ** len(primes))
+    parts = _coprime_parts(roots)
+    largest = (len(above) + len(below)) * len(below) ** (2 ** len(parts))
     if largest > min(LARGEST_PRODUCT, expansion.limit - expansion.work):
         return None
-    for p in sorted(primes):
+    for p in parts:
         conjugate = {key: -c if any(root % p == 0 for root in _roots((key,))) else c for key, c in below.items()}
         above, below = expansion.product(above, conjugate), expansion.product(below, conjugate)
     return above, below
@@ -91,18 +89,33 @@ def _roots(terms: Iterable[Key]) -> set[int]:
     return {-atom for monomial, _ in terms for atom, _ in monomial if atom < 0}
 
 
+def _coprime_parts(numbers: Iterable[int]) -> list[int]:
+    """Numbers without common divisor of which these are products: each of their roots has a sign of its own."""
+    parts: list[int] = []
+    pending = sorted(numbers)
+    while pending:
+        n = pending.pop()
+        other = next((p for p in parts if gcd(n, p) > 1), None)
+        if other is None:
+            parts += [n] if n > 1 else []
+            continue
+        common = gcd(n, other)
+        if common != other:
+            parts.remove(other)
+            pending += [common, other // common]
+        pending.append(n // common)
+    return sorted(parts)
+
+
 def powers_in(expansion: Expansion, terms: Terms) -> list[tuple[Terms, int]]:
     """The terms as a product of powers: 16 + 72 c^2 + 81 c^4 is (4 + 9 c^2)^2; as they are where too large."""
     if not 1 < len(terms) <= MOST_TERMS or any(e < 0 for monomial, _ in terms for _, e in monomial):
         return [(terms, 1)]
     try:
-        ring = Polynomials(expansion, (terms,))
-        element = ring.of_one_degree(ring.of(terms))
-        if holds_no_square(element):
-            return [(terms, 1)]
-        number, parts = element.sqf_list()
-        if any(e > 1 for _, e in parts):
-            return [(ring.terms(ring.ring.ground_new(number)), 1), *((ring.terms(part), e) for part, e in parts)]
+        ring = Polynomials((terms,), expansion.product)
+        number, parts = ring.of_one_degree(ring.of(terms)).square_free()
     except TooLarge:
-        pass
-    return [(terms, 1)]
+        return [(terms, 1)]
+    if all(e == 1 for _, e in parts):
+        return [(terms, 1)]
+    return [(constant(number), 1), *((ring.terms(part), e) for part, e in parts)]

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.factoring import irreducible
-from eomgen.symbolic.exact.polynomials import Element, Polynomials
+from eomgen.symbolic.exact.polynomials import Polynomials
 from eomgen.symbolic.exact.quotient import fraction_of
+from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.exact.terms import Terms, TooLarge
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
@@ -23,7 +23,6 @@ from eomgen.symbolic.expression.rational import Fraction
 LARGEST_DEGREE = 24
 MOST_TERMS = 60  # of what is factored
 
-FactorPowers = dict[Element, int]  # exponent of each irreducible factor
 Quotients = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
 
 
@@ -48,7 +47,7 @@ def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[T
     spent = expansion.work
     try:
         fractions = [fraction_of(expansion, f) for f in roots]
-        ring = Polynomials(expansion, [above, below, *(part for pair in fractions for part in pair)])
+        ring = Polynomials([above, below, *(part for pair in fractions for part in pair)], expansion.product)
         return _Roots(expansion, ring, above, below, fractions).joined()
     except TooLarge:
         return None
@@ -65,8 +64,8 @@ class _Roots:
         self.expansion, self.ring = expansion, ring
         self.above, self.below = self._element(above), self._element(below)
         self.number = Fraction(1)
-        self.powers: FactorPowers = {}
-        self.positive: set[Element] = set()
+        self.powers: dict[RationalPolynomial, int] = {}
+        self.positive: set[RationalPolynomial] = set()
         for pair in fractions:
             found = [self._factors(terms) for terms in pair]
             for (number, factors), other, sign in zip(found, reversed(pair), (1, -1), strict=True):
@@ -76,33 +75,32 @@ class _Roots:
                 if number > 0 and expansion.all_positive(other):
                     self.positive |= self._sure(factors)
 
-    def _element(self, terms: Terms) -> Element:
+    def _element(self, terms: Terms) -> RationalPolynomial:
         return self.ring.of_one_degree(self.ring.of(terms))
 
-    def _factors(self, terms: Terms) -> tuple[Fraction, list[tuple[Element, int]]]:
+    def _factors(self, terms: Terms) -> tuple[Number, list[tuple[RationalPolynomial, int]]]:
         """The number, and the irreducible factors with their powers, positive where all their terms have one sign."""
         element = self._element(terms)
-        if len(element) > MOST_TERMS or max(map(sum, element.monoms())) > LARGEST_DEGREE:
+        if len(element.terms) > MOST_TERMS or element.degree > LARGEST_DEGREE:
             raise TooLarge(f"a polynomial of more than {MOST_TERMS} terms or degree {LARGEST_DEGREE}")
-        c, parts = irreducible(element)
-        number, factors = Fraction(int(c.numerator), int(c.denominator)), []
+        (number, parts), factors = element.factors(), []
         for p, e in parts:
             turned = self._is_positive(-p)
             factors.append((-p if turned else p, e))
-            number *= (-1) ** e if turned else 1
+            number = number * (-1) ** e if turned else number
         return number, factors
 
-    def _sure(self, factors: list[tuple[Element, int]]) -> set[Element]:
+    def _sure(self, factors: list[tuple[RationalPolynomial, int]]) -> set[RationalPolynomial]:
         """The one factor with a sign of its own, positive where the product is."""
         unsure = {p for p, e in factors if e % 2 and not self._is_positive(p)}
         return unsure if len(unsure) == 1 else set()
 
-    def _is_positive(self, p: Element) -> bool:
+    def _is_positive(self, p: RationalPolynomial) -> bool:
         return self.expansion.all_positive(self.ring.terms(p))
 
     def joined(self) -> Radical:
-        bare: list[Element] = [self.ring.ring.one, self.ring.ring.one]
-        under: list[list[Element]] = [[], []]
+        one = RationalPolynomial.number(1, self.ring.generators)
+        bare, under = [one, one], list[list[RationalPolynomial]]([[], []])
         for p, m in self.powers.items():
             sure = p in self.positive or self._is_positive(p)
             side, outside = int(m < 0), abs(m) // 2
@@ -119,10 +117,10 @@ class _Roots:
         numerators, denominators = (tuple(map(self.ring.terms, parts)) for parts in under)
         return Radical(above, below, bare_above, bare_below, tidy(self.number), numerators, denominators)
 
-    def _moved(self, p: Element, side: int) -> int:
+    def _moved(self, p: RationalPolynomial, side: int) -> int:
         """The side of the line under the root on which p > 0 stands: sqrt(p)/p = 1/sqrt(p), p/sqrt(p) = sqrt(p)."""
-        quotient, rest = divmod(self.above if side else self.below, p)
-        if rest:
+        quotient = (self.above if side else self.below).over(p)
+        if quotient is None:
             return side
         if side:
             self.above = quotient

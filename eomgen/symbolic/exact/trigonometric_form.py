@@ -13,7 +13,8 @@ from functools import lru_cache
 from itertools import product
 from math import gcd
 
-from eomgen.symbolic.exact.powers import CirclePolynomial, axes_of, eliminated, power_form
+from eomgen.symbolic.exact.powers import axes_of, eliminated, power_form
+from eomgen.symbolic.exact.rational_polynomial import PowerSum
 from eomgen.symbolic.exact.terms import AngleSum, Wave, common_number, vector_sum, wave
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number
@@ -121,8 +122,8 @@ def _forms(rays: Waves) -> list[Form]:
     if axes and any(_is_multiple(w[1]) or w[1] != axes[0] for w in rays if w):
         for keep in ("cos", "sin"):
             reduced = eliminated(polynomial, 0, keep)
-            number = reduced.pop(((0, 0),), 0)
-            forms.append((number, _as_sum(reduced, axes)))
+            rest = {powers: c for powers, c in reduced.items() if any(powers)}
+            forms.append((reduced.get((0, 0), 0), _as_sum(rest, axes)))
     return forms
 
 
@@ -220,7 +221,7 @@ def _in_powers(waves: Waves) -> Sum | None:
     return _as_sum(polynomial, axes)
 
 
-def _polynomial(waves: Waves) -> tuple[CirclePolynomial, tuple[AngleSum, ...]] | None:
+def _polynomial(waves: Waves) -> tuple[PowerSum, tuple[AngleSum, ...]] | None:
     axes = axes_of(waves)
     if len(axes) > MOST_AXES:
         return None
@@ -228,12 +229,12 @@ def _polynomial(waves: Waves) -> tuple[CirclePolynomial, tuple[AngleSum, ...]] |
     return None if polynomial is None else (polynomial, axes)
 
 
-def _as_sum(polynomial: CirclePolynomial, axes: tuple[AngleSum, ...]) -> Sum:
+def _as_sum(polynomial: PowerSum, axes: tuple[AngleSum, ...]) -> Sum:
     """The polynomial's terms, low powers first."""
     terms = []
-    for powers in sorted(polynomial, key=lambda powers: (sum(c + s for c, s in powers), powers)):
+    for powers in sorted(polynomial, key=lambda powers: (sum(powers), powers)):
         factors: list[tuple[str, AngleSum, int]] = []
-        for axis, (c, s) in zip(axes, powers, strict=True):
+        for axis, c, s in zip(axes, powers[::2], powers[1::2], strict=True):
             factors += [(kind, axis, e) for kind, e in (("sin", s), ("cos", c)) if e]
         terms.append((polynomial[powers], tuple(factors)))
     return tuple(terms)

@@ -22,8 +22,9 @@ from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression import scalar_operations
 from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference, apply_operation, unknown
 from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.habits import decimal_comma, rate_of_call, two_values
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.tokens import Token, is_name, number_in, reference_at, skip_space, token_at
+from eomgen.symbolic.expression.tokens import Token, is_name, number_in, reference_at, skip_space, token_at, unclosed_at
 
 __all__ = ["Call", "Expression", "Reference", "as_expression", "is_name", "parse", "parse_equation", "unknown"]
 
@@ -202,7 +203,8 @@ class _Parser:
         if name.text not in NAMES:
             error = unknown("function", name.text, NAMES, name.start)
             product = f"for a product write {name.text}*(...)"
-            raise ExpressionError(error.what, error.column, error.mend or product, error.length)
+            mend = rate_of_call(self.text[name.start :]) or error.mend or product
+            raise ExpressionError(error.what, error.column, mend, error.length)
         opening, count = self.advance(), 0
         while self.token.text != ")" and (count == 0 or self.token.text == ","):
             if count:
@@ -228,6 +230,8 @@ class _Parser:
     def argument(self) -> Reference | Expression:
         """What stands after the present token, "(" or ","; the token after it becomes the present one."""
         start = skip_space(self.text, self.token.end)
+        if unclosed_at(self.text, start):
+            raise ExpressionError("'(' is never closed", self.token.start, "write ) at the end")
         reference = reference_at(self.text, start)
         if reference is None:
             self.advance()
@@ -259,10 +263,13 @@ class _Parser:
         if token.text == ")":
             return ExpressionError("')' closes nothing", token.start)
         if token.kind == "sign" and token.text != "(":
-            return ExpressionError(f"'{token.text}' has no place here", token.start, length=length)
+            mend = decimal_comma(self.text, token.start) if token.text == "," else ""
+            return ExpressionError(f"'{token.text}' has no place here", token.start, mend, length)
         what = f"no sign between '{before.text}' and '{token.text}'"
         if before.text in NAMES:
             return ExpressionError(what, token.start, f"write {before.text}({token.text})", length)
+        if habit := two_values(self.text, token.start):
+            return ExpressionError(what, token.start, habit, length)
         opened = "(...)" if token.text == "(" else token.text
         left = "(...)" if before.text == ")" else before.text
         return ExpressionError(what, token.start, f"there is no implicit product: write {left}*{opened}", length)

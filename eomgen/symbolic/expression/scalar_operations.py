@@ -94,14 +94,17 @@ def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
     """a ^ (m/n) of an exact number, in the arithmetic of pi."""
     if a == 0 and b < 0:
         raise Undefined(f"division by zero in 0^({b})")
+    if a < 0:
+        raise Undefined("a broken power of a negative number")
     if type(pi) is Node:
         return pi.graph.pow(a, b)
     if b.denominator == 2:
         return _whole_power(function_value("sqrt", (a,), pi), b.numerator)
     if pi is None or isinstance(pi, float):
-        if a < 0:
-            raise Undefined("a broken power of a negative number")
-        return float(a) ** float(b)
+        try:
+            return float(a) ** float(b)
+        except OverflowError:
+            raise Undefined("the number is too large") from None
     return (a + (pi - pi)) ** b
 
 

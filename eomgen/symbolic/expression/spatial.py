@@ -69,6 +69,11 @@ def apply(R: Matrix, a: Vector) -> Vector:
     return (dot(R[0], a), dot(R[1], a), dot(R[2], a))
 
 
+def in_turned_axes(R: Matrix, a: Vector) -> Vector:
+    """R a; a itself where nothing is turned."""
+    return a if R is IDENTITY else apply(R, a)
+
+
 def transposed(R: Matrix) -> Matrix:
     """R^T, the inverse of a rotation."""
     return ((R[0][0], R[1][0], R[2][0]), (R[0][1], R[1][1], R[2][1]), (R[0][2], R[1][2], R[2][2]))

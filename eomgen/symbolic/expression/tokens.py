@@ -33,6 +33,8 @@ _MENDS = {
     "²": "write ^2",
     "³": "write ^3",
     "√": "write sqrt(...)",
+    "|": "write abs(...)",
+    "°": 'give the unit beside it: { start = 20, unit = "deg" }',
     "[": "use round parentheses",
     "{": "use round parentheses",
 }
@@ -77,7 +79,11 @@ def _strange(text: str, start: int) -> ExpressionError:
     character = text[start]
     if character == "." and start > 0 and (dotted := _DOTTED.match(text, _word_start(text, start))):
         length = dotted.end() - dotted.start()
-        return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), length=length)
+        owner, _, what = dotted.group().partition(".")
+        mend = {"dot": f"the rate is written {owner}'", "ddot": f"it is written {owner}''"}.get(what, "")
+        if owner in ("np", "numpy", "math", "sp", "sympy"):
+            mend = f"write {what}(...)"
+        return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), mend, length)
     return ExpressionError(f"unexpected character {character!r}", start, _MENDS.get(character, ""))
 
 
@@ -91,6 +97,12 @@ def reference_at(text: str, position: int) -> str | None:
     """The dotted name or member (`arm.end`, `B`, `n1-n2`) that is a whole argument here, else None."""
     found = _REFERENCE.match(text, position)
     return found.group("reference") if found else None
+
+
+def unclosed_at(text: str, position: int) -> bool:
+    """Whether a dotted name here is the last thing of the text: the parenthesis before it is never closed."""
+    found = _DOTTED.match(text, position)
+    return found is not None and skip_space(text, found.end()) == len(text)
 
 
 def number_in(token: Token) -> int | Fraction:

@@ -6,6 +6,7 @@ deg = pi/180 rad,  rev = 2 pi rad,  kN = 1000 kg m/s^2
 from __future__ import annotations
 
 import difflib
+import math
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -66,6 +67,11 @@ class Unit:
         """A value in SI, in this unit; in the arithmetic of value and pi."""
         return over(value, self._size(pi))
 
+    @property
+    def size(self) -> float:
+        """Of one of it, in SI."""
+        return float(self._size(math.pi))
+
     def _size(self, pi: Any) -> Any:
         factor = self.factor.numerator if self.factor.denominator == 1 else self.factor
         return factor * pi**self.pi_power if self.pi_power else factor
@@ -82,6 +88,12 @@ class Unit:
         below = [name if n == -1 else f"{name}^{-n}" for name, n in powers if n < 0]
         under = f"/({'*'.join(below)})" if len(below) > 1 else f"/{below[0]}" if below else ""
         return ("*".join(above) or "1") + under
+
+    @property
+    def rate(self) -> Unit:
+        """This unit per second."""
+        text = f"{self.text}/s" if "/" not in self.text else f"({self.text})/s"
+        return Unit(text, self.factor, *(e - (k == 3) for k, e in enumerate(self._exponents())))
 
     def expression_in_si(self, expression: Expression) -> Expression:
         """What a user wrote in this unit, in SI: 40 cm is 2/5, 90 deg is 1/2*pi."""
@@ -174,7 +186,9 @@ def parse_unit(text: str) -> Unit:
             total = total.times(_unit_of(piece).raised(group * direction * _power_of(piece)))
             needed, direction, position = False, 1, piece.end() - 1
         else:
-            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, "write kg*m^2")
+            raised = position and text[position - 1].isalpha() and character.isdigit()
+            mend = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
+            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, mend)
         position = skip_space(text, position + 1)
     if needed or opened >= 0:
         what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
@@ -203,5 +217,6 @@ def _nearest(name: str) -> str:
     halves = [(name[:i], name[i:]) for i in range(1, len(name)) if name[:i] in UNITS and name[i:] in UNITS]
     product = [f"{a}*{b}" for a, b in halves if UNITS[a]._exponents() != UNITS[b]._exponents()]  # cmm is not cm*m
     spoken = [_SPOKEN[name.lower()]] if name.lower() in _SPOKEN else []
-    near = spoken or same or product or difflib.get_close_matches(name, UNITS, n=1, cutoff=0.5)
+    many = [name[:-1]] if len(name) > 2 and name.endswith("s") and name[:-1] in UNITS else []  # kgs
+    near = spoken or same or many or product or difflib.get_close_matches(name, UNITS, n=1, cutoff=0.5)
     return f"did you mean '{near[0]}'?" if near else ""

@@ -7,28 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING, ZERO_AT_50
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
-
-
-def dense_solution(A: np.ndarray, right: np.ndarray, *, regular: bool, smallest: float) -> np.ndarray:
-    """A x = right: by elimination, whose error knows no units; where A is not regular, the least squares' x.
-
-    Args:
-        regular: whether A is (an x of least squares mixes units: milligrams beside tonnes would count as 0).
-        smallest: singular values of the scaled A below this part of the largest count as 0.
-    Raises:
-        NoValue: A was called regular and is not.
-    """
-    scaled, rows, columns = balanced(A)
-    if not regular:
-        return np.asarray(columns * np.linalg.lstsq(scaled, rows * right, rcond=smallest)[0])
-    try:
-        return columns * np.linalg.solve(scaled, rows * right)
-    except np.linalg.LinAlgError as error:
-        raise NoValue("the equations of motion are singular") from error
 
 
 def independent(J: np.ndarray, *, smallest: float) -> bool:

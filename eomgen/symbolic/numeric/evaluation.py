@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
@@ -14,6 +14,7 @@ from eomgen.symbolic.expression.graph import LARGEST_POWER, Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
 
 WAYS_KEPT = 16  # of evaluations that may come again
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
@@ -55,6 +56,7 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         DerivationError: a symbol without a value; all are named.
         NoValue: outside the domain (floats give nan instead).
     """
+    check_patience()
     way = _way(tuple(outputs), frozenset(x for x in values if x.op != "symbol"))
     missing = [x.name for x in way.symbols if x not in values]
     if missing:
@@ -69,6 +71,18 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         except (ValueError, ZeroDivisionError, OverflowError):
             known.append(arithmetic.failed(x))
     return [known[i] for i in way.outputs]
+
+
+def floats_of(values: Iterable[Any]) -> list[float]:
+    """Numbers of many digits as floats.
+
+    Raises:
+        NoValue: one is larger than floats are.
+    """
+    found = [float(x) for x in values]
+    if not all(map(math.isfinite, found)):
+        raise NoValue("a number beyond doubles")
+    return found
 
 
 @dataclass(frozen=True)
@@ -251,6 +265,8 @@ PRIME_FIELD = Arithmetic(
 def fifty_digits(partial: bool = False) -> Arithmetic:
     """Real numbers with 50 decimal digits; a function outside its real domain raises NoValue.
 
+    So does one of a number beyond all size, whose value would take forever: exp(exp(exp(12))).
+
     Args:
         partial: outside its domain a function is nan, as in doubles, and so is what is made of that.
     """
@@ -261,7 +277,8 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
 
     def real(function: Callable[..., Any]) -> Callable[..., Any]:
         def guarded(*arguments: Any) -> Any:
-            value = function(*arguments)
+            beyond = any(mp.mag(a) > LARGEST_OF_50_DIGITS for a in arguments if a)
+            value = mp.nan if beyond else function(*arguments)
             if isinstance(value, mp.mpc) or not mp.isfinite(value):
                 if partial:
                     return mp.nan

@@ -91,7 +91,8 @@ class _Boxes:
         """(lowest, highest) value of each scalar in each box, boxes x scalars."""
         given = {node: interval(float(x), float(x)) for node, x in self.values.items()}
         given |= {node: (a[:, k], b[:, k]) for k, node in enumerate(self.unknowns)}
-        found = evaluate(scalars, given, INTERVALS)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is beyond doubles may be anything
+            found = evaluate(scalars, given, INTERVALS)
         ends = [np.stack([np.broadcast_to(x[k], len(a)) for x in found], axis=1) for k in range(2)]
         return ends[0].astype(float), ends[1].astype(float)
 

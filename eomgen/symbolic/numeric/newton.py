@@ -19,6 +19,7 @@ import numpy as np
 
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BEST, LEAST_CHANGE
+from eomgen.symbolic.numeric.work import check_patience
 
 X = TypeVar("X")
 
@@ -61,11 +62,13 @@ class Newton:
         steps: at most.
         smallest: singular values of A below this part of the largest count as 0.
         damped: by |f|, while that is below 1.
-        stalls: |f| below which a root is reached when it halves no more: redundant equations differ by rounding.
+        stalls: |f| below which a root is reached when it falls to no `share` of itself any more: redundant equations
+            differ by rounding.
         again: one step more at the root, for its last digits.
         keeps: A is kept while |f| falls by this factor in a step.
         double: of a step, to within which the next is half of it: at a double root it is taken twice.
         longest: step.
+        least: (the slopes, -f) -> d, where change has a measure of its own; None: |d| is least.
     """
 
     enough: float = 0.0
@@ -74,10 +77,12 @@ class Newton:
     smallest: float = LEAST_CHANGE
     damped: bool = False
     stalls: float = 0.0
+    share: float = 0.5
     again: bool = False
     keeps: float = 0.0
     double: float = 0.0
     longest: float = math.inf
+    least: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
 
     def root(self, sought: Sought[X], start: X) -> Root[X]:
         """The root to which the steps lead from the start; not met where they lead to none, or leave the domain."""
@@ -86,11 +91,12 @@ class Newton:
         last: np.ndarray | None = None
         try:
             for _ in range(self.steps):
+                check_patience()
                 f = sought.left(x)
                 size = max(map(abs, f), default=0)
                 if size <= self.enough:
                     return Root(self._again(sought, x, f, size), float(size), True)
-                if left < self.stalls and size > left / 2:
+                if left < self.stalls and size >= self.share * left:
                     return Root(before, float(left), True)
                 if A is None or size > self.keeps * left:
                     A = sought.slopes(x)
@@ -115,6 +121,8 @@ class Newton:
         if not np.all(np.isfinite(A)):
             raise NoValue("the equations have no slopes")
         right = np.array([-float(y / size) for y in f])
+        if self.least is not None:
+            return self.least(A, right)
         if not self.damped:
             return np.asarray(np.linalg.lstsq(A, right, rcond=self.smallest)[0])
         n = A.shape[1]

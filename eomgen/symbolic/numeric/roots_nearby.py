@@ -134,8 +134,9 @@ class Descent:
         """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places."""
         places = np.random.default_rng(2).uniform(-1, 1, (16, len(self.unknowns)))
         A = np.abs(self._at(places)[1])
+        known = np.isfinite(A)
         with np.errstate(all="ignore"):
-            A = np.sqrt(np.nanmean(np.where(np.isfinite(A), A, np.nan) ** 2, axis=0))
+            A = np.sqrt(np.sum(np.where(known, A, 0.0) ** 2, axis=0) / np.sum(known, axis=0))
         return balanced(np.where(np.isfinite(A), A, 1.0))[1:]
 
     @property

@@ -48,8 +48,10 @@ NEAR_ROOT = 1e-7  # of scaled equations: so near, Newton's method has a root; a 
 SHARE = 1e-6  # of a row, multiplier or coordinate in a combination: what has a smaller part is not named
 OPEN_GAP = 1e-6  # of a gap or its rate against its terms: more is not the rounding of what a user typed
 UNBALANCED = 1e-6  # of the forces: what least squares leave, above which ties do not carry them
+MASSES_APART = 1e11  # of the least mass: beside a larger one the least is lost in a difference of doubles
 AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
 GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
+LARGEST_AT_50 = 1e15  # [SI] a coordinate or speed: beyond it a difference with a step of 1e-15 is lost
 COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50 digits: it is 0
 
 # Accuracy that is asked of a run in time: rtol and atol of a step.

@@ -1,14 +1,28 @@
-"""How much work one formula is worth: every budget of the package, in one unit."""
+"""How much work one formula is worth, in one unit; and how long a user waits for all of it.
+
+Budgets are counted, never timed: what is printed is the same on every machine. The clock only ends what takes too long:
+hot loops ask it by `check_patience`; what cannot ask, a loop of a library, is stopped from a thread a little later.
+"""
 
 from __future__ import annotations
 
+import ctypes
+import math
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
 from enum import IntEnum
+
+from eomgen.errors import EomgenError
 
 
 class Work(IntEnum):
     """Products of terms that may be formed for one expression; one that needs more stays as it came.
 
-    Counted, never timed: what is printed is the same on every machine. Near 200 000 products take one second.
+    Near 200 000 products take one second.
     """
 
     PART = 1_000  # a part of many: a constant, one coefficient of a row
@@ -16,3 +30,134 @@ class Work(IntEnum):
     FORMULA = 5_000  # one formula, where there are a few
     VALUE = 20_000  # one value at an instant or place, one equation that is then solved
     ANSWER = 50_000  # one value that the user asked for by name, or a question whose answer decides what is true
+
+
+LARGEST_OF_50_DIGITS = 20_000  # in bits, of what a function is taken at with 50 digits; doubles end at 1024
+
+
+class OutOfPatience(EomgenError):
+    """The time that a user gave is over."""
+
+
+class PatienceEnded(Exception):
+    """Ends all work inside `patience`.
+
+    No EomgenError: where one way fails another is tried, but not when the time is over.
+    """
+
+
+LATE = 1.0  # s, after which what does not ask is stopped
+
+
+@dataclass
+class _Clock:
+    """One stretch of patience.
+
+    Args:
+        end: on the monotonic clock [s].
+        told: what is being done, the outermost first.
+        done: what was.
+        closed: when nothing is to be stopped any more; thrown: whether something was, from outside.
+    """
+
+    seconds: float
+    end: float
+    told: list[str] = field(default_factory=list)
+    done: list[str] = field(default_factory=list)
+    closed: threading.Event = field(default_factory=threading.Event)
+    thrown: bool = False
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def error(self) -> OutOfPatience:
+        """What was done, what was given up, and what helps."""
+        given_up = ", ".join(self.told[-2:]) or "the work"
+        before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
+        what = f"given up after {self.seconds:g} s: {given_up}{before}"
+        return OutOfPatience(what, mend="ask for less, or wait longer: --patience SECONDS, --patience none")
+
+
+_CLOCK: ContextVar[_Clock | None] = ContextVar("patience", default=None)
+
+
+def check_patience() -> None:
+    """Goes on while there is time.
+
+    Raises:
+        PatienceEnded: there is none left.
+    """
+    clock = _CLOCK.get()
+    if clock is not None and time.monotonic() > clock.end:
+        raise PatienceEnded
+
+
+def keep_what_there_is() -> None:
+    """Lets what was found be told, however long that takes: nothing more is sought."""
+    clock = _CLOCK.get()
+    if clock is not None:
+        with clock.lock:
+            clock.end = math.inf
+            clock.closed.set()
+            if clock.thrown:
+                _throw(threading.get_ident(), None)
+
+
+@contextmanager
+def doing(what: str) -> Iterator[None]:
+    """Says what is done, for whoever is told that it was given up."""
+    clock = _CLOCK.get()
+    if clock is None:
+        yield
+        return
+    clock.told.append(what)
+    over = False
+    try:
+        yield
+        clock.done.append(what)
+    except PatienceEnded:
+        over = True
+        raise
+    finally:
+        if not over:
+            clock.told.pop()
+
+
+@contextmanager
+def patience(seconds: float | None) -> Iterator[None]:
+    """What is done inside takes so long at the most; None: as long as it takes.
+
+    Raises:
+        OutOfPatience: it did not come to its end.
+    """
+    if seconds is None:
+        yield
+        return
+    clock = _Clock(seconds, time.monotonic() + seconds)
+    token = _CLOCK.set(clock)
+    threading.Thread(target=_stop_late, args=(clock, threading.get_ident()), daemon=True).start()
+    try:
+        yield
+    except PatienceEnded:
+        raise clock.error() from None
+    finally:
+        _CLOCK.reset(token)
+        with clock.lock:
+            clock.closed.set()
+            if clock.thrown:  # and not yet caught, perhaps
+                _throw(threading.get_ident(), None)
+
+
+def _stop_late(clock: _Clock, thread: int) -> None:
+    """Throws into a thread that does not ask, again where a library swallowed it."""
+    wait = clock.seconds + LATE
+    while not clock.closed.wait(wait):
+        with clock.lock:
+            if not clock.closed.is_set():
+                clock.thrown = True
+                _throw(thread, PatienceEnded)
+        wait = LATE
+
+
+def _throw(thread: int, error: type[Exception] | None) -> None:
+    """An exception into another thread, raised between two of its instructions; None: takes one back."""
+    thrown = None if error is None else ctypes.py_object(error)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), thrown)

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import math
+
+from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.exact_numbers import Number
 
 MOST_DIGITS = 8  # of a decimal
 LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads worse than its decimal
 MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
+MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
+BITS = math.log2(10)  # of a digit
 SMALLEST = -4  # power of ten below which a decimal is written with its exponent: 8.464e-7
 
 
 def number_text(c: Number) -> str:
-    """c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7."""
+    """c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7.
+
+    Raises:
+        DerivationError: it has more digits than can be printed.
+    """
+    if _is_long(c):
+        raise DerivationError(f"a number of {number_length(c)} digits came up, which is too long to print")
     decimal = decimal_of(c)
     if decimal is None:
         return str(c)
@@ -19,12 +30,21 @@ def number_text(c: Number) -> str:
     return f"{digits}e{power}" if power else digits
 
 
+def number_length(c: Number) -> int:
+    """How long the text of c is; of a very long one nearly."""
+    return int((c.numerator.bit_length() + c.denominator.bit_length()) / BITS) if _is_long(c) else len(number_text(c))
+
+
+def _is_long(c: Number) -> bool:
+    return max(c.numerator.bit_length(), c.denominator.bit_length()) > BITS * MOST_PRINTED
+
+
 def decimal_of(c: Number) -> tuple[str, int] | None:
     """(digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better.
 
     33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions.
     """
-    if c.denominator < LONGEST_FRACTION and c.denominator % 25:
+    if _is_long(c) or (c.denominator < LONGEST_FRACTION and c.denominator % 25):
         return None
     places = _places(c.denominator)
     digits = "" if places is None else str(abs(c.numerator) * 10**places // c.denominator)

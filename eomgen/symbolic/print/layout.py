@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import Any
 
+from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
@@ -58,7 +59,7 @@ def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
                 share_opened[child] += part
             else:
                 share[child] += part
-    return _lead([(_tidy(c), leaf) for leaf, c in share.items() if c != 0], _tidy(number))
+    return _lead([(tidy(c), leaf) for leaf, c in share.items() if c != 0], tidy(number))
 
 
 def products_of(x: Scalar, named: Container[Node] = ()) -> list[Product]:
@@ -115,10 +116,6 @@ def _is_less_than(x: Scalar, limit: int) -> bool:
 
 def _newest_first(node: Node) -> int:
     return -node.index
-
-
-def _tidy(c: Number) -> Number:
-    return c.numerator if c.denominator == 1 else c
 
 
 def _lead(found: list[Term], number: Number) -> list[Term]:
@@ -204,7 +201,7 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
     bases.sort(key=_rank)
     bases = _constant_sums_first(bases)
     above = tuple((base, power) for base, power in bases if power > 0)
-    return Product(_tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
+    return Product(tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
 
 def _constant_sums_first(bases: list[Factor]) -> list[Factor]:

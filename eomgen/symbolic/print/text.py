@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.decimals import decimal_of, number_text
+from eomgen.symbolic.print.decimals import decimal_of, number_length, number_text
 from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn
 from eomgen.symbolic.print.printed import summands
 
@@ -135,7 +135,7 @@ def readable_text(x: Scalar) -> str | None:
 def text_size(x: Scalar) -> int:
     """At least the length of to_text(x), at the cost of the graph: nothing is printed."""
     if type(x) is not Node:
-        return len(number_text(x))
+        return number_length(x)
     sizes = x.graph.text_sizes
     for node in order((x,), sizes):
         if node not in sizes:
@@ -148,7 +148,7 @@ def _size(node: Node, sizes: Mapping[Node, int]) -> int:
         return len(node.name) if node.op == "symbol" else 2
     if node.op == "sampled":
         return len(sampled_of(node.args[1]).name)
-    inside = sum(sizes[a] if type(a) is Node else len(number_text(a)) for a in node.args)
+    inside = sum(sizes[a] if type(a) is Node else number_length(a) for a in node.args)
     return inside + {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}.get(
         node.op, len(node.op) + 2 * len(node.args)
     )

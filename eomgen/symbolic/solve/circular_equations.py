@@ -7,11 +7,11 @@ from math import comb
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored
-from eomgen.symbolic.exact.powers import axes_of, power_form
-from eomgen.symbolic.exact.terms import Monomial, Terms, TooLarge, Wave, terms_plus
+from eomgen.symbolic.exact.powers import axes_of, in_powers
+from eomgen.symbolic.exact.terms import Monomial, Terms, terms_plus
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import Owner, argument
 
 PowersIn = Callable[[Expansion, Terms, Node], Iterator[Scalar]]
@@ -20,26 +20,17 @@ PowersIn = Callable[[Expansion, Terms, Node], Iterator[Scalar]]
 
 def wave_free(expansion: Expansion, f: Terms) -> tuple[Terms, dict[Node, Scalar]]:
     """(f with symbols C, S for the cosine and sine of each angle and S^2 eliminated, {symbol: what it stands for})."""
-    groups: dict[Monomial, dict[Wave, Number]] = {}
-    for (monomial, w), c in f.items():
-        groups.setdefault(monomial, {})[w] = c
     axes = axes_of(w for _, w in f)
-    pairs, fresh = [], {}
+    fresh: dict[Node, Scalar] = {}
     for i, axis in enumerate(axes):
-        pair = tuple(expansion.graph.symbol(f"({name} {i})") for name in ("cos", "sin"))
-        for symbol, name in zip(pair, ("cos", "sin"), strict=True):
+        for name in ("cos", "sin"):
+            symbol = expansion.graph.symbol(f"({name} {i})")
             expansion.of(symbol)
             fresh[symbol] = expansion.atoms.wave_node(name, axis)
-        pairs.append(pair)
     total: Terms = {}
-    for monomial, waves in groups.items():
-        polynomial = power_form(waves, axes)
-        if polynomial is None:
-            raise TooLarge("an equation in too many multiples of an angle")
-        for powers, c in polynomial.items():
-            both = zip(pairs, powers, strict=True)
-            added = [(s.index, e) for pair, exponents in both for s, e in zip(pair, exponents, strict=True) if e]
-            total = terms_plus(total, {(tuple(sorted((*monomial, *added))), ()): c})
+    for monomial, powers, c in in_powers(f, axes):
+        added = [(symbol.index, e) for symbol, e in zip(fresh, powers, strict=True) if e]
+        total = terms_plus(total, {(tuple(sorted((*monomial, *added))), ()): c})
     return total, fresh
 
 

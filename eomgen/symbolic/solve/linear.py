@@ -20,6 +20,7 @@ import numpy as np
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
+from eomgen.symbolic.numeric.work import check_patience
 from eomgen.symbolic.solve import cramer
 
 TOGETHER = 4  # unknowns of one set of normal equations
@@ -90,6 +91,7 @@ class Pivots:
         tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
         factors: symbols that may stand in common factors of rows and columns, which are taken out first: parameters for
             which the equations are not singular.
+        steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
     """
 
     rank: Callable[[Scalar], int] = _number_first
@@ -98,6 +100,7 @@ class Pivots:
     sure: int | None = None
     tests: Sequence[Mapping[int, Scalar]] = ()
     factors: Collection[Node] = ()
+    steady: Callable[[Node], bool] = lambda _: True
 
 
 def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
@@ -108,13 +111,19 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
         """Whether W has the entry too: friction alone does not tell the push that it comes from."""
         return j not in late or not is_zero(line.test.get(j, 0))
 
+    def divides(line: _Line, j: int, x: Scalar) -> int:
+        """The rank of an entry as a pivot, no better than that of W's."""
+        if not tested(line, j):
+            return (sure or 0) + 1
+        return max(rank(x), rank(line.test[j])) if j in late else rank(x)
+
     lines = _lines(system, pivots)
     order: list[tuple[int, _Line]] = []
     if sure is not None:
         _eliminate(
             lines,
             order,
-            lambda line, j, x: (rank(x) if tested(line, j) else sure + 1, j in late),
+            lambda line, j, x: (divides(line, j, x), j in late),
             pivots.tolerance,
             worst=(sure, True),
         )
@@ -148,6 +157,7 @@ def _eliminate(
 ) -> None:
     """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
     while (found := _pivot(lines, rank)) is not None:
+        check_patience()
         line, j = found
         if worst is not None and rank(line, j, line.entries[j]) > worst:
             return

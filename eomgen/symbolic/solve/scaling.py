@@ -3,12 +3,13 @@
     a_ij = r_i b_ij s_j,   sum of b_ij y_j = b_i / r_i,   x_j = y_j / s_j
 
 Where the entries of rows and columns differ by plain numbers only, as in a truss with one panel length and one height,
-the numbers b_ij are left, and an elimination stays one of numbers.
+the numbers b_ij are left, and an elimination stays one of numbers. An x_j whose factor vanishes is undetermined by
+these rows, scaled or not; a row whose factor vanishes says nothing, where another one may say the same still.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -55,7 +56,7 @@ class Scaled:
 
 def scaled_solution(system: LinearSystem, pivots: Pivots) -> Solution:
     """By elimination, once the common factors of rows and columns in `pivots.factors` were taken out."""
-    found = without_common_factors(system.rows, system.right, frozenset(pivots.factors), pivots.tests)
+    found = without_common_factors(system.rows, system.right, frozenset(pivots.factors), pivots.tests, pivots.steady)
     scaled = replace(system, rows=found.rows, right=found.right)
     solution = sparse_solution(scaled, replace(pivots, tests=found.tests))
     s = found.columns
@@ -69,18 +70,20 @@ def without_common_factors(
     right: Sequence[Scalar],
     sure: Collection[Node],
     tests: Sequence[Mapping[int, Scalar]] = (),
+    steady: Callable[[Node], bool] = lambda _: True,
 ) -> Scaled:
     """The equations with common factors taken out.
 
     Args:
         sure: the symbols that may stand in what is divided by.
         tests: further rows, of the same number, that are scaled alike.
+        steady: whether an atom of these symbols vanishes nowhere: a row is divided by no other.
     """
     entries = {(i, j): monomial(x) for i, row in enumerate(rows) for j, x in row.items()}
     by_row: dict[int, SymbolPowers] = {}
     by_column: dict[int, SymbolPowers] = {}
     for _ in range(SWEEPS):
-        taken = _taken(entries, 0, by_row, sure) + _taken(entries, 1, by_column, sure)
+        taken = _taken(entries, 0, by_row, sure, steady) + _taken(entries, 1, by_column, sure)
         if not taken:
             break
     r = {i: PowerProduct(1, powers).scalar() for i, powers in by_row.items()}
@@ -129,7 +132,11 @@ def _two_roots(x: Scalar) -> tuple[tuple[Scalar, int], ...]:
 
 
 def _taken(
-    entries: dict[tuple[int, int], PowerProduct], which: int, factors: dict[int, SymbolPowers], sure: Collection[Node]
+    entries: dict[tuple[int, int], PowerProduct],
+    which: int,
+    factors: dict[int, SymbolPowers],
+    sure: Collection[Node],
+    steady: Callable[[Node], bool] = lambda _: True,
 ) -> int:
     """Take the common powers out of every row (which = 0) or column (1); how many there were."""
     lines: dict[int, list[PowerProduct]] = {}
@@ -138,6 +145,8 @@ def _taken(
     count = 0
     for k, line in lines.items():
         for atom, e in _common(line, sure).items():
+            if not steady(atom):
+                continue
             own = factors.setdefault(k, {})
             own[atom] = own.get(atom, 0) + e
             for entry in line:

@@ -101,31 +101,41 @@ class _Search:
             return
 
     def _of_factor(self, expansion: Expansion, f: Terms, fresh: dict[Node, Scalar]) -> Iterator[Scalar]:
-        atoms = expansion.atoms
-        nodes = {atoms.nodes[atom] for monomial, _ in f for atom, _ in monomial if atom >= 0}
+        nodes = {expansion.atoms.nodes[atom] for monomial, _ in f for atom, _ in monomial if atom >= 0}
         holders = {node for node in nodes if depends_on(fresh.get(node, node), (self.x,))}
-        ops = {atoms.opaque[h.index].op for h in holders if h.index in atoms.opaque}
         if holders == {self.x}:
-            yield from self._powers(expansion, f, self.x)
-        elif holders and all(h in fresh for h in holders):
+            return self._powers(expansion, f, self.x)
+        simpler = self._simpler(expansion, f, fresh, holders)
+        return (root for search, equation in simpler for root in search.roots(equation))
+
+    def _simpler(
+        self, expansion: Expansion, f: Terms, fresh: dict[Node, Scalar], holders: set[Node]
+    ) -> Iterator[tuple[_Search, Scalar]]:
+        """Equations that together have the roots of f: of an angle, an exponent, an argument; squared; with each sign.
+
+        Args:
+            holders: the functions in f, and symbols for functions, that hold the unknown.
+        """
+        atoms = expansion.atoms
+        ops = {atoms.opaque[h.index].op for h in holders if h.index in atoms.opaque}
+        once_more = replace(self, squarings=self.squarings - 1)
+        if holders and holders <= fresh.keys():
             for angle, value in vanishing_angles(expansion, f, fresh, holders, self._powers):
-                yield from self.roots(angle - value)
+                yield self, angle - value
         elif ops == {"exp"} and all(h.index in atoms.opaque for h in holders):
             for exponent, value in self._exponentials(expansion, f, holders):
-                yield from self.roots(exponent - value)
+                yield self, exponent - value
         elif "sqrt" in ops and self.squarings:
             root = next(h for h in holders if atoms.is_a(h.index, "sqrt"))
-            squared = substituted((atoms.node(_squared(expansion, f, root)),), fresh)[0]
-            yield from replace(self, squarings=self.squarings - 1).roots(squared)
+            yield once_more, substituted((atoms.node(_squared(expansion, f, root)),), fresh)[0]
         elif "abs" in ops and self.squarings:
             size = next(h for h in holders if atoms.is_a(h.index, "abs"))
             for x in (size.args[0], -size.args[0]):
-                (signed,) = substituted((substituted((atoms.node(f),), {size: x})[0],), fresh)
-                yield from replace(self, squarings=self.squarings - 1).roots(signed)
+                yield once_more, substituted(substituted((atoms.node(f),), {size: x}), fresh)[0]
         elif len(holders) == 1 and ops <= INVERSE.keys():
             (holder,) = holders
             for value in self._powers(expansion, f, holder):
-                yield from self.roots(holder.args[0] - self.x.graph.call(INVERSE[holder.op], value))
+                yield self, holder.args[0] - self.x.graph.call(INVERSE[holder.op], value)
 
     def _powers(self, expansion: Expansion, f: Terms, atom: Node) -> Iterator[Scalar]:
         """The values of the atom of which f = c0 + c1 y + c2 y^2 vanishes, y = atom^k."""

@@ -1,24 +1,21 @@
-"""What every formulation gives: the equations of motion as graph scalars."""
+"""What every formulation gives: the equations of motion of a system, as graph scalars."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.symbols import Symbols
 
-if TYPE_CHECKING:
-    from eomgen.mechanics.equations.system import System
-
 
 @dataclass(frozen=True)
-class Assembly:
+class EquationsOfMotion:
     """The equations of motion: q' = N u + nu,  M a + c = Q + J^T lam,  J a + gamma = 0.
 
     Args:
-        symbols: the symbols in which everything below is written.
+        system: whose motion, loads and ties they are put together from.
         N, nu: kinematic matrix, nq rows of nu entries, and bias, nq.
         M: mass matrix, nu rows of nu entries.
         c: inertia terms left when a = 0, nu.
@@ -31,7 +28,7 @@ class Assembly:
         friction: the part of Q that rubbing contacts make, nu; () where nothing rubs.
     """
 
-    symbols: Symbols
+    system: System
     N: tuple[ScalarRow, ...]
     nu: ScalarRow
     M: tuple[ScalarRow, ...]
@@ -47,16 +44,26 @@ class Assembly:
     accelerations: ScalarRow | None = None
     friction: ScalarRow = ()
 
+    @property
+    def symbols(self) -> Symbols:
+        """The symbols in which everything is written."""
+        return self.system.symbols
+
+    @property
+    def inputs(self) -> dict[str, Scalar]:
+        """The model's own expression of each input."""
+        return self.system.inputs
+
 
 def assembled(
     system: System, *, M: tuple[ScalarRow, ...], c: ScalarRow, Q: ScalarRow, T: Scalar, forcing: ScalarRow | None = None
-) -> Assembly:
+) -> EquationsOfMotion:
     """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
     scope, ties = system.scope, system.ties
     if forcing is None:
         forcing = tuple(force - inertia for force, inertia in zip(Q, c, strict=True))
-    return Assembly(
-        system.symbols,
+    return EquationsOfMotion(
+        system,
         scope.N,
         scope.nu,
         M,

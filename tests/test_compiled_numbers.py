@@ -1,4 +1,4 @@
-"""Exact numbers are compiled ones where quicktions is installed, Python's own elsewhere: nothing else differs."""
+"""Exact numbers and polynomials are compiled where quicktions and python-flint are installed: nothing else differs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ import sympy
 
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
+
+pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parent.parent / "models"
 VERBS = (
@@ -22,31 +24,35 @@ VERBS = (
     ("derive", "four_bar.toml", "--format", "json"),
     ("solve", "seeds/ch22_p1.toml"),
     ("linearize", "double_pendulum.toml"),
+    ("kinematics", "slider_crank.toml"),
 )
 BLOCKED = """
 import sys
 if sys.argv.pop(1) == "without":
-    sys.modules["quicktions"] = None
+    sys.modules |= {"quicktions": None, "flint": None}
+from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.expression.rational import Fraction
-print(Fraction.__module__, file=sys.stderr)
+RationalPolynomial.of({(1,): 2}).factors()
+print(Fraction.__module__, "flint" in sys.modules and sys.modules["flint"] is not None, file=sys.stderr)
 from eomgen.cli import main
 main()
 """
 
 
 def printed(how, verb, model, *more):
-    """(what a verb prints, the module of its rationals) in a process with or without quicktions."""
+    """(what a verb prints, the module of its rationals and whether flint is there), with or without the libraries."""
     command = [sys.executable, "-c", BLOCKED, how, verb, str(MODELS / model), *more]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return done.stdout, done.stderr.splitlines()[0]
 
 
 @pytest.mark.parametrize("words", VERBS, ids=" ".join)
-def test_the_same_bytes_come_out_with_and_without_compiled_rationals(words):
-    """Every verb prints the same text, whatever its rationals are made of."""
+def test_the_same_bytes_come_out_with_and_without_compiled_numbers(words):
+    """Every verb prints the same text, whatever its rationals and polynomials are made of."""
     pytest.importorskip("quicktions")
+    pytest.importorskip("flint")
     (compiled, ours), (plain, theirs) = printed("with", *words), printed("without", *words)
-    assert (ours, theirs) == ("quicktions", "fractions")
+    assert (ours, theirs) == ("quicktions True", "fractions False")
     assert compiled == plain
 
 
@@ -61,18 +67,22 @@ def test_a_fraction_of_the_standard_library_is_taken_as_the_exact_number_that_it
 
 
 def test_sympy_takes_our_rationals_as_exact_numbers():
-    """x/3 with sympy's x holds the rational 1/3, not a float."""
+    """x/3 with sympy's x holds the rational 1/3, not a float, once the package has met sympy."""
+    known_to_sympy()
     form = sympy.Symbol("x") * Fraction(1, 3) + Fraction(1, 7)
     assert not form.atoms(sympy.Float) and form.atoms(sympy.Rational) == {sympy.Rational(1, 3), sympy.Rational(1, 7)}
 
 
-def test_one_module_chooses_the_rationals():
-    """Every other module takes its Fraction from there: two classes side by side would be two answers to `is exact`."""
+def test_one_module_chooses_the_rationals_and_one_the_polynomials():
+    """Every other module takes them from there: two classes side by side would be two answers to `is exact`."""
     package = MODELS.parent / "eomgen"
     wrong = [
         str(path.relative_to(package))
         for path in package.rglob("*.py")
-        if path.name != "rational.py"
-        and re.search(r"^\s*(from|import) (fractions|quicktions)\b", path.read_text(), re.M)
+        for home, libraries in (
+            ("rational.py", "fractions|quicktions"),
+            ("rational_polynomial.py", r"flint|sympy\.polys"),
+        )
+        if path.name != home and re.search(rf"^\s*(from|import) ({libraries})\b", path.read_text(), re.M)
     ]
     assert wrong == []

@@ -1,0 +1,105 @@
+"""What verbs are asked on the command line: options that they share, and the endings of the files that they write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+OTHERS = (".html", ".htm", ".pdf", ".docx", ".doc", ".odt", ".png", ".svg", ".csv", ".npz", ".xlsx", ".ipynb", ".toml")
+"""endings of files of other kinds: no text goes under their name, whatever --format says"""
+
+FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".json": "json"}
+"""ending of a file -> the form of what is written into it"""
+
+PICTURES = (".png", ".svg", ".pdf")
+SOURCES = (".c", ".h", ".py", ".cpp", ".hpp", ".rs", ".f90", ".js", ".mjs", ".m", ".jl", ".zip", ".fmu")
+"""endings of files that `codegen` makes, or might"""
+
+
+def picture(context: click.Context, option: click.Parameter, path: str | None) -> str | None:
+    """The path of a picture, refused before any work where it ends in something else.
+
+    Raises:
+        UsageError: it does.
+    """
+    if path is not None and Path(path).suffix.lower() not in PICTURES:
+        raise click.UsageError(f"no picture can be written as '{path}': endings are {', '.join(PICTURES)}")
+    return path
+
+
+def folder(context: click.Context, option: click.Parameter, path: str | None) -> str | None:
+    """The path of a folder; one that is not there and is called like a file is a mistake.
+
+    Raises:
+        UsageError: it is.
+    """
+    ending = Path(path or "").suffix.lower()
+    if path and ending in (*filter(None, FORMATS), *OTHERS, *SOURCES) and not Path(path).exists():
+        raise click.UsageError(f"'{path}' is called like a file: -o names the folder for the files")
+    return path
+
+
+MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
+JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
+OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
+FORMAT = click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["text", "latex", "markdown", "json"]),
+    help="Form of the result.  [default: by the ending of -o, else text]",
+)
+PLOT = click.option("--plot", type=click.Path(dir_okay=False), callback=picture, help="Draw it as .png, .svg or .pdf.")
+CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
+FOLLOW = click.option(
+    "--follow",
+    multiple=True,
+    metavar="NAME=FILE",
+    help="Drive a coordinate or an input through the samples of a CSV file.",
+)
+
+
+SET = click.option(
+    "--set",
+    "set_",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help='Another value of a parameter: "45", in the unit of the file, or "45 deg".',
+)
+START = click.option(
+    "--start", multiple=True, metavar="NAME=VALUE", help="Another start of a coordinate, rate or speed."
+)
+
+
+STRICT = click.option("--strict", is_flag=True, help="Warnings end in exit 1.")
+
+
+def with_values(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of all that computes."""
+    return SET(START(STRICT(function)))
+
+
+def with_form(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of every result of a model."""
+    return MODEL(JSON(OUTPUT(FORMAT(with_values(function)))))
+
+
+def with_picture(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of what has a picture and a proof, too."""
+    return with_form(PLOT(CERTIFY(function)))
+
+
+def form_asked(wants_json: bool, format_: str | None, output: str | None = None) -> str:
+    """The form that is asked, else that of the ending of the file.
+
+    Raises:
+        UsageError: no form has that ending.
+    """
+    ending = Path(output or "").suffix.lower()
+    asked = "json" if wants_json else format_
+    if ending in OTHERS or (ending not in FORMATS and not asked):
+        known = ", ".join(filter(None, FORMATS))
+        other = "" if ending in OTHERS else "; or say --format"
+        raise click.UsageError(f"'{output}' ends in no form that is known here: {known}{other}")
+    return asked or FORMATS[ending]

@@ -1,0 +1,235 @@
+"""The edge of the command line: whatever leaves a verb becomes a sentence and an exit code, on streams of any kind.
+
+Exit codes: 0 ok, 1 the model is wrong, 2 usage, 3 derivation or run failed, 4 an optional tool is missing, 70 an
+internal error, 74 a failed write, 130 interrupted; 141 where the reader of stdout went away.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import platform
+import signal
+import sys
+import tempfile
+import traceback
+import unicodedata
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import click
+
+from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing, WriteFailed, visible
+from eomgen.symbolic.expression.habits import spelled
+from eomgen.version import SCHEMA_VERSION, __version__
+
+MEMORY, INTERNAL, INTERRUPTED, CLOSED_PIPE = 3, 70, 130, 141
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
+ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")  # those of them that this system has end a run as Ctrl-C does
+LONGEST = 300  # characters of an unexpected error in its sentence
+IN_ASCII = {
+    **{"δ": "d", "·": "*", "×": "x", "−": "-", "–": "-", "—": "-", "…": "...", "→": "->", "≤": "<=", "≥": ">="},
+    **{"≠": "!=", "≈": "~", "√": "sqrt", "∞": "inf", "∂": "d", "°": " deg", "′": "'", "″": "''", "⋅": "*", "±": "+-"},
+    **{"²": "^2", "³": "^3", "½": "1/2", "¼": "1/4", "ᵀ": "^T"},
+}
+
+
+class Placed(Exception):
+    """What went wrong with a model, at its places in the file."""
+
+    def __init__(self, exit_code: int, problems: tuple[Problem, ...]) -> None:
+        self.exit_code, self.problems = exit_code, problems
+
+
+class ReaderGone(Exception):
+    """Nobody reads stdout any more; click takes a BrokenPipeError for its own."""
+
+
+def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
+    """The exit code of a verb; what went wrong in it is told, for machines too where they are asked for."""
+    wants_json = "--json" in words or "--format json" in " ".join(words).replace("=", " ")
+    with _streams(), _signals():
+        try:
+            return _told(*_outcome(verb, words), wants_json)
+        except ReaderGone:
+            return CLOSED_PIPE
+        except WriteFailed as error:
+            say(str(error))
+            return error.exit_code
+        except KeyboardInterrupt:
+            return INTERRUPTED
+
+
+def problems_of(error: EomgenError) -> tuple[Problem, ...]:
+    """What an error tells, one by one."""
+    if isinstance(error, ModelError):
+        return error.problems
+    return (Problem(error.where, error.what, mend=error.mend),)
+
+
+def failure(code: int, problems: Sequence[Problem]) -> str:
+    """What went wrong, as JSON."""
+    error = {"exit_code": code, "problems": [problem.as_dict() for problem in problems]}
+    return json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, indent=1) + "\n"
+
+
+def say(line: str) -> None:
+    """A line on stderr."""
+    sys.stderr.write(f"{line}\n")
+
+
+def in_ascii(character: str) -> str:
+    """What stands for a character where there are only others: dtheta for δθ."""
+    if character in IN_ASCII:
+        return IN_ASCII[character]
+    if greek := spelled(character):
+        return greek
+    plain = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return plain or json.dumps(character)[1:-1]
+
+
+def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[Problem, ...], str]:
+    """(exit code, what went wrong, as people read it) of a verb."""
+    try:
+        return verb() or 0, (), ""
+    except click.ClickException as error:
+        error.show(sys.stderr)
+        return error.exit_code, (Problem("", error.format_message()),), ""
+    except (Placed, EomgenError) as error:
+        found = error.problems if isinstance(error, Placed) else problems_of(error)
+        code = error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        code, found = INTERRUPTED, (Problem("", "interrupted"),)
+    except ReaderGone:
+        raise
+    except MemoryError:
+        code, found = MEMORY, (Problem("", "there is not enough memory for that", mend="ask for less"),)
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] == "eomgen":
+            return _internal(error, words)
+        missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
+        code, found = missing.exit_code, problems_of(missing)
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            return _internal(error, words)
+        code, found = (
+            WriteFailed.exit_code,
+            (Problem(str(error.filename or ""), f"cannot be written: {error.strerror}"),),
+        )
+    except Exception as error:  # the one place where whatever is left is told as what it is: a mistake of ours
+        return _internal(error, words)
+    return code, found, "\n\n".join(map(str, found))
+
+
+def _internal(error: Exception, words: Sequence[str]) -> tuple[int, tuple[Problem, ...], str]:
+    """A mistake of ours: it says so, and its report can be sent."""
+    what = f"internal error: {type(error).__name__}: {error}".splitlines()[0][:LONGEST]
+    told = "".join(traceback.format_exception(error))
+    about = f"eomgen {__version__}, Python {platform.python_version()}, {platform.platform()}"
+    mend = "this is a mistake of eomgen, not of your model; "
+    try:
+        handle, path = tempfile.mkstemp(prefix="eomgen-report-", suffix=".txt")
+        with open(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+            file.write(f"{about}\neomgen {' '.join(words)}\n\n{told}")
+        mend += f"please send the report {path} and the model file"
+    except OSError as full:
+        mend += f"its report cannot be written ({full.strerror}), it is: {told}"
+    problem = Problem("", what, mend=mend)
+    return INTERNAL, (problem,), str(problem)
+
+
+def _told(code: int, problems: tuple[Problem, ...], text: str, wants_json: bool) -> int:
+    """The problems on stderr, and for machines on stdout where they are asked for."""
+    if text:
+        say(text)
+    if problems and wants_json:
+        sys.stdout.write(failure(code, problems))
+    return code
+
+
+class _Shown:
+    """A text stream that is written at once, and shows everything: it is never closed, lacks no letter, hides nothing.
+
+    Raises:
+        WriteFailed: it is closed or full (only where it is needed; what cannot be said on stderr is left out).
+        ReaderGone: its reader went away, likewise.
+    """
+
+    encoding, errors = "utf-8", "strict"  # what it takes, not what is below
+
+    def __init__(self, stream: Any, name: str, needed: bool) -> None:
+        self._stream, self._name, self._needed = stream, name, needed
+
+    def write(self, text: str) -> int:
+        if not isinstance(text, str):
+            raise TypeError(f"a text is written, not {type(text).__name__}")
+        try:
+            if self._stream is None:
+                raise OSError(errno.EBADF, "it is closed")
+            self._stream.write(self._letters(visible(text)))
+            self._stream.flush()
+        except (OSError, ValueError) as error:
+            self._give_up()
+            if isinstance(error, BrokenPipeError) and self._needed:
+                raise ReaderGone from None
+            if text and self._needed:
+                why = getattr(error, "strerror", None) or error
+                raise WriteFailed(f"{self._name} cannot be written: {why}") from None
+        return len(text)
+
+    def flush(self) -> None:
+        """Everything is written already."""
+
+    def isatty(self) -> bool:
+        """Whether somebody looks on."""
+        return self._stream is not None and self._stream.isatty()
+
+    def _letters(self, text: str) -> str:
+        below = self._stream.encoding or "utf-8"
+        lacking = {c for c in set(text) if not c.isascii() and c.encode(below, "ignore") == b""}
+        return text.translate({ord(c): in_ascii(c) for c in lacking})
+
+    def _give_up(self) -> None:
+        """What is left in its buffer goes nowhere, at the end of the process too."""
+        with suppress(OSError, ValueError, AttributeError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@contextmanager
+def _streams() -> Iterator[None]:
+    """stdout and stderr that show everything; the numbers 0, 1, 2 are never those of a file that a verb opens."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+    before = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = _Shown(sys.stdout, "stdout", True), _Shown(sys.stderr, "stderr", False)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+@contextmanager
+def _signals() -> Iterator[None]:
+    """TERM and its like are what Ctrl-C is; those that are ignored stay so. In a thread nothing is changed."""
+
+    def interrupted(number: int, frame: Any) -> None:
+        raise KeyboardInterrupt
+
+    before = {}
+    with suppress(ValueError):
+        for each in (getattr(signal, name) for name in ENDING if hasattr(signal, name)):
+            if signal.getsignal(each) is signal.SIG_DFL:
+                before[each] = signal.signal(each, interrupted)
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)

@@ -1,0 +1,225 @@
+"""Files, whole or not at all: written beside, synced, renamed; read up to a length. Every room reads and writes here.
+
+While a file is written INT and TERM wait (POSIX), so that nothing is left behind. What a killed process left, one
+folder `.eomgen-*` beside its target, the next write into the same folder takes away.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import secrets
+import select
+import shutil
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO
+
+from eomgen.errors import WriteFailed
+
+try:
+    import fcntl
+except ImportError:  # Windows has no locks of this kind: there age tells what nobody uses
+    fcntl = None  # type: ignore[assignment]
+
+Content = str | bytes | Callable[[IO[bytes]], object]
+
+PREFIX = ".eomgen-"
+LEFT = re.compile(re.escape(PREFIX) + "[0-9a-f]{16}")
+HOUR = 3600.0  # seconds after which a folder beside is nobody's, where locks cannot tell
+SILENCE = 30.0  # seconds after which nothing more is awaited of a pipe
+TRIES = 10  # another process may take a new folder away before it is locked
+WAITING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
+
+def write(path: str | Path, content: Content) -> None:
+    """A file, its folder made if it is not there; a pipe or a terminal is written as it is.
+
+    Args:
+        content: a text (in UTF-8), bytes, or what fills an open file.
+    Raises:
+        WriteFailed: it cannot be written; what was there before is then still there.
+    """
+    try:
+        if is_stream(path):
+            with open(path, "wb") as file:
+                _fill(file, content)
+            return
+        target = Path(os.path.realpath(path))
+        _write_all(target.parent, {target.name: content})
+    except OSError as error:
+        raise WriteFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+
+
+def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Path]:
+    """Several files into a folder, which is made if it is not there; all are whole before the first takes its place.
+
+    Args:
+        contents: by path inside the folder.
+    Raises:
+        WriteFailed: one cannot be written.
+    """
+    try:
+        return _write_all(Path(directory), contents)
+    except OSError as error:
+        raise WriteFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
+
+
+def read(path: str | Path, most: int) -> bytes:
+    """What stands in a file, comes through a pipe or out of a device: so many bytes and one more, which says "longer".
+
+    Raises:
+        OSError: it cannot be read, or a pipe stays silent.
+    """
+    if not (hasattr(os, "O_NONBLOCK") and is_stream(path)):
+        with open(path, "rb") as file:
+            return file.read(most + 1)
+    handle, parts, size = os.open(path, os.O_RDONLY | os.O_NONBLOCK), [], 0
+    try:
+        while size <= most:
+            if not select.select([handle], [], [], SILENCE)[0]:
+                raise TimeoutError(errno.ETIMEDOUT, f"nothing came through it for {SILENCE:g} s")
+            part = os.read(handle, most + 1 - size)
+            if not part:
+                break
+            parts.append(part)
+            size += len(part)
+        return b"".join(parts)
+    finally:
+        os.close(handle)
+
+
+def is_stream(path: str | Path) -> bool:
+    """A pipe, a terminal, a device: nothing can be moved into its place."""
+    return os.path.exists(path) and not os.path.isfile(path)
+
+
+@contextmanager
+def beside(folder: Path) -> Iterator[Path]:
+    """A new folder `.eomgen-*` in another one, gone at the end; those of processes that were killed go first."""
+    _clear(folder)
+    for _ in range(TRIES):
+        place = folder / (PREFIX + secrets.token_hex(8))
+        try:
+            place.mkdir(mode=0o700)
+            lock = _lock(place)
+        except (FileNotFoundError, BlockingIOError):
+            if not folder.is_dir():
+                raise
+            continue
+        except BaseException:
+            shutil.rmtree(place, ignore_errors=True)
+            raise
+        if place.is_dir():
+            break
+    try:
+        yield place
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def _write_all(directory: Path, contents: Mapping[str, Content]) -> list[Path]:
+    with _undisturbed(), _made(directory), beside(directory) as place:
+        for name, content in contents.items():
+            (place / name).parent.mkdir(exist_ok=True)
+            with open(place / name, "wb") as file:
+                _fill(file, content)
+                file.flush()
+                os.fsync(file.fileno())
+        for name in contents:
+            target = directory / name
+            target.parent.mkdir(exist_ok=True)
+            if target.exists():
+                shutil.copymode(target, place / name)
+            os.replace(place / name, target)
+        _sync(directory)
+    return [directory / name for name in contents]
+
+
+def _fill(file: IO[bytes], content: Content) -> None:
+    if callable(content):
+        content(file)
+    else:
+        file.write(content if isinstance(content, bytes) else content.encode("utf-8", "backslashreplace"))
+
+
+@contextmanager
+def _made(directory: Path) -> Iterator[None]:
+    """The folder is there; where what follows fails those that were made for it go again."""
+    new = [each for each in (directory, *directory.parents) if not each.exists()]
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException:
+        for each in new:
+            with suppress(OSError):
+                each.rmdir()
+        raise
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """INT, TERM and HUP wait until the end. Windows has no such thing: what is left there goes with the next write."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    try:
+        signal.pthread_sigmask(signal.SIG_BLOCK, WAITING)
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _clear(folder: Path) -> None:
+    """Takes away what nobody holds."""
+    with suppress(OSError):
+        for left in folder.iterdir():
+            if LEFT.fullmatch(left.name) and left.is_dir() and _is_left(left):
+                shutil.rmtree(left, ignore_errors=True)
+
+
+def _is_left(place: Path) -> bool:
+    """Whether its process has ended: nobody holds its lock."""
+    try:
+        if fcntl is None:
+            return time.time() - place.stat().st_mtime > HOUR
+        lock = _lock(place)
+    except OSError:
+        return False
+    if lock is not None:
+        os.close(lock)
+    return True
+
+
+def _lock(place: Path) -> int | None:
+    """The lock on a folder, which ends with the process that holds it; None where there are no locks.
+
+    Raises:
+        BlockingIOError: another process holds it.
+    """
+    if fcntl is None:
+        return None
+    handle = os.open(place, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BaseException:
+        os.close(handle)
+        raise
+    return handle
+
+
+def _sync(directory: Path) -> None:
+    """The names of a folder reach the disk; where folders cannot be opened they do so by themselves."""
+    with suppress(OSError):
+        handle = os.open(directory, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

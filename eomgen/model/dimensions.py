@@ -1,0 +1,199 @@
+"""Dimensions: every sum, every function and every field of the model is an equation between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from eomgen.model.catalog import Catalog
+from eomgen.model.fields import Leaf, WrittenEquation, named
+from eomgen.model.findings import Finding, whereabouts
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.symbolic.expression.dimensions import (
+    NUMBER,
+    SECOND,
+    TIME,
+    Clash,
+    Dimension,
+    Inference,
+    Walk,
+    dimension_of_unit,
+)
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.units import Unit, parse_unit
+
+PER_NAME = ("coordinate", "coordinate or speed")
+RATES = {"start": 0, "near": 0, "motion": 0, "speed": 1, "rate": 1, "acceleration": 2}
+"""The fields of a coordinate: how often it is differentiated in each."""
+
+
+def dimensions(catalog: Catalog) -> Iterator[Finding]:
+    """Terms whose declared units do not fit one another, or the place in which they stand."""
+    yield from inferred(catalog).errors
+
+
+@dataclass(frozen=True)
+class Inferred:
+    """What is known of the dimensions of a model.
+
+    Args:
+        errors: where declared units contradict one another.
+        warnings: where inferred ones do.
+        names: the dimension of every name, with its unknowns.
+    """
+
+    errors: tuple[Finding, ...]
+    warnings: tuple[Finding, ...]
+    names: Names
+    found: dict[str, Dimension]
+
+
+class Names:
+    """The dimension of each name of a model: declared, or an unknown that is inferred."""
+
+    def __init__(self, catalog: Catalog) -> None:
+        self.inference = Inference()
+        self.declared: dict[str, Unit] = {}
+        for table in ("parameters", "coordinates", "inputs", "unknowns"):
+            parts = catalog.table(table).items()
+            self.declared |= {name: part.unit for name, part in parts if part is not None and part.unit is not None}
+        self._known = {name: dimension_of_unit(unit) for name, unit in self.declared.items()}
+        turns = (getattr(body.joint, "omega", None) for body in catalog.table("bodies").values() if body is not None)
+        self._known |= {name: SECOND.raised(-1) for names in turns for name in names or ()}
+        self._known |= {"t": SECOND, "pi": NUMBER}
+        self.moves = frozenset(catalog.table("coordinates"))
+        self.parameters = frozenset(catalog.table("parameters").keys() & self.declared)
+
+    def of(self, name: str, also: dict[str, Dimension] | None = None) -> Dimension:
+        """Of a name, a prime for each derivative by time."""
+        base = name.rstrip("'")
+        known = {**self._known, **(also or {})}.get(base, Inference.named(base))
+        return known.times(SECOND, len(base) - len(name))
+
+    def of_call(self, call: Call) -> Dimension | None:
+        """Of a function of the motion; None where a tie's gap decides it, or it is none."""
+        function = FUNCTIONS.get(call.name)
+        if function is None or max(function.per, default=-1) >= len(call.args):
+            return None
+        found = dimension_of_unit(function.dimension)
+        for k in function.per:
+            argument, kind = call.args[k], function.kinds[k]
+            if kind not in PER_NAME or not isinstance(argument, Reference):
+                return None
+            rate = kind == "coordinate or speed" and argument.name in self.moves
+            found = found.times(self.of(argument.name + "'" * rate), -1)
+        return found
+
+    def is_declared(self, name: str) -> bool:
+        """By the file itself: what a joint implies of its speeds may hide a factor 1: `couple = ["-w1", 0, 0]`."""
+        return name.rstrip("'") in {*self.declared, *TIME}
+
+
+def inferred(catalog: Catalog) -> Inferred:
+    """Every expression of a model walked through once."""
+    names, sound = Names(catalog), []
+    errors: list[Finding] = []
+    warnings: list[Finding] = []
+    for leaf in catalog.leaves:
+        clashes = list(_clashes(catalog, leaf, names, strict=False))[:1]  # what follows from it is no news
+        for clash in clashes:
+            certain = bool(clash.names) and all(names.is_declared(name) for name in clash.names)
+            (errors if certain else warnings).append(_finding(catalog, leaf, clash, names))
+        if not clashes:
+            sound.append(leaf)
+    found = {name: names.inference.reduced(names.of(name)) for name in catalog.symbols if name not in ("t", "pi")}
+    strict = (
+        _finding(catalog, leaf, clash, names) for leaf in sound for clash in _clashes(catalog, leaf, names, strict=True)
+    )
+    return Inferred(tuple(errors), (*warnings, *strict), names, found)
+
+
+def inferred_units(model: Any) -> dict[str, str]:
+    """{name: unit} of what has none in the file, where the expressions say what it must be."""
+    found = inferred(Catalog(model, ()))
+    return {
+        name: str(dimension)
+        for name, dimension in found.found.items()
+        if name not in found.names.declared and not dimension.unknowns
+    }
+
+
+def _clashes(catalog: Catalog, leaf: Leaf, names: Names, *, strict: bool) -> Iterator[Clash]:
+    """What does not fit in one value of the model."""
+    value, rule = leaf.value, leaf.rule
+    also = _also(getattr(rule, "also_in", "1")) if getattr(rule, "also", ()) else {}
+
+    def walk() -> Walk:
+        known = {name: also[name.rstrip("'")] for name in also}
+        return Walk(
+            lambda name: names.of(name, known),
+            names.inference,
+            names.of_call,
+            names.parameters,
+            moves=names.moves,
+            strict=strict,
+        )
+
+    if isinstance(value, WrittenEquation):
+        first = walk()
+        left = first.of(value.left, value.text)
+        yield from first.clashes
+        second = walk()
+        second.of(value.right, value.text, left)
+        yield from second.clashes
+    elif isinstance(value, Expression):
+        one = walk()
+        one.of(value, needed=_needed(leaf, names))
+        yield from one.clashes
+
+
+def _also(unit: str) -> dict[str, Dimension]:
+    return {"r": _dimension(unit)}
+
+
+@cache
+def _dimension(unit: str) -> Dimension:
+    return dimension_of_unit(parse_unit(unit))
+
+
+def _needed(leaf: Leaf, names: Names) -> Dimension | None:
+    """What a field needs: by its rule, its part's unit, the coordinate to which it belongs; None: anything."""
+    table, rule, part = leaf.path[0], leaf.rule, leaf.part
+    key = str(leaf.path[-1])
+    if table == "coordinates" and key in RATES:
+        return names.of(str(leaf.path[1]) + "'" * RATES[key])
+    if table in ("parameters", "inputs") and len(leaf.path) < 4:
+        return names.of(str(leaf.path[1]))
+    if table == "speeds":
+        return names.of(str(leaf.path[1]))
+    if table == "outputs":
+        return None if part.unit is None else dimension_of_unit(part.unit)
+    if getattr(rule, "same_as", ""):
+        return names.of(getattr(part, rule.same_as) or "")
+    if getattr(rule, "works_on", ""):
+        return _dimension("J").times(names.of(getattr(part, rule.works_on) or ""), -1)
+    unit = getattr(rule, "unit", None)
+    return None if unit is None else _dimension(unit)
+
+
+def _finding(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Finding:
+    what, mend = clash.what, clash.mend
+    if clash.other is None and not clash.in_function:
+        name = clash.one.text
+        kind = catalog.symbols.get(name)
+        unit = names.declared[name].text if name in names.declared else str(clash.one_is)
+        whole = f"{kind} '{name}'" if kind is not None else f"'{name}'"
+        needed = _own_text(leaf) or str(clash.needed)
+        what = f"{whole} is in {unit}, but {whereabouts(leaf.path)} is in {named(needed)}"
+        mend = mend or ("" if kind is None else f"give another {kind}, or mend its unit")
+    other = None if clash.other is None else (clash.other.column, len(clash.other.text))
+    return Finding(leaf.path, what, mend, clash.one.column, len(clash.one.text), beside=other)
+
+
+def _own_text(leaf: Leaf) -> str | None:
+    """The unit of a field as its rule, or its part, writes it."""
+    if leaf.path[0] == "outputs" or (leaf.path[0] == "coordinates" and leaf.path[-1] in ("start", "near", "motion")):
+        return None if leaf.part is None or leaf.part.unit is None else str(leaf.part.unit.text)
+    return getattr(leaf.rule, "unit", None)

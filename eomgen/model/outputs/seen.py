@@ -1,0 +1,108 @@
+"""A point as it is seen from a body: r = R^T (p - p_body), in that body's axes or in those of another one.
+
+A vector law gives two output functions: its components, and its magnitude.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from eomgen.model.outputs.base import OutputFunction, along, component, names_of
+from eomgen.model.outputs.scene import GROUND, Scene, Trial
+from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.spatial import (
+    AnyScalar,
+    Matrix,
+    Numbers,
+    Vector,
+    apply,
+    dot,
+    matrix_of,
+    minus,
+    transposed,
+    vector_of,
+)
+
+
+def seen_from(scene: Scene, point: str, frame: str = GROUND) -> Vector:
+    """The place of a point in a body's frame and axes."""
+    place = scene.position(point)
+    if frame not in scene.bodies:
+        return place
+    return apply(transposed(scene.axes(frame)), minus(place, scene.origin(frame)))
+
+
+def turned(scene: Scene, seen: Vector, frame: str, axes: str) -> Vector:
+    """From the axes of one body into those of another; "": they stay."""
+    if axes in ("", frame):
+        return seen
+    return apply(transposed(scene.axes(axes)), apply(scene.axes(frame), seen))
+
+
+def size(scene: Scene, v: Vector) -> AnyScalar:
+    """|v| at the state."""
+    (v,) = scene.here(v)
+    return sqrt(dot(v, v))
+
+
+def axes_at(trial: Trial, body: str, order: int = 0) -> Matrix:
+    """R of a body in numbers, or its first or second rate by differences."""
+    flat = trial.along([x for row in trial.scene.axes(body) for x in row])[order]
+    return matrix_of((flat[0:3], flat[3:6], flat[6:9]))
+
+
+def differences(trial: Trial, point: str, frame: str = GROUND, axes: str = "", *, order: int) -> Numbers:
+    """Velocity (order 1) or acceleration (2) of a point as differences of its place."""
+    rates = vector_of(trial.along(seen_from(trial.scene, point, frame))[order])
+    if axes in ("", frame):
+        return rates
+    return apply(transposed(axes_at(trial, axes)), apply(axes_at(trial, frame), rates))
+
+
+def length(trial: Trial, v: Numbers) -> Any:
+    """|v| of numbers."""
+    return trial.root(dot(v, v))
+
+
+VectorOf = Callable[..., Vector]
+SeenVector = Callable[..., Numbers]
+POINT = ("point", "body", "body")
+
+
+def components(
+    names: str, unit: str, gives: str, law: VectorOf, seen: SeenVector, kinds: tuple[str, ...] = POINT, *, least: int
+) -> OutputFunction:
+    """The components of a vector.
+
+    Args:
+        names: with a star for the axis.
+        law: of a scene and the names that stand in the call.
+        seen: the same of a trial: the second way.
+    """
+    return OutputFunction(
+        names=along(names),
+        kinds=kinds,
+        least=least,
+        unit=unit,
+        gives=gives,
+        value=lambda scene, call: law(scene, *names_of(call))[component(call)],
+        second=lambda trial, call: seen(trial, *names_of(call))[component(call)],
+        moves=True,
+    )
+
+
+def magnitude(
+    name: str, unit: str, gives: str, law: VectorOf, seen: SeenVector, kinds: tuple[str, ...] = POINT[:2], *, least: int
+) -> OutputFunction:
+    """|v| of a vector, its arguments as of `components`."""
+    return OutputFunction(
+        names=(name,),
+        kinds=kinds,
+        least=least,
+        unit=unit,
+        gives=gives,
+        value=lambda scene, call: size(scene, law(scene, *names_of(call))),
+        second=lambda trial, call: length(trial, seen(trial, *names_of(call))),
+        moves=True,
+    )

@@ -1,0 +1,151 @@
+"""Model -> what is allowed and hardly meant: an angle of 90 rad, weight that rises, a stiffness below zero, ..."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from eomgen.model.arithmetic import AnyNumber, in_order, value_of
+from eomgen.model.catalog import Catalog, owner_of
+from eomgen.model.dimensions import inferred
+from eomgen.model.fields import Leaf, NameRule
+from eomgen.model.findings import Finding, whereabouts
+from eomgen.model.part import leaves_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.numeric.tolerances import MASSES_APART
+
+TURN = 2 * math.pi
+
+
+def warnings_of(model: Any) -> tuple[Finding, ...]:
+    """What a user should look at again."""
+    catalog = Catalog(model, ())
+    values = _assumed(catalog)
+    checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
+    more = (_unheld(catalog), _masses(catalog, values))
+    return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
+
+
+def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
+    """The value of every parameter; one that nobody gave is taken as 1, for the sake of its sign."""
+    values: dict[str, AnyNumber] = {"pi": math.pi}
+    given = {name: part.value for name, part in catalog.table("parameters").items()}
+    for name in in_order(given)[0]:
+        found = None if given[name] is None else value_of(given[name], values)
+        values[name] = 1 if found is None else found
+    return values
+
+
+def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """Plain numbers of more than a turn among the terms of an angle."""
+    for leaf, expression in catalog.expressions:
+        if getattr(leaf.rule, "unit", None) != "rad":
+            continue
+        for number, column in _terms(expression):
+            size = abs(number)
+            if size > TURN:
+                what = f"{size:g} in {whereabouts(leaf.path)} is {size:g} rad: {size / TURN:.1f} turns"
+                yield Finding(leaf.path, what, f"for degrees write {_of_pi(size)}", column, len(f"{size:g}"))
+
+
+def _terms(expression: Expression) -> Iterator[tuple[float, int]]:
+    """(number, column) of the terms of a sum that are plain numbers."""
+    stack: list[tuple[list[tuple[float, int]], bool]] = []
+    for (kind, what), column in zip(expression.code, expression.columns, strict=True):
+        if kind == "number":
+            stack.append(([(float(what), column)] if column >= 0 else [], True))
+        elif kind in ("name", "call"):
+            stack.append(([], False))
+        elif kind in ("+", "-"):
+            (b, _), (a, _) = stack.pop(), stack.pop()
+            stack.append(([*a, *b], False))
+        else:
+            count = what[1] if kind == "function" else 1 if kind in ("neg", "sampled") else 2
+            inner = [stack.pop() for _ in range(count)]
+            stack.append((inner[0][0] if kind == "neg" else [], False))
+    yield from stack[0][0]
+
+
+def _of_pi(degrees: float) -> str:
+    """90 degrees as pi/2."""
+    share = math.gcd(int(degrees), 180) if degrees == int(degrees) else 0
+    if not share:
+        return f"{degrees:g}*pi/180"
+    above, below = int(degrees) // share, 180 // share
+    return f"{'' if above == 1 else f'{above}*'}pi{'' if below == 1 else f'/{below}'}"
+
+
+def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """What drives apart, or gives energy, where it ought to hold or take it."""
+    for leaf, expression in catalog.expressions:
+        law = getattr(leaf.rule, "usually", "")
+        number = value_of(expression, values) if law else None
+        if number is not None and number < 0:
+            what = f"'{leaf.path[-1]}' of {whereabouts(leaf.path[:2])} is below zero: {law}"
+            yield Finding(leaf.path, what, "leave out the minus, if it is meant to resist")
+
+
+def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """Gravity upward."""
+    for leaf in catalog.leaves:
+        if getattr(leaf.rule, "downward", False) and not leaf.part.axis_down:
+            parts = [value_of(component, values) for component in leaf.value]
+            *across, up = parts
+            if up is not None and up > 0 and not any(across):
+                axis = "xyz"[len(parts) - 1]
+                mend = f'write "-{leaf.value[-1].text}"; where {axis} points down, axis_down = true says so'
+                yield Finding(leaf.path, f"gravity pulls upward, along {axis}", mend)
+
+
+def _unheld(catalog: Catalog) -> Iterator[Finding]:
+    """A body without a joint that no tie touches, in a model that moves by coordinates."""
+    if not catalog.table("coordinates"):
+        return
+    held = set()
+    for name, tie in catalog.table("constraints").items():
+        held |= {_body(leaf) for leaf in leaves_of(tie, ("constraints", name)) if isinstance(leaf.rule, NameRule)}
+        held |= {
+            argument.name.partition(".")[0]
+            for leaf in leaves_of(tie, ("constraints", name))
+            if isinstance(leaf.value, Expression)
+            for call in leaf.value.calls
+            for argument in call.args
+            if not isinstance(argument, Expression)
+        }
+    held |= {body.joint.parent for body in catalog.table("bodies").values() if body.joint is not None}
+    for name, body in catalog.table("bodies").items():
+        if body.joint is None and name not in held:
+            what = f"body '{name}' has no joint, and no tie holds it"
+            mend = 'give it a joint: joint = { kind = "revolute", on = ..., angle = ... }'
+            yield Finding(("bodies", name), what, mend, key=True)
+
+
+def _body(leaf: Leaf) -> str:
+    return owner_of(leaf.value) or str(leaf.value)
+
+
+def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """Masses so far apart that doubles do not see the one beside the other."""
+    found = []
+    for leaf, expression in catalog.expressions:
+        if (
+            getattr(leaf.rule, "unit", None) == "kg"
+            and leaf.path[0] == "bodies"
+            and expression.names <= _valued(catalog)
+        ):
+            number = value_of(expression, values)
+            if number is not None and number > 0:
+                found.append((float(number), leaf))
+    if not found:
+        return
+    (least, _), (most, leaf) = min(found, key=lambda pair: pair[0]), max(found, key=lambda pair: pair[0])
+    if most > MASSES_APART * least:
+        what = (
+            f"{whereabouts(leaf.path)} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
+        )
+        yield Finding(leaf.path, what, "look at the units; what does not move needs no body")
+
+
+def _valued(catalog: Catalog) -> set[str]:
+    return {name for name, part in catalog.table("parameters").items() if part.value is not None} | {"pi"}

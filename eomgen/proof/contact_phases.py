@@ -1,0 +1,271 @@
+"""The phases of a run -> checks: what its contacts do within each, and that nothing but their impulses lies between.
+
+    closed, can end or rubs    push N >= 0             open     gap >= 0
+    sticks                     |F| <= mu |N|           slides   sense v >= 0
+    from phase to phase        dP_k = sum_b m dv . dv/du_k + I dw . dw/du_k + armature ds' ds'/du_k
+                               dP in span(ties) + cone(contacts that touch and are at rest after),   J u+ + sigma >= 0
+
+The momenta are those of the bodies, by their twists; M, the impulses and the functions that end a phase are not used.
+N and F are the columns of reactions. An impact is plastic and without friction, as the model file's manual says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import nnls
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.mechanics.bodies.armature import armatures
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import velocity_of
+from eomgen.mechanics.constraints.ties import Row, rows_of_tie
+from eomgen.mechanics.equations.system import System
+from eomgen.model.contacts import Contact
+from eomgen.proof.check import Check
+from eomgen.proof.tally import Tally
+from eomgen.simulation.contact_events import sliding_velocity
+from eomgen.simulation.phase_model import PhaseModel, Values, slack_name
+from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.simulation.result import Phase
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import apply
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import OPEN_GAP, SUMMED, UNBALANCED
+
+STATES = 100  # of a phase that are looked at
+
+
+# -- within a phase --------------------------------------------------------------------------------
+
+
+def contacts_do_as_told(phases: Sequence[Phase]) -> Iterator[Check]:
+    """In every phase each contact is as the phase takes it; none where there are no contacts."""
+    tally = Tally("contacts press, grip, slide or stand apart as their phase takes them", "reactions of the bodies")
+    for phase in phases:
+        seen = _Seen(phase)
+        for contact in phase.model.contacts:
+            tally.add(f"{contact.words} from {phase.start:.6g} s", partial(seen.wrong, contact))
+    return tally.checks()
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """States of one phase."""
+
+    phase: Phase
+
+    @property
+    def model(self) -> PhaseModel:
+        found: PhaseModel = self.phase.model
+        return found
+
+    @cached_property
+    def track(self) -> tuple[np.ndarray, np.ndarray]:
+        assert self.phase.track is not None
+        t, x = self.phase.track
+        places = np.unique(np.linspace(0, len(t) - 1, STATES).astype(int))
+        return t[places], x[places]
+
+    def wrong(self, contact: Contact) -> str:
+        """What a contact does otherwise than its phase takes it, or "".
+
+        Raises:
+            NoValue: its forces have no single value.
+        """
+        mode = self.model.watch.mode(contact)
+        if not mode.closed:
+            return self._least("it is passed through by", self._gap(contact), self._size("places"), "m")
+        normals = self._forces(contact, ("n", "n 1", "n 2", "tension"))
+        pressed = mode.push * normals if contact.unilateral or (mode.sense != 0 and not contact.round) else normals[:0]
+        wrong = self._least("it would have to pull by", pressed, self._most, "N")
+        if contact.mu is None or wrong:
+            return wrong
+        system = self.model.system
+        if mode.sense == 0:
+            grip = self._along(system.scope.value(contact.mu)) * np.hypot.reduce(normals, axis=0)
+            held = np.hypot.reduce(self._forces(contact, ("t", "s")), axis=0)
+            return self._least("it sticks beyond its grip by", grip - held, self._most, "N")
+        v = (mode.sense or 0) * self._along(sliding_velocity(system, contact))
+        return self._least("it slides against its sense by", v, self._size("rates"), "m/s")
+
+    def _least(self, what: str, values: np.ndarray, size: float, unit: str) -> str:
+        least = float(np.min(values, initial=0.0))
+        return f"{what} {-least:.3g} {unit}" if least < -OPEN_GAP * size else ""
+
+    def _along(self, scalar: Scalar) -> np.ndarray:
+        t, x = self.track
+        functions = self.model.functions
+        return functions.kinematic((scalar,)).many(t, functions.inner(x), self.model.p)[:, 0]
+
+    def _gap(self, contact: Contact) -> np.ndarray:
+        gap = rows_of_tie(self.model.system.motion, contact.name)[0].gap
+        if gap is not None:
+            return self._along(gap)
+        return self.model.functions.slacks(self.track[1])[:, self.model.loose.index(contact.name)]
+
+    def _size(self, what: str) -> float:
+        places = self.model.functions.places
+        x = self.track[1]
+        return max(1.0, float(np.max(np.abs(x[:, :places] if what == "places" else x[:, places:]), initial=0.0)))
+
+    @cached_property
+    def _columns(self) -> tuple[tuple[str, ...], np.ndarray]:
+        t, x = self.track
+        columns = ReactionColumns(self.model.reactions, self.model.functions.rhs)
+        return columns.names, columns.along(t, self.model.functions.inner(x), self.model.p)
+
+    @property
+    def _most(self) -> float:
+        return float(np.nanmax(np.abs(self._columns[1]), initial=0.0))
+
+    def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
+        """Components of a contact's force, k x n."""
+        kind = "joint" if contact.of_joint and labels[0] == "n" else "tie"
+        mine = [c for c in self.model.reactions.components if c.owner == contact.name and c.kind == kind]
+        names, found = self._columns
+        asked = [names.index(c.name) for c in mine if c.label in labels]
+        if not asked or np.isnan(found[:, asked]).all():
+            raise NoValue("its force has no single value")
+        known = found[:, asked]
+        return np.asarray(known[np.isfinite(known).all(axis=1)].T)
+
+
+# -- from phase to phase ---------------------------------------------------------------------------
+
+
+def changes_follow_impulses(phases: Sequence[Phase], apart: System, contacts: Sequence[str]) -> Iterator[Check]:
+    """At every change of phase only ties, and contacts that touch, give momentum; none where nothing changes.
+
+    Args:
+        apart: the model without its contacts that can end.
+        contacts: their names.
+    """
+    tally = Tally("changes of contact follow impulses that only push", "momenta of the bodies")
+    for before, after in pairwise(phases):
+        bodies = _Bodies(apart, tuple(contacts), before, after)
+        tally.add(f"t = {after.start:.6g} s", bodies.wrong)
+    return tally.checks()
+
+
+@dataclass(frozen=True)
+class _Bodies:
+    """The bodies at one change of phase, their contacts taken away."""
+
+    system: System
+    contacts: tuple[str, ...]
+    before: Phase
+    after: Phase
+
+    def wrong(self) -> str:
+        """What the change does beyond the law of impact, or ""."""
+        q = len(self.system.symbols.q)
+        early, late = self._state(self._end), self._state(self._begin)
+        size = max(1.0, float(np.max(np.abs([early, late]))))
+        if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > OPEN_GAP * size:
+            return "a coordinate jumps"
+        pushes, frees = [], [J for J, _ in self._rows_at(self.system.ties.closing, late)]
+        for name, rows in self._rows.items():
+            found = self._rows_at(rows, late)
+            speeds = [v for _, v in found]
+            if not self._touches(name, rows):
+                continue
+            if speeds[0] < -OPEN_GAP * size:
+                return f"'{name}' is still approached with {-speeds[0]:.3g} m/s"
+            if speeds[0] <= OPEN_GAP * size:
+                pushes.append(found[0][0])
+                frees += [J for J, v in found[1:] if abs(v) <= OPEN_GAP * size]
+        return self._left(pushes, frees, early, late)
+
+    def _left(self, pushes: list[np.ndarray], frees: list[np.ndarray], early: np.ndarray, late: np.ndarray) -> str:
+        """That no impulses give the change of momentum: min |J^T Lam - dP|, in units of sqrt(J)."""
+        n = len(self.system.symbols.u)
+        units = self._momenta(late, [*np.eye(n), np.zeros(n)])
+        P = self._momenta(late, [early[-n:], late[-n:]])
+        M = units[:-1] - units[-1]
+        found, V = np.linalg.eigh((M + M.T) / 2)
+        held = found > SUMMED * max(found, default=0.0)
+        whiten = (V[:, held] / np.sqrt(found[held])).T
+        columns = np.array([*pushes, *frees, *(-J for J in frees)]).reshape(-1, n) @ whiten.T
+        change = whiten @ (P[1] - P[0])
+        left = nnls(columns.T, change)[1] if len(columns) else float(np.linalg.norm(change))
+        fastest = max(1.0, float(np.max(np.abs([early[-n:], late[-n:]]))))
+        if left > UNBALANCED * fastest * float(np.sqrt(np.trace(M))):
+            return f"no impulses that only push give the change of momentum: {left:.3g} sqrt(J) are left"
+        return ""
+
+    @property
+    def _end(self) -> Values:
+        return self._values(self.before, -1)
+
+    @property
+    def _begin(self) -> Values:
+        return self._values(self.after, 0)
+
+    def _values(self, phase: Phase, row: int) -> Values:
+        assert phase.track is not None
+        t, x = phase.track
+        found: Values = phase.model.values(float(t[row]), x[row])
+        return found
+
+    def _state(self, values: Values) -> np.ndarray:
+        symbols = self.system.symbols
+        return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
+
+    @cached_property
+    def _rows(self) -> dict[str, tuple[Row, ...]]:
+        return {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
+
+    def _touches(self, name: str, rows: Sequence[Row]) -> bool:
+        """Whether a contact is closed before or after, or its gap is 0."""
+        if any(name not in phase.model.configuration.open for phase in (self.before, self.after)):
+            return True
+        gap = self._end.get(slack_name(name), 0.0)
+        if rows[0].gap is not None:
+            gap = float(self._numbers((rows[0].gap,), self._state(self._end)[None])[0, 0])
+        return abs(gap) <= OPEN_GAP
+
+    def _rows_at(self, rows: Sequence[Row], state: np.ndarray) -> list[tuple[np.ndarray, float]]:
+        """(J, J u + sigma) of each row."""
+        if not rows:
+            return []
+        n = len(self.system.symbols.u)
+        found = self._numbers(tuple(row.velocity for row in rows), self._with(state, [*np.eye(n), np.zeros(n)]))
+        now = self._numbers(tuple(row.velocity for row in rows), state[None])[0]
+        return list(zip((found[:-1] - found[-1]).T, map(float, now), strict=True))
+
+    def _momenta(self, state: np.ndarray, speeds: Sequence[np.ndarray]) -> np.ndarray:
+        """sum_b m v . dv/du_k + I w . dw/du_k + armature s' ds'/du_k with some speeds, one row each."""
+        n = len(self.system.symbols.u)
+        found = self._numbers(self._moving, self._with(state, [*speeds, *np.eye(n), np.zeros(n)]))
+        motions, pushes = found[:, : len(self._moving) // 2], found[: len(speeds), len(self._moving) // 2 :]
+        return np.asarray(pushes @ (motions[len(speeds) : -1] - motions[-1]).T)
+
+    @cached_property
+    def _moving(self) -> tuple[Scalar, ...]:
+        """v, w, s' of everything that has mass, and then its momenta in the same order."""
+        motions: list[Scalar] = []
+        momenta: list[Scalar] = []
+        for link in self.system.motion.links:
+            mass = mass_properties(self.system.scope, link.name)
+            v = velocity_of(self.system.motion, (link.name, mass.com))
+            motions += [*v, *link.twist.w]
+            momenta += [mass.m * x for x in v] + list(apply(mass.I, link.twist.w))
+        for link, k, armature in armatures(self.system.motion):
+            motions.append(link.s_rate[k])
+            momenta.append(armature * link.s_rate[k])
+        return (*motions, *momenta)
+
+    def _with(self, state: np.ndarray, speeds: Sequence[np.ndarray]) -> np.ndarray:
+        """The state with other speeds, one row each."""
+        q = state[: len(self.system.symbols.q)]
+        return np.array([[*q, *u] for u in speeds])
+
+    def _numbers(self, scalars: tuple[Scalar, ...], x: np.ndarray) -> np.ndarray:
+        function: RightHandSide = compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
+        return function.many(self.after.start, x, self.after.model.p)

@@ -1,0 +1,163 @@
+"""Printed formulas -> whether they hold, read back by our grammar: a derivation that is printed is proven as printed.
+
+Every side of a = b = c is read and worth the same along the motion, at accelerations and multipliers that the equations
+of motion give. A letter that is first met on the left stands for what follows. What is said to stay constant does so to
+the next instant: the state a step later and a step earlier, to first order, with 50 digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, ExpressionError, UsageError
+from eomgen.mechanics.bodies.inertia import spin_of
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import BALANCE
+from eomgen.proof.at_a_state import least_multipliers
+from eomgen.proof.states import refuse_open
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.expressions import Call, parse
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+SPINS = ("omega_x", "omega_y", "omega_z")
+LONGEST = 20_000  # characters of one formula that is read back
+STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
+
+
+@dataclass(frozen=True)
+class Printed:
+    """Formulas as they are printed.
+
+    Args:
+        formulas: the sides of each.
+        constants: of what is said to stay constant along every motion.
+    """
+
+    formulas: tuple[tuple[str, ...], ...] = ()
+    constants: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ReadBack:
+    """What is printed of a system, as scalars again.
+
+    Args:
+        printed: the texts.
+    """
+
+    equations: EquationsOfMotion
+    printed: Printed
+
+    @cached_property
+    def equalities(self) -> list[tuple[str, Scalar, Scalar]]:
+        """(what is on the left, a, b) of sides that are to be the same."""
+        energies = {"T": self.equations.T, "V": self.equations.V}
+        own, names = self._symbols, {**energies, **self._symbols}
+        found = []
+        for sides in self.printed.formulas:
+            if sides[0] in energies and sides[0] in own:  # a parameter has the letter of an energy
+                continue
+            read = [self._derivatives.get(text, self._read(text, names)) for text in sides]
+            known = [x for x in read if x is not None]
+            found += [(sides[0], known[0], x) for x in known[1:]]
+            if read[0] is None and known and sides[0].replace("_", "").isalnum():
+                names[sides[0]] = known[0]
+        return found
+
+    @cached_property
+    def constants(self) -> list[tuple[str, Scalar]]:
+        read = [(text, self._read(text, self._symbols)) for text in self.printed.constants]
+        return [(text, x) for text, x in read if x is not None]
+
+    @property
+    def _symbols(self) -> Mapping[str, Scalar]:
+        return {**self.equations.system.scope.names, **{x.name: x for x in self.equations.symbols.lam}}
+
+    def _read(self, text: str, names: Mapping[str, Scalar]) -> Scalar | None:
+        """A side; None where it is no formula of quantities that have a value at a state."""
+        if len(text) > LONGEST:
+            return None
+        try:
+            found: Scalar = parse(text, references=True).evaluate(names, self._value)
+        except (ExpressionError, DerivationError, UsageError, KeyError):
+            return None
+        return found
+
+    def _value(self, call: Call) -> Scalar:
+        """A function of the motion, as outputs ask it; energies, forces and spins by their names."""
+        of = str(call).partition("(")[2][:-1]
+        known = {"V": self._potentials, "Q": self._forces}.get(call.name, {})
+        if of in known:
+            return known[of]
+        if call.name in SPINS:
+            return self._spin(of)[SPINS.index(call.name)]
+        if call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE:
+            raise DerivationError(f"'{call}' is a reaction, and proven as such")
+        return Quantities(self.equations.system).value(call)
+
+    def _spin(self, body: str) -> Vector:
+        """By the pose: a derivation gives it in the axes of the body."""
+        motion = self.equations.system.motion
+        return spin_of(motion, motion.link(body))
+
+    @cached_property
+    def _derivatives(self) -> dict[str, Scalar]:
+        """dT/du_k, its rate and dT/dq_k by their texts; where rates depend on others T is not that of the equations."""
+        T, symbols = self.equations.T, self.equations.symbols
+        if self.equations.system.free is not None:
+            return {}
+        momenta = gradient(T, symbols.u)
+        rates = self.equations.system.scope.with_accelerations(momenta)
+        found = {f"dT/d{q.name}": x for q, x in zip(symbols.q, gradient(T, symbols.q), strict=True)}
+        for u, p, rate in zip(symbols.u, momenta, rates, strict=True):
+            found |= {f"dT/d{u.name}": p, f"d/dt(dT/d{u.name})": rate}
+        return found
+
+    @cached_property
+    def _potentials(self) -> dict[str, Scalar]:
+        return {
+            force.name: force.potential for force in self.equations.system.loads.applied if force.potential is not None
+        }
+
+    @cached_property
+    def _forces(self) -> dict[str, Scalar]:
+        """Along each coordinate, where none follows others and nothing rubs."""
+        names = (u.name.removesuffix("'") for u in self.equations.symbols.u)
+        whole = self.equations.system.free is None and not self.equations.friction
+        return dict(zip(names, self.equations.Q, strict=True)) if whole else {}
+
+    def wrong(self, state: State) -> str:
+        """Which formula does not hold at a state of the motion; "" where all do."""
+        known = state | least_multipliers(self.equations, state)
+        values = iter(evaluate([x for _, *sides in self.equalities for x in sides], known, fifty_digits()))
+        for left, _, _ in self.equalities:
+            a, b = next(values), next(values)
+            if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)):
+                return f"{left}: {float(a):.10g} against {float(b):.10g}"
+        return ""
+
+    def drifting(self, state: State) -> str:
+        """Which constant does not stay at a state of the motion; "" where all do."""
+        refuse_open(self.equations.system, state)
+        scalars = [x for _, x in self.constants]
+        late, early = (evaluate(scalars, self._later(state, sign * STEP), fifty_digits()) for sign in (1, -1))
+        for (text, _), x, y in zip(self.constants, late, early, strict=True):
+            if abs(x - y) > 2 * STEP * COMPUTED * (1 + abs(x)):
+                return f"{text} changes by {float((x - y) / (2 * STEP)):.3g} in a second"
+        return ""
+
+    def _later(self, state: State, h: Any) -> dict[Node, Any]:
+        symbols = self.equations.symbols
+        rates = evaluate(self.equations.system.scope.rates, state, fifty_digits())
+        path = dict(zip(symbols.q, rates, strict=True)) | {symbols.t: 1}
+        path |= {u: state[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
+        return {**state, **{x: state[x] + h * rate for x, rate in path.items()}}

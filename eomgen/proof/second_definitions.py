@@ -1,0 +1,149 @@
+"""A system at a state in numbers -> what output functions are worth there by their second definitions.
+
+Poses and masses alone are evaluated, at the state and a moment before and after it, with 50 digits:
+
+    q +- h q' + h^2 q''/2,  t +- h;     r' = (r+ - r-)/2h,  r'' = (r+ - 2 r + r-)/h^2
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.bodies.inertia import armature_energy
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.proof.at_a_state import NumericState, differing
+from eomgen.proof.instant import STEP
+from eomgen.symbolic.expression.expressions import Call
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Matrix, Numbers, Vector, apply, minus, plus, times, vector_of
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+
+UNIT: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True)
+class NearbyStates:
+    """The trial of output functions: the system at a state, a moment before it and a moment after."""
+
+    state: NumericState
+
+    @cached_property
+    def scene(self) -> Quantities:
+        return Quantities(self.state.equations.system)
+
+    @property
+    def step(self) -> Any:
+        return STEP
+
+    @cached_property
+    def _way(self) -> tuple[Mapping[Node, Any], ...]:
+        """The values h earlier, now, and h later."""
+        symbols, scope = self.state.equations.symbols, self.state.equations.system.scope
+        values, digits = dict(self.state.values), fifty_digits()
+        values |= dict.fromkeys(symbols.a, digits.number(0)) | (self._accelerations or {})
+        first = evaluate(scope.rates, values, digits)
+        second = evaluate(scope.with_accelerations(scope.rates), values, digits)
+
+        def later(h: Any) -> dict[Node, Any]:
+            moved = {q: values[q] + h * v + h * h / 2 * a for q, v, a in zip(symbols.q, first, second, strict=True)}
+            return {**values, **moved, symbols.t: values[symbols.t] + h}
+
+        return later(-STEP), values, later(STEP)
+
+    @cached_property
+    def _accelerations(self) -> dict[Node, Any] | None:
+        """None where they are not determined: first rates do not need them, second ones are nan."""
+        try:
+            return self.state.unknowns
+        except (NoValue, DerivationError):
+            return None
+
+    def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
+        """What functions of q and t are worth, and their first and second rates."""
+        early, now, late = (evaluate(tuple(scalars), each, fifty_digits()) for each in self._way)
+        first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
+        if self._accelerations is None:
+            return now, first, [math.nan] * len(now)
+        second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
+        return now, first, second
+
+    def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
+        """A place a moment before, now, and a moment later."""
+        early, now, late = (vector_of(evaluate(place, each, fifty_digits())) for each in self._way)
+        return early, now, late
+
+    def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
+        """(m, r, v): with P the integral of d d^T dm about the mass centre C, at C +- e_i and C +- (e_i + e_j)
+
+            m_i = (P_ii - sum_j P_ij)/2,     m_ij = P_ij/2,     and at C what is left of m.
+
+        Some of these masses are negative; energy, momentum and moments of inertia are linear in them.
+        """
+        motion = self.state.equations.system.motion
+        if not still and not is_zero(armature_energy(motion, motion.link(body))):
+            raise NoValue("rotors in a joint are no particles of the body")
+        mass = self.scene.mass(body)
+        P = self._second_moments(body, mass.I)
+        arms = [(times(1, UNIT[i]), (P[i][i] - sum(P[i][j] for j in range(3) if j != i)) / 2) for i in range(3)]
+        arms += [(plus(UNIT[i], UNIT[j]), P[i][j] / 2) for i, j in ((0, 1), (0, 2), (1, 2))]
+        ends = [(end, m) for arm, m in arms if m for end in (arm, minus(ZERO, arm))]
+        (whole,) = self.along((mass.m,))[0]
+        held = [(ZERO, whole - sum(m for _, m in ends)), *ends]
+        origin, R = self.scene.origin(body), self.scene.axes(body)
+        places = [plus(origin, apply(R, plus(mass.com, arm))) for arm, _ in held]
+        now, rates, _ = self.along([x for place in places for x in place])
+        return [
+            (m, vector_of(now[3 * k : 3 * k + 3]), vector_of(rates[3 * k : 3 * k + 3])) for k, (_, m) in enumerate(held)
+        ]
+
+    def _second_moments(self, body: str, I: Matrix) -> list[list[Any]]:
+        """P = tr(I)/2 - I in body axes; a body of which the moment about z alone is known is thin."""
+        flat = self.along([x for row in I for x in row])[0]
+        if self.scene.known_about_z((body,)):
+            return [[flat[8] / 2 if i == j < 2 else 0 * flat[8] for j in range(3)] for i in range(3)]
+        half = (flat[0] + flat[4] + flat[8]) / 2
+        return [[(half if i == j else 0) - flat[3 * i + j] for j in range(3)] for i in range(3)]
+
+    def root(self, x: Any) -> Any:
+        """Of a number."""
+        return fifty_digits().functions["sqrt"](x)
+
+    def eigenvalues(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
+        """Of a symmetric matrix, ascending."""
+        context = rows[0][0].context
+        found: list[Any] = sorted(context.eigsy(context.matrix(rows), eigvals_only=True))
+        return found
+
+    def faster(self, speed: str, by: int) -> NearbyStates:
+        """The same with one speed larger.
+
+        Raises:
+            NoValue: it is no speed of the system.
+        """
+        found = [u for u in self.state.equations.symbols.u if u.name == speed]
+        if not found:
+            raise NoValue(f"'{speed}' is no speed of these equations")
+        numbers = {**self.state.numbers, found[0]: self.state.numbers[found[0]] + by}
+        return NearbyStates(replace(self.state, numbers=numbers))
+
+
+def second_definition(state: NumericState, call: Call) -> str:
+    """That a function of the motion is not worth what its second definition says, in words; "".
+
+    Raises:
+        NoValue: it has no value by one of the two.
+        DerivationError: it has no meaning there.
+    """
+    second = FUNCTIONS[call.name].second
+    assert second is not None, "asked of those that have one"
+    found = state.number(Quantities(state.equations.system).value(call))
+    right = float(second(NearbyStates(state), call))
+    if math.isnan(right):
+        raise NoValue("accelerations are not determined there")
+    return differing(found, right)

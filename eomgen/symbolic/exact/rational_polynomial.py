@@ -1,0 +1,214 @@
+"""Polynomials over the rational numbers: products, common divisors, factors; by FLINT, or sympy where it is missing.
+
+The library is chosen here and nowhere else, when a polynomial first needs one. What comes out is the same either way:
+a common divisor has the leading coefficient 1; a factor has whole coefficients without common divisor, the leading one
+positive; factors stand in one order. The leading term is that of the highest power of the first generator, then of the
+second, and so on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from math import prod
+from typing import Any
+
+from eomgen.symbolic.exact.terms import TooLarge, common_number
+from eomgen.symbolic.expression.exact_numbers import tidy
+from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
+
+LARGEST_IMAGE = 10_000_000  # product of the degrees up to which sympy finds a common divisor in a second or two
+PLACES = 10  # at which a polynomial is tried before its factors are lifted
+KEPT = 2_000  # polynomials of which the factors are remembered, as formulas recur
+
+Exponents = tuple[int, ...]  # one for each generator
+PowerSum = Mapping[Exponents, Number]
+Element = Any  # of a library's ring
+FactorPowers = tuple[tuple["RationalPolynomial", int], ...]
+
+
+@dataclass(frozen=True)
+class RationalPolynomial:
+    """A sum of products of powers of generators, which are named by their place.
+
+    Args:
+        terms: (exponents, coefficient), the leading term first; no coefficient is 0.
+    """
+
+    terms: tuple[tuple[Exponents, Number], ...]
+
+    @staticmethod
+    def of(terms: PowerSum) -> RationalPolynomial:
+        return RationalPolynomial(tuple(sorted(((e, tidy(c)) for e, c in terms.items() if c), reverse=True)))
+
+    @staticmethod
+    def number(c: Number, generators: int) -> RationalPolynomial:
+        return RationalPolynomial.of({(0,) * generators: c})
+
+    @property
+    def is_number(self) -> bool:
+        return not any(any(exponents) for exponents, _ in self.terms)
+
+    @property
+    def leading(self) -> Number:
+        """The coefficient of the leading term."""
+        return self.terms[0][1]
+
+    @property
+    def degree(self) -> int:
+        """The largest sum of exponents."""
+        return max((sum(exponents) for exponents, _ in self.terms), default=0)
+
+    def __neg__(self) -> RationalPolynomial:
+        return self.scaled(-1)
+
+    def __mul__(self, other: RationalPolynomial) -> RationalPolynomial:
+        return _read(_element(self) * _element(other))
+
+    def __pow__(self, n: int) -> RationalPolynomial:
+        return _read(_element(self) ** n)
+
+    def scaled(self, c: Number) -> RationalPolynomial:
+        """c times this."""
+        return RationalPolynomial(tuple((exponents, tidy(c * number)) for exponents, number in self.terms))
+
+    def over(self, divisor: RationalPolynomial) -> RationalPolynomial | None:
+        """The quotient; None where the divisor leaves a remainder."""
+        quotient, remainder = divmod(_element(self), _element(divisor))
+        return None if remainder else _read(quotient)
+
+    def without_common_divisor(self, other: RationalPolynomial) -> tuple[RationalPolynomial, RationalPolynomial]:
+        """The two of the same quotient, negative powers cleared in both: x^-2/(1 + x^-1) is 1/(x^2 + x).
+
+        The divisor's leading coefficient is 1; where one of the two is a single term, their numbers' is taken out. One
+        that sympy finds only in integers of millions of digits (15 generators to the fifth power) is not sought.
+        """
+        above, below = _without_common_powers(self, other)
+        if min(len(above.terms), len(below.terms)) == 1:
+            number = common_number(c for part in (above, below) for _, c in part.terms)
+            return above.scaled(1 / number), below.scaled(1 / number)
+        if _image(above, below) > LARGEST_IMAGE:
+            return above, below
+        f, g = _element(above), _element(below)
+        common = f.gcd(g)
+        leading = _read(common).leading
+        return _read(f // common).scaled(leading), _read(g // common).scaled(leading)
+
+    def factors(self) -> tuple[Number, FactorPowers]:
+        """(number, irreducible factors and their powers)"""
+        return _factors(self)
+
+    def square_free(self) -> tuple[Number, FactorPowers]:
+        """(number, polynomials without squares and their powers, each power once)"""
+        parts: dict[int, Element] = {}
+        for part, n in _library().square_free(_element(self)):
+            parts[n] = parts[n] * part if n in parts else part
+        return _canonical(self, ((part, n) for n, part in parts.items()))
+
+
+@lru_cache(maxsize=KEPT)
+def _factors(f: RationalPolynomial) -> tuple[Number, FactorPowers]:
+    return _canonical(f, _library().factors(_element(f)))
+
+
+def _canonical(f: RationalPolynomial, parts: Iterable[tuple[Element, int]]) -> tuple[Number, FactorPowers]:
+    """The parts in whole numbers without common divisor and in their order, and the number before them."""
+    factors = [(_primitive(part), n) for element, n in parts if not (part := _read(element)).is_number]
+    number = Fraction(f.leading) / prod(part.leading**n for part, n in factors)
+    return tidy(number), tuple(sorted(factors, key=lambda item: (item[0].terms[0][0][:1], item[1], item[0].terms)))
+
+
+def _primitive(f: RationalPolynomial) -> RationalPolynomial:
+    """In whole numbers without common divisor, the leading one positive."""
+    common = common_number(c for _, c in f.terms)
+    return f.scaled(1 / common if f.leading > 0 else -1 / common)
+
+
+def _without_common_powers(*both: RationalPolynomial) -> tuple[RationalPolynomial, ...]:
+    """Each over the lowest powers of the generators in either."""
+    lowest = [min(powers) for powers in zip(*(exponents for f in both for exponents, _ in f.terms), strict=True)]
+    return tuple(
+        RationalPolynomial(
+            tuple((tuple(e - d for e, d in zip(powers, lowest, strict=True)), c) for powers, c in f.terms)
+        )
+        for f in both
+    )
+
+
+def _image(f: RationalPolynomial, g: RationalPolynomial) -> int:
+    """The product of the degrees in each generator: the digits of the integers by which sympy finds a divisor."""
+    return prod(max(1, *powers) for powers in zip(*(exponents for exponents, _ in (*f.terms, *g.terms)), strict=True))
+
+
+# -- the libraries ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Library:
+    """What the elements of two libraries do not have in common.
+
+    Args:
+        made: {exponents: coefficient}, number of generators -> an element.
+        factors: irreducible factors and their powers, in any order, of any sign.
+        square_free: the same, without squares only.
+    """
+
+    made: Callable[[PowerSum, int], Element]
+    factors: Callable[[Element], Iterable[tuple[Element, int]]]
+    square_free: Callable[[Element], Iterable[tuple[Element, int]]]
+
+
+@cache
+def _library() -> _Library:
+    try:
+        return _by_flint()
+    except ImportError:
+        return _by_sympy()
+
+
+def _by_flint() -> _Library:
+    from flint import Ordering, fmpq, fmpq_mpoly_ctx
+
+    def made(terms: PowerSum, generators: int) -> Element:
+        ring = fmpq_mpoly_ctx.get(_names(generators), Ordering.lex)
+        return ring.from_dict({exponents: fmpq(c.numerator, c.denominator) for exponents, c in terms.items()})
+
+    return _Library(made, lambda f: f.factor()[1], lambda f: f.factor_squarefree()[1])
+
+
+def _by_sympy() -> _Library:
+    from sympy.polys.domains import QQ
+    from sympy.polys.polyconfig import using
+    from sympy.polys.rings import PolyRing
+
+    def made(terms: PowerSum, generators: int) -> Element:
+        ring = PolyRing(_names(generators), QQ)
+        return ring.from_dict({exponents: QQ(c.numerator, c.denominator) for exponents, c in terms.items()})
+
+    def factors(f: Element) -> Iterable[tuple[Element, int]]:
+        """Wang's algorithm factors at random places first.
+
+        With three of them, sympy's own choice, one run in five takes a thousand times as long as the others, where by
+        chance a polynomial splits at all three and nowhere else.
+        """
+        with using(EEZ_NUMBER_OF_CONFIGS=PLACES):
+            return f.factor_list()[1]  # type: ignore[no-any-return]
+
+    return _Library(made, factors, lambda f: f.sqf_list()[1])
+
+
+def _names(generators: int) -> list[str]:
+    return [f"x{i}" for i in range(generators)]
+
+
+def _element(f: RationalPolynomial) -> Element:
+    if min(map(min, (e or (0,) for e, _ in f.terms))) < 0:
+        raise TooLarge("a polynomial with negative powers")
+    return _library().made(dict(f.terms), len(f.terms[0][0]))
+
+
+def _read(element: Element) -> RationalPolynomial:
+    terms = ((tuple(map(int, e)), Fraction(int(c.numerator), int(c.denominator))) for e, c in element.terms())
+    return RationalPolynomial(tuple((e, tidy(c)) for e, c in terms))

@@ -1,0 +1,350 @@
+"""What every output function promises: an example, its unit, its value by two ways, a row in the reference."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import eomgen
+from eomgen.errors import DerivationError
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.model.outputs import ALL, FUNCTIONS, velocity
+from eomgen.model.outputs.base import BALANCE, SMALL_MOTIONS
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.second_definitions import second_definition
+from eomgen.report.linearize.result import linearize
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import CARRIED
+
+pytestmark = pytest.mark.slow
+
+REFERENCE = (Path(__file__).parents[2] / "models" / "README.md").read_text(encoding="utf-8").splitlines()
+
+MODELS = {
+    "plane": """
+eomgen = 1
+space = "plane"
+[parameters]
+l = { value = 1.5, unit = "m" }
+m = { value = 2, unit = "kg" }
+k = { value = 30, unit = "N/m" }
+b = { value = 0.3, unit = "N*m*s" }
+g = { value = 9.81, unit = "m/s^2" }
+w = { value = 3, unit = "rad/s" }
+[coordinates]
+psi = { motion = "sin(w*t)/2" }
+x = { start = 0.2, unit = "m" }
+q = { start = 0.7, unit = "rad" }
+[points]
+O = ["l/15", 0]
+[bodies.table]
+shape = { kind = "rectangle", mass = "3*m", width = "2*l", height = "l" }
+joint = { kind = "revolute", at = "O", angle = "psi" }
+[bodies.slide]
+shape = { kind = "disc", mass = "m", radius = "l/9" }
+joint = { kind = "prismatic", on = "table", at = ["l/5", "l/7"], axis = [1, 2], displacement = "x", stiffness = "k" }
+[bodies.arm]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "slide", angle = "q", damping = "b" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[forces.string]
+kind = "spring"
+points = ["O", "arm.end"]
+stiffness = "k"
+length = "l/3"
+""",
+    "space": """
+eomgen = 1
+space = "space"
+[parameters]
+l = { value = 1.5, unit = "m" }
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+w = { value = 3, unit = "rad/s" }
+[coordinates]
+a = { start = 0.3, unit = "rad" }
+b = { start = 0.4, unit = "rad" }
+c = { motion = "w*t" }
+[bodies.base]
+shape = { kind = "box", mass = "m", size = ["l", "l/2", "l/3"] }
+joint = { kind = "revolute", axis = [1, 2, 2], angle = "a" }
+[bodies.tray]
+joint = { kind = "revolute", on = "base", at = ["l/3", 0, "l/4"], axis = [0, 1, 0], angle = "c" }
+[bodies.arm]
+parts = [
+    { kind = "cylinder", mass = "m", radius = "l/5", length = "l" },
+    { kind = "particle", mass = "m/3", at = ["l/2", 0, 0] },
+]
+points = { tip = ["l/3", "l", "l/9"] }
+joint = { kind = "revolute", on = "tray", at = [0, 0, "l"], axis = [3, 0, 4], angle = "b" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+""",
+    "beam": """
+eomgen = 1
+space = "plane"
+[parameters]
+p = { value = 3.0, unit = "N/m" }
+F = { value = 4.0, unit = "N" }
+L = { value = 6.0, unit = "m" }
+[bodies.beam]
+points = { A = [0, 0], B = ["L", 0], D = ["4*L/3", 0] }
+line = ["A", "D"]
+[constraints]
+A = { kind = "pin", points = ["beam.A"] }
+B = { kind = "support", point = "beam.B", normal = [0, 1] }
+[forces]
+line_load = { kind = "distributed", body = "beam", between = ["A", "B"], intensities = [[0, 0], [0, "-p"]] }
+tip = { kind = "force", point = "beam.D", force = ["F/2", "-F"] }
+""",
+    "block": """
+eomgen = 1
+space = "space"
+[parameters]
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { start = 0, speed = 3, unit = "m" }
+y = { start = 0, speed = 1, unit = "m" }
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0, 0], displacement = "x" }
+[bodies.rider]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", on = "block", axis = [0, 1, 0], displacement = "y" }
+[constraints.floor]
+kind = "support"
+point = "rider.center"
+normal = [0, 0, 1]
+friction = 0.2
+[forces.weight]
+kind = "gravity"
+acceleration = [0, 0, "-g"]
+""",
+    "tied": """
+eomgen = 1
+space = "plane"
+[parameters]
+l = { value = 1.0, unit = "m" }
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { start = 0, unit = "m" }
+y = { start = "-l", unit = "m" }
+[points]
+O = [0, 0]
+[bodies.bob]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "planar", x = "x", y = "y", angle = 0 }
+[constraints]
+rope = { kind = "link", points = ["O", "bob.center"], length = "l" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""",
+    "coupled": """
+eomgen = 1
+space = "plane"
+[parameters]
+l = { value = 1.0, unit = "m" }
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+q = { start = 0.3, unit = "rad" }
+s = { start = 0, unit = "m" }
+[bodies.bob]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "q" }
+[bodies.cart]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "s" }
+[constraints]
+same = { kind = "equation", gap = "s - l*q/2" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+""",
+}
+"""Models without a number that has a dimension: what is measured in other units is the same model."""
+POINTS = ("arm.end", "arm.end, table", "arm.end, slide, table")
+CALLS = {
+    "plane": [
+        *(f"{v}{axis}({point})" for v in ("", "v", "a") for axis in "xy" for point in POINTS),
+        *(f"{name}(arm.end)" for name in ("speed", "acceleration", "tangential_acceleration", "normal_acceleration")),
+        *(f"{name}(arm.end, table)" for name in ("speed", "acceleration", "curvature_radius")),
+        *(f"{name}({pair})" for name in ("angle", "omega", "epsilon") for pair in ("arm", "arm, table")),
+        *(f"rotation_center_{axis}({pair})" for axis in "xy" for pair in ("arm", "arm, table")),
+        *(f"acceleration_pole_{axis}(arm)" for axis in "xy"),
+        "least_speed(arm.start, arm.end)",
+        *("kinetic_energy()", "kinetic_energy(arm)", "potential_energy()", "potential_energy(weight)"),
+        *("power()", "power(string)", "power(weight)", "power(arm)"),
+        *("generalized_force(x)", "generalized_force(q)", "momentum(x)", "momentum(q)", "drive(psi)"),
+        *("reaction_x(arm)", "reaction_y(arm, arm)", "reaction_couple(slide)", "mass_of(arm)"),
+        *(f"principal_moment(arm.center, {n}, arm)" for n in (1, 2, 3)),
+        *("inertia_point(O)", "inertia_axis(O, z, arm, slide)", "angular_momentum_z(O)"),
+    ],
+    "space": [
+        *(f"{v}{axis}({point})" for v in ("", "v", "a") for axis in "xyz" for point in ("arm.tip", "arm.tip, base")),
+        *(f"{part}_{v}{axis}(arm.tip, base)" for part, v in (("transport", "v"), ("transport", "a")) for axis in "xyz"),
+        *(f"{part}_a{axis}(arm.tip, base, tray)" for part in ("coriolis", "euler", "centripetal") for axis in "xyz"),
+        *(f"{part}_acceleration(arm.tip, base)" for part in ("transport", "coriolis", "euler", "centripetal")),
+        *(
+            "transport_speed(arm.tip, base)",
+            "speed(arm.tip)",
+            "curvature_radius(arm.tip)",
+            "normal_acceleration(arm.tip)",
+        ),
+        *(f"{name}_{axis}({pair})" for name in ("omega", "epsilon") for axis in "xyz" for pair in ("arm", "arm, base")),
+        *("omega(arm)", "epsilon(arm)", "least_speed(arm.origin, arm.tip)", "kinetic_energy(arm)", "momentum(a)"),
+        *(f"angular_momentum_{axis}(arm.tip)" for axis in "xyz"),
+        *("inertia_point(arm.tip)", "inertia_axis(arm.tip, base.origin)", "inertia_plane(arm.tip, x)"),
+        *("inertia_product(arm.tip, x, y)", "inertia_tensor(arm.tip, x, y, arm)", "inertia_tensor(arm.tip, y, y)"),
+        *("mass_of(arm)", "mass_of(arm, 2)"),
+        *(f"reaction{couple}_{axis}(base)" for couple in ("", "_couple") for axis in "xyz"),
+    ],
+    "beam": [f"{name}(beam, L/3)" for name in ("axial_force", "shear_force", "bending_moment")],
+    "block": ["reaction_n(floor)", "reaction_t(floor)", "reaction_s(floor)"],
+    "tied": ["tension(rope)"],
+    "coupled": ["multiplier(same)"],
+}
+LINEAR = {"plane": ["mass(x, q)", "damping(q, q)", "stiffness(x, x)", "frequency(1)"]}
+CASES = [(model, call) for model, calls in CALLS.items() for call in calls]
+PROVEN_TWICE = [case for case in CASES if FUNCTIONS[case[1].partition("(")[0]].second is not None]
+SIZES = {"length": Fraction(2), "mass": Fraction(3), "time": Fraction(5)}
+GAPS = {"same": "m"}
+
+# What has no second definition of its own, and why
+POSES = {"x", "y", "z", "angle"}  # everything else is built on them
+CERTIFIED = {"generalized_force", "potential_energy", "mass_of"}  # the certificate, and `inertia`, prove them otherwise
+
+
+@cache
+def system(name: str):
+    model = eomgen.loads(MODELS[name])
+    return system_of(model, contacts_at_start(model).modes)
+
+
+def scaled(unit: Unit) -> Fraction:
+    """How many times larger the number of something becomes when the units get smaller."""
+    return SIZES["length"] ** unit.length * SIZES["mass"] ** unit.mass * SIZES["time"] ** unit.time
+
+
+@cache
+def state(name: str, *, units: bool = False) -> NumericState:
+    """A random state of the model; the same in units that are smaller."""
+    found, rng = system(name), Random(4)
+    model, symbols = found.scope.model, found.symbols
+
+    def of(unit: Unit | None) -> Fraction:
+        return scaled(unit) if units and unit is not None else Fraction(1)
+
+    parameters = {
+        node: found.scope.graph.adopted(
+            Fraction(str(model.parameters[n].value.evaluate({}))) * of(model.parameters[n].unit)
+        )
+        for n, node in symbols.parameters.items()
+    }
+    second = SIZES["time"] if units else Fraction(1)
+    numbers = {symbols.t: float(Fraction(7, 10) * second)}
+    for q in symbols.q:
+        numbers[q] = float(Fraction(rng.randint(30, 90), 100) * of(model.coordinates[q.name].unit))
+    for u in symbols.u:
+        unit = model.coordinates[u.name.rstrip("'")].unit
+        numbers[u] = float(Fraction(rng.randint(30, 90), 100) * of(unit) / second)
+    return NumericState(recursive.assembled_by_recursion(found), parameters, numbers)
+
+
+def worth(name: str, call: str, *, units: bool = False) -> float:
+    return state(name, units=units).worth(parse(call, references=True))
+
+
+def test_every_function_is_named_once_and_has_an_example():
+    """FUNCTIONS has as many names as the members together, and each is called above."""
+    assert len(FUNCTIONS) == sum(len(function.names) for function in ALL)
+    called = {call.partition("(")[0] for calls in (*CALLS.values(), *LINEAR.values()) for call in calls}
+    assert called | {"az", "vz", "z"} >= FUNCTIONS.keys()
+
+
+@pytest.mark.parametrize("function", ALL, ids=lambda f: f.names[0])
+def test_the_reference_has_its_row(function):
+    """models/README.md says of each what it is, in the words and the unit of its own file."""
+    assert function.row in REFERENCE, f"put this line into models/README.md:\n{function.row}"
+
+
+@pytest.mark.parametrize("function", ALL, ids=lambda f: f.names[0])
+def test_what_has_no_second_definition_is_proven_otherwise(function):
+    """Poses; what the balance of the bodies says, solved twice; small motions, which `linearize` proves."""
+    otherwise = {*POSES, *CERTIFIED} >= {*function.names} or function.source in (BALANCE, SMALL_MOTIONS)
+    assert (function.second is None) == otherwise
+
+
+@pytest.mark.parametrize(("name", "call"), PROVEN_TWICE, ids=[call for _, call in PROVEN_TWICE])
+def test_its_value_is_what_its_second_definition_says(name, call):
+    """At a random state, moving as the equations say: differences of poses and sums over particles give the same."""
+    try:
+        assert second_definition(state(name), parse(call, references=True).calls[0]) == ""
+    except NoValue as reason:
+        assert "of one force alone" in str(reason) or "depends on time" in str(reason)
+
+
+@pytest.mark.parametrize(("name", "call"), CASES, ids=[call for _, call in CASES])
+def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
+    """In units of length, mass and time that are 2, 3 and 5 times smaller its number is 2^a 3^b 5^c times larger."""
+    asked, model = parse(call, references=True).calls[0], system(name).scope.model
+    function = FUNCTIONS[asked.name]
+    factor = scaled(function.dimension)
+    for k in function.per:
+        argument = asked.args[k].name
+        unit = parse_unit(GAPS[argument]) if argument in GAPS else model.coordinates.get(argument).unit
+        factor /= 1 if unit is None else scaled(unit)
+        factor *= SIZES["time"] if "speed" in function.kinds[k] else 1
+    found = worth(name, call)
+    assert math.isfinite(found)
+    assert worth(name, call, units=True) == pytest.approx(float(factor) * found, rel=CARRIED, abs=CARRIED)
+
+
+def test_functions_of_small_motions_are_none_of_a_state():
+    """They are asked of the linearized system; of a state they say so."""
+    free = MODELS["plane"].replace('psi = { motion = "sin(w*t)/2" }', 'psi = { motion = "0" }')
+    small = linearize(eomgen.loads(free))
+    for call in LINEAR["plane"]:
+        with pytest.raises(DerivationError, match="of the linearized system, not of a state"):
+            worth("plane", call)
+        assert small.value(parse(call, references=True).calls[0])[0] is not None
+
+
+def test_a_wrong_value_is_seen_by_the_second_definition(monkeypatch):
+    """Velocities that are a thousandth too large, and spins of the wrong sign, are told."""
+    rate, spin = Quantities.rate, Quantities.spin
+    monkeypatch.setattr(Quantities, "rate", lambda self, v: tuple(x * Fraction(1001, 1000) for x in rate(self, v)))
+    monkeypatch.setattr(Quantities, "spin", lambda self, body: tuple(-x for x in spin(self, body)))
+    for call in (
+        "vx(arm.end)",
+        "ay(arm.end)",
+        "speed(arm.end)",
+        "omega(arm)",
+        "epsilon(arm)",
+        "curvature_radius(arm.end)",
+    ):
+        assert " for " in second_definition(state("plane"), parse(call, references=True).calls[0]), call
+
+
+def test_a_wrong_unit_is_seen(monkeypatch):
+    """A velocity in m does not grow as one in m/s."""
+    monkeypatch.setitem(FUNCTIONS, "vx", replace(velocity.VELOCITY, unit="m"))
+    with pytest.raises(AssertionError):
+        test_its_unit_is_the_one_in_which_its_number_grows("plane", "vx(arm.end)")

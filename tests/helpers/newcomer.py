@@ -1,0 +1,111 @@
+"""More than fifty mistakes of a newcomer, none of them in the other tables, and the word that mends each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+CRANE = """eomgen = 1
+name = "crane"
+space = "plane"
+[parameters]
+M = { value = 5, unit = "kg" }
+m = { value = 2, unit = "kg" }
+l = { value = 1.2, unit = "m" }
+k = { value = 20, unit = "N/m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { start = 0, unit = "m" }
+phi = { start = 20, unit = "deg" }
+[bodies.trolley]
+mass = "M"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k" }
+[bodies.boom]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "trolley", angle = "phi - pi/2" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+a = "phi''"
+"""
+IN_FILES = {
+    # what is meant: (text, what a newcomer writes instead, what the message has in it)
+    "the version as a text": ("eomgen = 1", 'eomgen = "1"', "eomgen = 1"),
+    "a version of the package": ("eomgen = 1", 'eomgen = "0.1.0"', "eomgen = 1"),
+    "the dimension as a number": ('space = "plane"', "space = 2", "plane"),
+    "2D": ('space = "plane"', 'space = "2D"', "plane"),
+    "3D": ('space = "plane"', 'space = "3d"', "space"),
+    "no space at all": ('space = "plane"\n', "", "space"),
+    "a body's name in capitals": ('on = "trolley"', 'on = "Trolley"', "did you mean 'trolley'"),
+    "a table in the singular": ("[bodies.boom]", "[body.boom]", "did you mean 'bodies'"),
+    "bodies without names": ("[bodies.boom]", "[[bodies]]", "[bodies.boom]"),
+    "a blank in a name": ("[bodies.boom]", '[bodies."long boom"]', "name"),
+    "a hyphen in a name": ("[bodies.boom]", "[bodies.long-boom]", "name"),
+    "a coordinate for the start": ("start = 20", 'start = "x"', "start"),
+    "a start in radians by sign": ('start = 20, unit = "deg"', 'start = "20°"', "deg"),
+    "degrees in full": ('unit = "deg"', 'unit = "degrees"', "deg"),
+    "radians in full": ('unit = "deg"', 'unit = "radians"', "rad"),
+    "seconds in full": ('unit = "N/m"', 'unit = "N*sec/m"', "s"),
+    "a dot for a product of units": ('unit = "N/m"', 'unit = "kg.m/s^2"', "*"),
+    "Newton in full": ('unit = "N/m"', 'unit = "Newton/m"', "N"),
+    "the mass as a text of its unit": ('mass = "M"', 'mass = "5kg"', 'unit = "kg"'),
+    "the mass twice": ('mass = "m", length', 'mass = "m", m = "m", length', "unknown key 'm'"),
+    "the length by one letter": ('length = "l"', 'l = "l"', "length"),
+    "a bar": ('kind = "rod"', 'kind = "bar"', "rod"),
+    "a box in the plane": ('kind = "rod", mass = "m", length = "l"', 'kind = "box", mass = "m", length = "l"', "box"),
+    "a point mass": ('kind = "rod", mass = "m", length = "l"', 'kind = "point", mass = "m"', "particle"),
+    "a pin for a joint": ('kind = "revolute"', 'kind = "pin"', "revolute"),
+    "a rotation": ('kind = "revolute"', 'kind = "rotational"', "revolute"),
+    "a translation": ('kind = "prismatic"', 'kind = "translational"', "prismatic"),
+    "an axis by its letter": ("axis = [1, 0]", 'axis = "x"', "[1, 0]"),
+    "an axis of three components": ("axis = [1, 0]", "axis = [1, 0, 0]", "2 components"),
+    "theta for the angle": ('angle = "phi - pi/2"', 'theta = "phi - pi/2"', "angle"),
+    "the coordinate's key": ('displacement = "x"', 'coordinate = "x"', "displacement"),
+    "degrees into sin": ("\"phi''\"", '"sin(30 deg)"', "pi/6"),
+    "a dot above by a dot": ("\"phi''\"", '"phi.dot"', "phi'"),
+    "three primes": ("\"phi''\"", "\"phi'''\"", "two primes"),
+    "an arcsine by its short name": ("\"phi''\"", '"arcsin(x/l)"', "asin"),
+    "the logarithm": ("\"phi''\"", '"ln(x)"', "log"),
+    "absolute bars": ("\"phi''\"", '"|phi|"', "abs"),
+    "a square root by its sign": ("\"phi''\"", '"√(x)"', "sqrt"),
+    "a power in Python": ("\"phi''\"", '"pow(phi, 2)"', "write phi^2"),
+    "a module of Python": ("\"phi''\"", '"np.sin(phi)"', "write sin(...)"),
+    "brackets for parentheses": ("\"phi''\"", '"2*[phi + 1]"', "round parentheses"),
+    "an output without quotes": ("\"phi''\"", "phi", "quotes"),
+    "curly quotes": ("\"phi''\"", "“phi”", '"'),
+    "gravity as one number": ('[0, "-g"]', '"g"', "["),
+    "a semicolon at the end": ("eomgen = 1", "eomgen = 1;", "leave it out"),
+    "a remark in C": ("eomgen = 1", "eomgen = 1 // version", "#"),
+    "a value for a name": ("eomgen = 1", "eomgen: 1", "="),
+}
+"""of the model file"""
+IN_COMMANDS = {
+    "a verb in other words": (["run", "MODEL"], "simulate"),
+    "the model's name without its ending": (["derive", "model"], "does not exist"),
+    "a value by a colon": (["derive", "MODEL", "--set", "m:3"], "--set m=2"),
+    "a value of what is no parameter": (["derive", "MODEL", "--set", "mass=3"], "mass"),
+    "a start of a parameter": (["derive", "MODEL", "--start", "m=3"], "--set"),
+    "a parameter of a coordinate": (["derive", "MODEL", "--set", "phi=3"], "--start"),
+    "a time with its unit": (["simulate", "MODEL", "--time", "5s"], "5s"),
+    "a time that goes back": (["simulate", "MODEL", "--time", "-1"], "time"),
+    "an end without an equation": (["simulate", "MODEL", "--until", "phi"], "="),
+    "a method of another program": (["simulate", "MODEL", "--method", "ode45"], "RK45"),
+    "a picture into a table": (["simulate", "MODEL", "-o", "run.png"], ".csv"),
+    "a language by its ending": (["codegen", "MODEL", "--target", "py", "-o", "OUT"], "numpy"),
+}
+"""of the command line"""
+
+
+def of_python() -> dict[str, tuple[Callable[[], object], str]]:
+    """Of Python: (what is called, what the message has in it)."""
+    import eomgen
+
+    model = eomgen.loads(CRANE)
+    return {
+        "a file that is not there": (lambda: eomgen.derive("cranes.toml"), "cranes.toml"),
+        "the text for the path": (lambda: eomgen.load(CRANE), "loads"),
+        "a parameter that is none": (lambda: eomgen.derive(model, parameters={"mass": 3}), "mass"),
+        "a unit that does not fit": (lambda: eomgen.derive(model, parameters={"m": (3, "m")}), "does not fit"),
+        "a method by the wrong man": (lambda: eomgen.derive(model, method="newton"), "lagrange"),
+        "a time of zero length": (lambda: eomgen.simulate(model, time=-1), "time"),
+    }

@@ -1,0 +1,62 @@
+"""A derivation is proven as it is printed: its formulas, read back, hold along the motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import eomgen
+from eomgen.mechanics.first_integrals import constants_of_motion
+from eomgen.report.reading import Reader
+from eomgen.report.statements import Omitted
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.traversal import order
+from eomgen.verbs.derive import derive_document
+
+MODELS = Path(__file__).parents[2] / "models"
+PRINTED = "what is printed, read back, holds along the motion"
+CONSTANT = "first integrals as they are printed stay constant along the motion"
+
+
+def statuses(name: str) -> dict[str, str]:
+    model = eomgen.load(next(MODELS.rglob(f"{name}.toml")))
+    certificate = derive_document(model, method="lagrange", certify=True).certificate
+    assert certificate is not None
+    return {check.name: check.status for check in certificate.checks}
+
+
+@pytest.mark.parametrize("name", ["bead_on_turning_hoop", "four_bar", "rough_incline", "ch22_p1", "chaplygin_sleigh"])
+def test_printed_derivations_hold_along_the_motion(name):
+    assert statuses(name)[PRINTED] == "holds"
+
+
+def test_a_parameter_with_the_letter_of_an_energy_is_itself():
+    """V is the rate of the luffing boom, and not the potential energy."""
+    assert statuses("slewing_crane")[PRINTED] == "holds"
+
+
+def test_a_formula_that_gets_wrong_on_the_way_to_the_page_is_seen(monkeypatch):
+    """The equations are right, what is printed of them is not: cos where sin stood."""
+    own = Reader.shown
+
+    def shown(self, x):
+        found = own(self, x)
+        sines = [] if isinstance(found, Omitted) else [node for node in order((found,)) if node.op == "sin"]
+        return substituted((found,), {node: function("cos", node.args[0]) for node in sines})[0]
+
+    monkeypatch.setattr(Reader, "shown", shown)
+    assert statuses("simple_pendulum")[PRINTED] == "fails"
+
+
+def test_a_printed_integral_that_does_not_stay_is_seen(monkeypatch):
+    """u . dT/du - 2 T + V"""
+    own = constants_of_motion.jacobi
+
+    def jacobi(equations):
+        found = own(equations)
+        return None if found is None else found - equations.T
+
+    monkeypatch.setattr("eomgen.mechanics.first_integrals.integrals.jacobi", jacobi)
+    assert statuses("bead_on_turning_hoop")[CONSTANT] == "fails"

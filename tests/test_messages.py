@@ -1,0 +1,125 @@
+"""Common mistakes and the mend that is said; one mistake is one error, and hides no other."""
+
+from __future__ import annotations
+
+import pytest
+
+import eomgen
+
+CRANE = """eomgen = 1
+space = "plane"
+[parameters]
+M = { value = 5, unit = "kg" }
+m = { value = 2, unit = "kg" }
+l = { value = 1.2, unit = "m" }
+k = { value = 20, unit = "N/m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { start = 0, unit = "m" }
+phi = { start = 20, unit = "deg" }
+[bodies.trolley]
+mass = "M"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[bodies.boom]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", on = "trolley", angle = "phi - pi/2" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+a = "phi''"
+"""
+JOINT, ASKED, ANGLE = (
+    'joint = { kind = "revolute", on = "trolley", angle = "phi - pi/2" }',
+    "\"phi''\"",
+    '"phi - pi/2"',
+)
+HABITS = [
+    ('"m/s^2"', '"m/s2"', "m/s^2"),
+    ('"kg"', '"kgs"', "'kg'"),
+    ('on = "trolley"', 'parent = "trolley"', "'on'"),
+    (JOINT, 'joint = {\n  kind = "revolute",\n  on = "trolley" }', "one line; or write it as one with a head"),
+    (ANGLE, '"phi - 90 deg"', "write pi/2"),
+    (ANGLE, '"phi - 90*deg"', "write pi/2"),
+    (ANGLE, '"135 deg + phi"', "write 3*pi/4"),
+    ('{ value = 9.81, unit = "m/s^2" }', '"9,81"', "write a decimal point: 9.81"),
+    ('{ value = 5, unit = "kg" }', '"5 kg"', '{ value = 5, unit = "kg" }'),
+    ("value = 5,", "value = 5,0,", "write a decimal point: 5.0"),
+    (CRANE, "name: crane\nbodies:\n  - a\n", 'write: name = "crane"'),
+    (ASKED, '"phi_dot"', "write phi'"),
+    (ASKED, '"phiddot"', "write phi''"),
+    (ASKED, '"dphi"', "write phi'"),
+    (ASKED, '"diff(phi, t)"', "write phi'"),
+    (ASKED, '"diff(phi, t, 2)"', "write phi''"),
+    (ASKED, '"ddot(phi)"', "write phi''"),
+    (ASKED, '"sin^2(phi + (x))"', "write sin(phi + (x))^2"),
+    (ASKED, '"x(boom.end"', "write )"),
+    (ANGLE, '"phi - π/2"', "write pi"),
+    (ANGLE, '"φ"', "write phi"),
+    (ASKED, '"reaction(boom)"', "one of reaction_x, reaction_y"),
+    (ASKED, '"velocity(boom.end)"', "one of speed, vx, vy"),
+    ('"revolute"', '"hinge"', "'revolute'"),
+    ('"prismatic"', '"slider"', "'prismatic'"),
+    ('kind = "revolute"', 'type = "revolute"', "write kind"),
+    ("start = 20", "value = 20", "'start'"),
+    ("[parameters]", "[paramters]", "'parameters'"),
+    ("[bodies.boom]", "[boddies.boom]", "'bodies'"),
+]
+
+
+def problems(text: str) -> tuple[eomgen.Problem, ...]:
+    with pytest.raises(eomgen.ModelError) as caught:
+        eomgen.loads(text)
+    return caught.value.problems
+
+
+@pytest.mark.parametrize(("old", "new", "mend"), HABITS, ids=[new[:30].replace("\n", " ") for _, new, _ in HABITS])
+def test_a_habit_of_another_notation_is_answered_with_ours(old, new, mend):
+    """One mistake, and all that is said leads to its mend."""
+    assert CRANE.count(old) >= 1
+    found = problems(CRANE.replace(old, new, 1))
+    assert mend in found[0].mend
+    assert len(found) == 1 or new == "[boddies.boom]"
+
+
+def test_the_model_itself_is_good():
+    """Each mistake above is the only one."""
+    assert eomgen.loads(CRANE).name == "model"
+
+
+def test_a_mistyped_heading_hides_no_error_below_it():
+    """[paramters] is told, and a wrong unit in it, at its place; what uses its names is no error."""
+    found = problems(CRANE.replace("[parameters]", "[paramters]").replace('"N/m"', '"N/q"'))
+    assert [problem.where.split(":")[1] for problem in found] == ["3", "7"]
+    assert "paramters" in found[0].what and "'q'" in found[1].what
+
+
+@pytest.mark.parametrize(("key", "right"), [("jiont", "joint"), ("shap", "shape")])
+def test_a_mistyped_key_of_a_body_hides_no_error_in_it(key, right):
+    """The key and the unknown name below it: two errors, both at their places, none that follows from them."""
+    text = CRANE.replace(f'{right} = {{ kind = "r', f'{key} = {{ kind = "r', 1)
+    assert len(problems(text)) == 1
+    name = {"joint": "phi -", "shape": '"l"'}[right]
+    found = problems(text.replace(name, name.replace("phi", "psi").replace("l", "ll")))
+    assert [problem.what.split("'")[1] for problem in found] == [key, {"joint": "psi", "shape": "ll"}[right]]
+    assert {problem.where.split(":")[1] for problem in found} == {"17" if right == "joint" else "16"}
+
+
+def test_a_mistyped_kind_hides_no_error_beside_it():
+    """kind = "revolut" and on = "troley": both are told, at their places."""
+    text = CRANE.replace('"revolute"', '"revolut"').replace('on = "trolley"', 'on = "troley"')
+    found = problems(text)
+    assert ["revolut" in found[0].what, "troley" in found[1].what, len(found)] == [True, True, 2]
+    assert len(problems(CRANE.replace('kind = "gravity"', 'kind = "gravty"'))) == 1
+
+
+def test_a_guess_that_does_not_fit_adds_no_error():
+    """A kind far from all, and a key whose value cannot be the one that it resembles: one error each."""
+    assert len(problems(CRANE.replace('"revolute"', '"xyzzy"'))) == 1
+    assert len(problems(CRANE.replace("start = 20", "strt = [1, 2]"))) == 1
+
+
+def test_the_line_that_is_shown_has_words():
+    """A file that begins with empty lines: the first line with something in it is marked."""
+    (problem,) = problems('\n# a remark\n\nspace = "plane"\n')
+    assert problem.where.endswith(":4:1") and 'space = "plane"' in problem.excerpt

@@ -1,0 +1,212 @@
+"""Every way by which a value with a unit gets in: each verb by each of its options, and the functions of Python.
+
+python tests/test_unit_paths.py > docs/unit_paths.md        writes the table
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.errors import ModelError, UsageError
+from eomgen.verbs.assignments import OPTIONS
+
+pytestmark = pytest.mark.slow
+
+PENDULUM = """
+eomgen = 1
+name = "Pendulum"
+space = "plane"
+[parameters]
+l = { value = 50, unit = "cm" }
+m = { value = 2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+theta = { start = 40, unit = "deg" }
+[bodies.bob]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "theta - pi/2" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+T = "kinetic_energy()"
+"""
+TAKEN = {
+    "--set": {
+        "l=80": ("l", 80, "cm"),
+        "l=0.8 m": ("l", 80, "cm"),
+        "l=160*l/m": None,
+        "l=2*pi": ("l", 2 * math.pi, "cm"),
+    },
+    "--start": {"theta=30": ("theta", 30, "deg"), "theta'=15 rpm": ("theta'", 90, "deg/s"), "theta=pi/6": None},
+    "--from-rest": {"theta=30": ("theta", 30, "deg"), "theta=0.1 rad": ("theta", 18 / math.pi, "deg"), "theta=l": None},
+    "--at": {"theta=-10": ("theta", -10, "deg"), "theta=-0.1 rad": ("theta", -18 / math.pi, "deg"), "theta=pi/6": None},
+    "--until": {"theta=10": ("theta", 10, "deg"), "theta'=-10 rpm": ("theta'", -60, "deg/s"), "theta=5 m": None},
+    "--given": {
+        "omega(bob)=2": ("omega(bob)", 2, "1/s"),
+        "omega(bob)=30 rpm": ("omega(bob)", 30, "rpm"),
+        "omega(bob)=5 m": None,
+    },
+}
+"""of each option: what is typed, and under which name, as which value and in which unit it is taken; None: refused"""
+BESIDE = {"codegen": ["-o", "OUT"], "simulate": ["--time", "0.2", "--target", "numpy"]}
+STILL = ("new", "schema", "doctor", "examples")
+"""verbs that compute nothing of a model"""
+
+
+def paths() -> list[tuple[str, str]]:
+    """(verb, option) of every option whose value has a unit."""
+    return [
+        (verb, OPTIONS[parameter.name])
+        for verb, command in main.commands.items()
+        for parameter in command.params
+        if OPTIONS.get(parameter.name) in parameter.opts
+    ]
+
+
+def table() -> str:
+    """The ways in, as a page."""
+    head = "# By which way a value with a unit gets in\n\n"
+    head += "Each verb by its options, what is typed and what is taken of it; written by\n"
+    head += "`python tests/test_unit_paths.py`, whose tests run each row. The model: lengths in cm, angles in deg.\n\n"
+    rows = ["| verb | option | typed | taken |", "|---|---|---|---|"]
+    for verb, option in paths():
+        for typed, taken in TAKEN[option].items():
+            told = "refused" if taken is None else f"{taken[0]} = {taken[1]:.10g} {taken[2]}"
+            rows.append(f"| {verb} | `{option}` | `{typed}` | {told} |")
+    return head + "\n".join(rows) + "\n"
+
+
+@pytest.fixture
+def pendulum(tmp_path: Path) -> Path:
+    path = tmp_path / "pendulum.toml"
+    path.write_text(PENDULUM)
+    return path
+
+
+@pytest.mark.parametrize(("verb", "option"), paths())
+def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_taken_is_said(verb, option, pendulum):
+    """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""
+    for typed, expected in TAKEN[option].items():
+        words = [verb, str(pendulum), *BESIDE.get(verb, []), option, typed, "--json"]
+        words = [str(pendulum.parent / "out") if word == "OUT" else word for word in words]
+        words += ["--no-certify"] if any("--no-certify" in p.opts for p in main.commands[verb].params) else []
+        result = CliRunner().invoke(main, words)
+        if expected is None:
+            assert result.exit_code == 2, typed
+            continue
+        name, value, unit = expected
+        told = json.loads(result.stdout)["taken"][name]
+        assert told["value"] == pytest.approx(value, rel=1e-12)
+        assert told["unit"] == unit
+        assert f"taken: {name} = {value:.10g} {unit}" in result.stderr
+
+
+def test_every_verb_that_computes_takes_values_and_starts():
+    """--set and --start on each."""
+    found = {verb: {option for v, option in paths() if v == verb} for verb in main.commands if verb not in STILL}
+    assert all({"--set", "--start"} <= options for options in found.values()), found
+
+
+def test_the_page_of_ways_is_that_of_the_verbs():
+    """docs/unit_paths.md = table()."""
+    assert (Path(__file__).parent.parent / "docs" / "unit_paths.md").read_text(encoding="utf-8") == table()
+
+
+class OfPint:
+    """A quantity as pint has it."""
+
+    def __init__(self, magnitude: float, dimensionality: dict[str, int]) -> None:
+        self.magnitude, self.dimensionality = magnitude, dimensionality
+
+    def to_base_units(self) -> OfPint:
+        return self
+
+
+@pytest.mark.parametrize(
+    "typed", [0.8, (80, "cm"), "80 cm", "0.8 m", "4/5", OfPint(0.8, {"[length]": 1.0}), "0.4*k/k*2"]
+)
+def test_in_python_a_plain_number_is_si_and_others_bring_their_unit(typed, pendulum):
+    """l = 0.8 m however it is said; with names in it in SI."""
+    pendulum.write_text(PENDULUM.replace("[coordinates]", "k = 3\n[coordinates]"))
+    found = eomgen.derive(pendulum, parameters={"l": typed}).model.parameters["l"].value
+    assert found.evaluate({"k": 3}) * 5 == 4
+
+
+FUNCTIONS = (
+    eomgen.derive,
+    eomgen.solve,
+    eomgen.reactions,
+    eomgen.statics,
+    eomgen.kinematics,
+    eomgen.inertia,
+    eomgen.linearize,
+    eomgen.generate,
+    eomgen.freedom_of,
+    eomgen.inverse_dynamics,
+    lambda model, **values: eomgen.simulate(model, time=0.1, target="numpy", **values),
+)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_every_function_takes_values_and_refuses_a_unit_that_does_not_fit(function, pendulum):
+    """parameters= and start=."""
+    function(pendulum, parameters={"l": (80, "cm")}, start={"theta": "30 deg"})
+    with pytest.raises(UsageError, match="does not fit"):
+        function(pendulum, parameters={"l": "30 deg"})
+    with pytest.raises(UsageError, match="no coordinate or speed"):
+        function(pendulum, start={"thet": 1})
+
+
+def test_a_start_in_python_is_where_the_motion_starts(pendulum):
+    """theta(0) = 30 deg = pi/6, theta'(0) = 15 rpm = pi/2 rad/s."""
+    run = eomgen.simulate(pendulum, time=0.1, target="numpy", start={"theta": (30, "deg"), "theta'": "15 rpm"})
+    assert list(run.x[0]) == pytest.approx([math.pi / 6, math.pi / 2], rel=1e-15)
+
+
+def test_a_rate_that_is_typed_is_the_rate_of_every_verb(pendulum):
+    """T = m l^2 theta'^2/6 at the start, theta' = 15 rpm = pi/2 rad/s."""
+    found = eomgen.solve(pendulum, start={"theta'": "15 rpm"})["T"]
+    assert found.value == pytest.approx(2 * 0.25 / 6 * (math.pi / 2) ** 2, rel=1e-14)
+
+
+def test_given_velocities_are_in_the_units_that_the_file_declares():
+    """theta' = 90 of an angle in deg is 90 deg/s; pi/2 is refused with both mends."""
+    ending = '\n[given]\nvelocity = ["{}"]\n'
+    model = eomgen.loads(PENDULUM + ending.format("theta' = 90"))
+    assert model.given.velocity[0].right.evaluate({"pi": 1}) * 2 == 1
+    turned = eomgen.loads(PENDULUM + ending.format("omega(bob) = 300 rpm"))
+    assert turned.given.velocity[0].right.evaluate({"pi": 1}) == 10
+    with pytest.raises(ModelError, match=r"write 90 deg/s, or pi/2 rad/s"):
+        eomgen.loads(PENDULUM + ending.format("theta' = pi/2"))
+    with pytest.raises(ModelError, match="does not fit"):
+        eomgen.loads(PENDULUM + ending.format("theta' = 3 m"))
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--set", "l=45 dge"), "did you mean 'deg'?"),
+        (("--set", "l=5*m*cm"), "unknown name 'cm'"),
+        (("--set", "l=5*cm"), "write 5 cm"),
+        (("--set", "l=2*m cm"), "write 2*m"),
+        (("--start", "theta=pi/4"), "write 45 deg, or pi/4 rad"),
+        (("--set", "g=m"), "'m' is in kg, but 'g' is in m/s^2"),
+        (("--set", "m=-1"), "negative"),
+    ],
+)
+def test_what_is_typed_wrongly_is_refused_with_its_mend(words, told, pendulum):
+    """Exit 2, and the nearest right thing."""
+    result = CliRunner().invoke(main, ["derive", str(pendulum), *words])
+    assert (result.exit_code, told in result.stderr) == (2, True), result.stderr
+
+
+if __name__ == "__main__":
+    print(table(), end="")

@@ -1,0 +1,120 @@
+"""Warnings: what is allowed and hardly meant is told, at its place; and of no model of ours."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.model.warnings import warnings_of
+
+MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
+PENDULUM = """
+eomgen = 1
+space = "plane"
+[parameters]
+l = 0.5
+k = 3
+c = 2
+g = 9.81
+m = 1
+[coordinates]
+phi = 0.3
+[bodies.bob]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "phi - pi/2", stiffness = "k", damping = "c" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+FLY = '[bodies.fly]\nshape = { kind = "particle", mass = 1 }\n'
+DOUBTFUL = {
+    "degrees": (
+        '"phi - pi/2"',
+        '"phi - 90"',
+        "90 in the angle of the joint of body 'bob' is 90 rad",
+        "for degrees write pi/2",
+    ),
+    "a stiffness": (
+        'stiffness = "k"',
+        'stiffness = "-k"',
+        "'stiffness' of body 'bob' is below zero",
+        "leave out the minus",
+    ),
+    "a damping": ('damping = "c"', 'damping = "-c"', "'damping' of body 'bob' is below zero", "leave out the minus"),
+    "gravity": ('[0, "-g"]', '[0, "g"]', "gravity pulls upward, along y", 'write "-g"'),
+    "a body without a joint": (
+        "[forces.weight]",
+        FLY + "[forces.weight]",
+        "body 'fly' has no joint",
+        "give it a joint",
+    ),
+    "masses": ('mass = "m"', "mass = 1e9", "1e+12 times less", "look at the units"),
+}
+LIGHT = '[bodies.dust]\nshape = { kind = "particle", mass = 0.001 }\njoint = { kind = "placed", on = "bob.end" }\n'
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_no_model_of_ours_is_warned_of(path):
+    """No false alarm."""
+    assert warnings_of(eomgen.load(path)) == ()
+
+
+@pytest.mark.parametrize(("old", "new", "told", "mend"), DOUBTFUL.values(), ids=DOUBTFUL)
+def test_what_is_hardly_meant_is_told_with_its_place(old, new, told, mend, tmp_path):
+    """In the JSON of a verb that has nothing to do with it, on stderr, and in the exit code with --strict."""
+    model = tmp_path / "doubtful.toml"
+    text = PENDULUM.replace(old, new, 1)
+    model.write_text(text.replace("[forces.weight]", LIGHT + "[forces.weight]") if "1e9" in new else text)
+    words = ["inertia", str(model), "--json", "--no-certify"]
+    result = CliRunner().invoke(main, words)
+    (warning,) = json.loads(result.stdout)["warnings"]
+    assert told in warning["what"] and mend in warning["mend"]
+    assert warning["file"] == str(model) and warning["line"] > 1 and warning["column"] >= 1
+    assert told in result.stderr
+    assert (result.exit_code, CliRunner().invoke(main, [*words, "--strict"]).exit_code) == (0, 1)
+
+
+@pytest.mark.parametrize("angle", ["phi - pi/2", "phi + 6", "90*phi", "phi/90", "sin(90*phi)", "phi*(1 + 90*phi)"])
+def test_numbers_that_multiply_are_no_degrees(angle):
+    """Only terms of the sum that is the angle."""
+    assert warnings_of(eomgen.loads(PENDULUM.replace("phi - pi/2", angle))) == ()
+
+
+def test_without_doubt_strict_changes_nothing(tmp_path):
+    """Exit 0, and no warning."""
+    model = tmp_path / "pendulum.toml"
+    model.write_text(PENDULUM)
+    result = CliRunner().invoke(main, ["check", str(model), "--strict", "--json"])
+    assert (result.exit_code, json.loads(result.stdout)["warnings"]) == (0, [])
+
+
+TWO_NAMES = PENDULUM.replace("phi = 0.3", "phi = 0.3\npsi = 0").replace("phi - pi/2", "phi + psi")
+OPEN = PENDULUM.replace(
+    "[forces.weight]",
+    '[points]\nP = [9, 0]\n[constraints.far]\nkind = "pin"\npoints = ["bob.end", "P"]\n[forces.weight]',
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"), [(TWO_NAMES, "can move together without moving a mass"), (OPEN, "'far' (row 1) does not close")]
+)
+def test_check_tells_what_derive_or_simulate_would_refuse(text, told, tmp_path):
+    """Not "no problems found"."""
+    model = tmp_path / "wrong.toml"
+    model.write_text(text)
+    result = CliRunner().invoke(main, ["check", str(model)])
+    assert "no problems found" not in result.stdout
+    assert told in result.stderr
+
+
+def test_check_shows_the_units_that_were_inferred(tmp_path):
+    """l stands in a rod: m; phi is an angle."""
+    model = tmp_path / "pendulum.toml"
+    model.write_text(PENDULUM)
+    found = json.loads(CliRunner().invoke(main, ["check", str(model), "--json"]).stdout)["inferred_units"]
+    assert found == {"l": "m", "k": "N*m", "c": "kg*m^2/s", "g": "m/s^2", "m": "kg", "phi": "1"}
