@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hand_made import equations_of, spring_row, symbols
+from tools import each_target
 
 import eomgen
 from eomgen.codegen.kernel_reader import solve_bordered
@@ -12,7 +13,6 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
-from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -20,8 +20,6 @@ from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import is_zero
 
 pytestmark = pytest.mark.slow
-
-each_target = pytest.mark.parametrize("target", [target.name for target in ALL])
 
 
 def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> EquationsOfMotion:

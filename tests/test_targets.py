@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from tools import each_target, needs, tool
 
 import eomgen
 from eomgen import files
@@ -36,9 +37,6 @@ GOLDEN = Path(__file__).parent / "golden"
 MODELS = Path(__file__).parent.parent / "models"
 TARGETS = [target.name for target in ALL]
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
-each_target = pytest.mark.parametrize(
-    "target", [pytest.param(name, marks=needs_cc if name == "c" else ()) for name in TARGETS]
-)
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"]
 
 
@@ -216,7 +214,7 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
 @each_target
 def test_names_of_the_language_are_harmless(target):
     """Keywords, functions, our own variables and Greek letters as names of coordinates and parameters."""
-    s = symbols("int double t_ v1 solve_M M sin θ", "lambda I E x p c dx NULL printf é", "for inputs")
+    s = symbols("int double t_ v1 solve_M M sin θ", "lambda I E x p c dx NULL printf é Math await rhs", "for inputs")
     arguments = [*s.q, *s.parameters.values(), *s.inputs.values()]
     outputs = [a + i * b for i, (a, b) in enumerate(zip(arguments, reversed(arguments), strict=True), start=2)]
     program = program_of(outputs, s, inputs={"for": s.t, "inputs": 2 * s.t})
@@ -404,6 +402,29 @@ def self_test(path: Path) -> subprocess.CompletedProcess:
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     assert made.returncode == 0, made.stderr
     return subprocess.run([str(run)], capture_output=True, text=True, check=False)
+
+
+def node_test(folder: Path) -> subprocess.CompletedProcess:
+    return subprocess.run([tool("node"), "--test"], cwd=folder, capture_output=True, text=True, check=False)
+
+
+@needs("node")
+def test_the_javascript_files_pass_their_own_test(tmp_path):
+    """`node --test` finds the files of every way of solving and of reactions, and holds them against the vectors."""
+    for name, made in SYSTEMS.items():
+        written(tmp_path / name, "javascript", made())
+    reactions_written(tmp_path / "reactions", "javascript")
+    done = node_test(tmp_path)
+    assert done.returncode == 0 and f"# pass {len(SYSTEMS) + 2}" in done.stdout, done.stdout
+
+
+@needs("node")
+def test_the_javascript_test_notices_a_wrong_sign(tmp_path):
+    """The sign of one product turned: the test fails and names the entry."""
+    path = written(tmp_path, "javascript")[0]
+    path.write_text(path.read_text().replace("(c[0] - v1*v4)", "(c[0] + v1*v4)"))
+    done = node_test(path.parent)
+    assert done.returncode == 1 and "dx[2]" in done.stdout
 
 
 def test_the_python_file_needs_nothing_of_ours(tmp_path):

@@ -1,10 +1,9 @@
-"""The seam of languages: a table of words, written nowhere but here, runs every program and passes the same vectors."""
+"""The seam of languages: a table of words runs every program, whole or cut, and passes the same vectors."""
 
 from __future__ import annotations
 
 import json
 import math
-import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -12,53 +11,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from tools import needs, tool
 
 import eomgen
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program, program_of, right_hand_side
 from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.javascript import JAVASCRIPT
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.vectors import vectors
 
 MODELS = Path(__file__).parents[2] / "models"
-NODE = shutil.which("node")
-JAVASCRIPT = Language(
-    reserved=frozenset(
-        "await class const debugger delete enum export function import in instanceof let new super var".split()
-    ),
-    functions={
-        **{op: f"Math.{op}({{0}})" for op in "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()},
-        **{op: f"Math.{op}({{0}}, {{1}})" for op in "atan2 pow min max".split()},
-    },
-    defined={
-        "less": "const less = (a, b) => a < b ? 1 : a >= b ? 0 : NaN;",
-        "less_equal": "const less_equal = (a, b) => a <= b ? 1 : a > b ? 0 : NaN;",
-        "select": "const select = (given, a, b) => given === 0 ? b : given === given ? a : given;",
-    },
-    words={"not": "!", "nan": "NaN", "given": "inputs !== null"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
-    at="{array}[{index}]",
-    let="const {declared} = {value};",
-    put="{place} = {value};",
-    call="{function}({arguments});",
-    back="return {value};",
-    arrays=dict.fromkeys((CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"),
-    tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
-    listed=("[", "]"),
-    loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),
-    down=("for (let {name} = {last} - 1; {name} >= {first}; {name}--) {{", "}"),
-    branch=("if ({condition}) {{", "} else {", "}"),
-    function=("function {declared}({arguments}) {{", "}"),
-    out=("function {name}({arguments}) {{\n    const {out} = new Array({size}).fill(0);", "    return {out};\n}"),
-    remark="// {text}",
-    longest=30,
-)
+CUT = replace(JAVASCRIPT, longest=30)  # into parts, also what is short
 
 
 def javascript(program: Program) -> str:
     """A module that reads states from its input and writes the outputs, one line of JSON a state."""
-    made = lowered(program, JAVASCRIPT, "dx")
+    made = lowered(program, CUT, "dx")
     lines = [JAVASCRIPT.defined[op] for op in sorted(made.ops & JAVASCRIPT.defined.keys())]
     lines += map(JAVASCRIPT.holds, made.tables)
     for function in (*made.kernels, *made.bodies):
@@ -100,16 +69,16 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.skipif(NODE is None, reason="no node")
+@needs("node")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_language_is_a_table_of_words(name, tmp_path):
-    """|emitted(x) - vector| <= tolerance in a language that only this file knows; nan where there is no value."""
+    """|emitted(x) - vector| <= tolerance cut into many parts; nan where there is no value."""
     program = PROGRAMS[name]()
     found = vectors(program)
     states = [{"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs} for v in found]
-    path = tmp_path / "program.js"
+    path = tmp_path / "program.mjs"
     path.write_text(javascript(program).replace("{states}", json.dumps(states)))
-    ran = subprocess.run([str(NODE), str(path)], capture_output=True, text=True, check=True)
+    ran = subprocess.run([tool("node"), str(path)], capture_output=True, text=True, check=True)
     for v, line in zip(found, ran.stdout.splitlines(), strict=True):
         row = [math.nan if value is None else value for value in json.loads(line)]
         largest = max([1.0, *(abs(value) for value in v.result if value == value)])

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
+from tools import each_target
 
 import eomgen
 from eomgen.cli import main
@@ -17,9 +18,6 @@ from eomgen.codegen.targets import ALL
 
 MODELS = Path(__file__).parent.parent.parent / "models"
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
-each_target = pytest.mark.parametrize(
-    "target", [pytest.param(target.name, marks=needs_cc if target.name == "c" else ()) for target in ALL if target.run]
-)
 
 
 def generated(target: str, name: str = "cart_pole"):

@@ -1,5 +1,5 @@
 """The languages that programs are written in; adding one is one file and one name here."""
 
-from eomgen.codegen.targets import c, numpy
+from eomgen.codegen.targets import c, javascript, numpy
 
-ALL = (numpy.TARGET, c.TARGET)
+ALL = (numpy.TARGET, c.TARGET, javascript.TARGET)
