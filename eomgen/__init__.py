@@ -12,6 +12,7 @@
     eomgen.kinematics(model, at="t = 2")      # Kinematics: centres of rotation, velocities, accelerations, plot
     eomgen.inertia(model, about="O")          # Inertia: masses, mass centres, tensors, principal moments and axes
     eomgen.linearize(model)                   # Linearization: M, C, K, state matrix, modes, stability
+    eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
@@ -66,6 +67,8 @@ _HOMES = {
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),
+    "scene.making": ("scene_of",),
+    "scene.scene": ("Scene",),
     "report.statics.result": ("Statics", "statics"),
     "simulation.result": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),

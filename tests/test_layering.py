@@ -18,6 +18,7 @@ CHAIN = (
     ("simulation",),
     ("proof",),
     ("certificate",),
+    ("scene",),
     ("report",),
     ("equations",),
     ("questions",),

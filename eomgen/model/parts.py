@@ -1,7 +1,8 @@
 """Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
 
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar
+from importlib import import_module
+from typing import Annotated, Any, ClassVar
 
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
@@ -269,6 +270,14 @@ class Model(Part):
         sizes = [f"{len(getattr(self, name))} {name}" for name in tables if getattr(self, name)]
         where = "in space" if self.space == "space" else "in the plane"
         return f"<model {self.name!r} {where}: {', '.join(sizes) or 'nothing in it'}>"
+
+    def scene(self) -> Any:
+        """What can be drawn of the model at a state, forces left out: a Scene, `to_json()` as data.
+
+        Raises:
+            DerivationError, NotYet: what cannot be derived is not drawn either.
+        """
+        return import_module("eomgen").scene_of(self)  # the package's front door: the scene is a later room's
 
     def body_points(self, body: str) -> tuple[str, ...]:
         """The names of a body's points: `origin`, its shape's or mass centre's, its own."""

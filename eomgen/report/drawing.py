@@ -82,9 +82,9 @@ class Sketch:
         found = []
         for pose, shape, color in shapes:
             own = self._placed(pose.R, pose.p)
-            lines = shape.outline(self._value)
+            lines = [_traced(flat) for form in shape.forms(self._value) for flat in form.flat()]
             for number, line in enumerate(lines[:1] if color == PAPER else lines):
-                found.append((whole(own(np.array(line))), PAPER if number else color))
+                found.append((whole(own(line)), PAPER if number else color))
         return sorted(found, key=lambda outline: outline[1] == PAPER)
 
     def _placed(self, R: Matrix, p: Vector) -> Callable[[np.ndarray], np.ndarray]:
@@ -120,6 +120,17 @@ class Sketch:
     def symbol(self) -> float:
         """The size of hinges and supports [m]."""
         return SYMBOL * self.extent
+
+
+def _traced(form: Any) -> np.ndarray:
+    """A form of the plane as points."""
+    if form.kind != "arc":
+        points = np.array([[float(x) for x in p[:2]] for p in form.points])
+        return np.vstack([points, points[:1]]) if form.kind == "polygon" else points
+    start, end = (0.0, math.tau) if form.start is None else (float(form.start), float(form.end))
+    turns = np.linspace(start, end, 73)
+    arc = np.column_stack([float(form.radius) * np.cos(turns), float(form.radius_y) * np.sin(turns)])
+    return np.vstack([np.zeros((1, 2)), arc, np.zeros((1, 2))]) if form.close == "center" else arc
 
 
 def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mapping[str, str] | None = None) -> None:

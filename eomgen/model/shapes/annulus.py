@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, around, between, diagonal
+from eomgen.model.shapes.forms import Form, round_plate
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -20,6 +21,9 @@ class Annulus(Hollow):
 
     kind: ClassVar[str] = "annulus"
     dimension: ClassVar[int] = 2
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return round_plate(value(self.radius), value(self.inner))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(between(value(self.inner), value(self.radius), s[0]), s[1]), 0)

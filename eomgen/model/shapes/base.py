@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
+from eomgen.model.shapes.forms import Form
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
-Line = tuple[tuple[float, float], ...]
 Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")
 HALF, THIRD = 0.5, 1 / 3  # of a length in numbers
@@ -72,8 +72,8 @@ class Shape(Part, ABC):
         """Why no such body exists, "" where one does; the values are numbers."""
         return ""
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        """What a picture in the plane shows of it: lines from point to point, body axes; the values are numbers."""
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        """What a picture shows of it, body axes."""
         return ()
 
     def mass_of(self, value: ValueOf) -> Any:
@@ -127,15 +127,3 @@ def not_inside(inner: Any, outer: Any) -> str:
 def more_than_a_turn(opening: float) -> str:
     """What is wrong with the angle of a sector or an arc."""
     return "" if opening <= 2 * math.pi * (1 + SOLVED) else "'opening' is more than a whole turn"
-
-
-def circle(radius: float, begin: float = 0.0, end: float = 2 * math.pi) -> Line:
-    """A circle about the origin, or its arc from one angle to another, as a line of many pieces."""
-    turns = (begin + (end - begin) * k / 72 for k in range(73))
-    return tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
-
-
-def box_around(width: float, height: float) -> Line:
-    """A rectangle about the origin, as a closed line."""
-    x, y = width / 2, height / 2
-    return ((-x, -y), (x, -y), (x, y), (-x, y), (-x, -y))

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size, ValueOf
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
+from eomgen.model.shapes.base import HALF, MassProperties, Shape, diagonal
+from eomgen.model.shapes.forms import BoxForm, Form
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,9 +19,9 @@ class Box(Shape):
     dimension: ClassVar[int] = 3
     size: Size
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        width, height, _ = self.size
-        return (box_around(value(width), value(height)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        width, height, depth = map(value, self.size)
+        return (BoxForm(ZERO, (width, height, depth)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y, z = map(value, self.size)

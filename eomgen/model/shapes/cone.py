@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, turned_profile
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -21,6 +22,11 @@ class Cone(Shape):
     dimension: ClassVar[int] = 3
     radius: Length
     height: Length
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r, h = value(self.radius), value(self.height)
+        base, apex = -Fraction(1, 4) * h, Fraction(3, 4) * h
+        return (turned_profile(((0, base), (r, base), (0, apex)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * (1 - s[2]) * s[0], s[1]), value(self.height) * (s[2] - HALF * HALF))

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, THIRD, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, turned_profile
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -22,6 +23,10 @@ class ConicalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
     height: Length
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r, h = value(self.radius), value(self.height)
+        return (turned_profile(((r, -Fraction(1, 3) * h), (0, Fraction(2, 3) * h)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * (1 - s[1]), s[0]), value(self.height) * (s[1] - THIRD))

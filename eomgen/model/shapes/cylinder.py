@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, cylinder_form
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -22,8 +23,8 @@ class Cylinder(Shape):
     radius: Length
     length: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (circle(value(self.radius)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return (cylinder_form(value(self.radius), value(self.length)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * s[0], s[1]), value(self.length) * (s[2] - HALF))

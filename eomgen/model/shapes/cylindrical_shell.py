@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import HALF_OF, Form, turned_profile
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -19,8 +20,9 @@ class CylindricalShell(Shape):
     radius: Length
     length: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (circle(value(self.radius)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r, half = value(self.radius), HALF_OF * value(self.length)
+        return (turned_profile(((r, -half), (r, half)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius), s[0]), value(self.length) * (s[1] - HALF))

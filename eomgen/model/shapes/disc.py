@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, round_plate
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,9 +19,8 @@ class Disc(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        r = value(self.radius)
-        return circle(r), ((0.0, 0.0), (r, 0.0))
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return round_plate(value(self.radius))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius) * s[0], s[1]), 0)

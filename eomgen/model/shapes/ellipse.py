@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import PlaneSize, ValueOf
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import ArcForm, Form, LineForm
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,9 +19,9 @@ class Ellipse(Shape):
     dimension: ClassVar[int] = 2
     semiaxes: PlaneSize
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
         a, b = map(value, self.semiaxes)
-        return (tuple((a * x, b * y) for x, y in circle(1.0)),)
+        return (ArcForm(ZERO, a, b, close="chord"), LineForm((ZERO, (a, 0, 0)), fine=True))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = around(s[0], s[1])

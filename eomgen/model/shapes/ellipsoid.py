@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, diagonal, on_ball
+from eomgen.model.shapes.forms import EllipsoidForm, Form
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, vector_of
 
@@ -17,6 +18,10 @@ class Ellipsoid(Shape):
     kind: ClassVar[str] = "ellipsoid"
     dimension: ClassVar[int] = 3
     semiaxes: Size
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        a, b, c = map(value, self.semiaxes)
+        return (EllipsoidForm(ZERO, (a, b, c)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return vector_of(value(a) * x for a, x in zip(self.semiaxes, on_ball(s[0], s[1], s[2]), strict=True))

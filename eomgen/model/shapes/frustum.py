@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, around, between, diagonal
+from eomgen.model.shapes.forms import Form, turned_profile
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
@@ -24,6 +25,10 @@ class Frustum(Shape):
     radius: Length
     top: Length
     height: Length
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        R, r, h = value(self.radius), value(self.top), value(self.height)
+        return (turned_profile(((0, 0), (R, 0), (r, h), (0, h)), R),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.radius), value(self.top), s[2])

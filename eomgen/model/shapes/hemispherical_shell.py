@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, PI, Line, MassProperties, Shape, circle, diagonal, on_ball
+from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, diagonal, on_ball
+from eomgen.model.shapes.forms import Form, circle_points, turned_profile
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -21,8 +22,9 @@ class HemisphericalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (circle(value(self.radius)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r = value(self.radius)
+        return (turned_profile(circle_points(r, 12, 0, HALF), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius), HALF * s[0], s[1])

@@ -4,7 +4,7 @@ from abc import ABC
 from dataclasses import dataclass
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import Line, Shape, circle, not_inside
+from eomgen.model.shapes.base import Shape, not_inside
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,9 +13,6 @@ class Hollow(Shape, ABC):
 
     radius: Length
     inner: Length
-
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return circle(value(self.radius)), circle(value(self.inner))
 
     def impossible(self, value: ValueOf) -> str:
         return not_inside(value(self.inner), value(self.radius))

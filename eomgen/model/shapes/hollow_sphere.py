@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, between, diagonal, on_ball
+from eomgen.model.shapes.forms import EllipsoidForm, Form
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction
@@ -21,6 +22,10 @@ class HollowSphere(Hollow):
 
     kind: ClassVar[str] = "hollow_sphere"
     dimension: ClassVar[int] = 3
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r = value(self.radius)
+        return (EllipsoidForm(ZERO, (r, r, r)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(between(value(self.inner), value(self.radius), s[0]), s[1], s[2])

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.kinds import ValueOf
-from eomgen.model.shapes.base import Cell, Line, MassProperties, Shape, between
+from eomgen.model.shapes.base import Cell, MassProperties, Shape, between
+from eomgen.model.shapes.forms import Form, PolygonForm
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.rational import Fraction
@@ -28,9 +29,8 @@ class Polygon(Shape):
     dimension: ClassVar[int] = 2
     vertices: Vertices
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        corners = tuple((value(x), value(y)) for x, y in self.vertices)
-        return ((*corners, corners[0]),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return (PolygonForm(tuple((value(x), value(y), 0) for x, y in self.vertices)),)
 
     def impossible(self, value: ValueOf) -> str:
         corners = [(value(x), value(y)) for x, y in self.vertices]

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, Cell, Line, MassProperties, Shape, diagonal
+from eomgen.model.shapes.base import HALF, Cell, MassProperties, Shape, diagonal
+from eomgen.model.shapes.forms import HALF_OF, Form, PrismForm
 from eomgen.model.shapes.polygon import Polygon, Vertices
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import added
@@ -22,12 +23,13 @@ class Prism(Shape):
     vertices: Vertices
     length: Length
 
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        half = HALF_OF * value(self.length)
+        return (PrismForm(tuple((value(x), value(y)) for x, y in self.vertices), -half, half),)
+
     @property
     def section(self) -> Polygon:
         return Polygon(vertices=self.vertices)
-
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return self.section.outline(value)
 
     def impossible(self, value: ValueOf) -> str:
         return self.section.impossible(value)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
+from eomgen.model.shapes.base import HALF, MassProperties, Shape, diagonal
+from eomgen.model.shapes.forms import HALF_OF, Form, PolyhedronForm
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -23,8 +24,11 @@ class Pyramid(Shape):
     depth: Length
     height: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (box_around(value(self.width), value(self.depth)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        x, y, h = HALF_OF * value(self.width), HALF_OF * value(self.depth), value(self.height)
+        low, apex = -Fraction(1, 4) * h, (0, 0, Fraction(3, 4) * h)
+        points = ((-x, -y, low), (x, -y, low), (x, y, low), (-x, y, low), apex)
+        return (PolyhedronForm(points, ((3, 2, 1, 0), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = (

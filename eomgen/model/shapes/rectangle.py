@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import HALF, Line, MassProperties, Shape, box_around, diagonal
+from eomgen.model.shapes.base import HALF, MassProperties, Shape, diagonal
+from eomgen.model.shapes.forms import Form, box_around
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -19,7 +20,7 @@ class Rectangle(Shape):
     width: Length
     height: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
         return (box_around(value(self.width), value(self.height)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, hoop
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,8 +19,8 @@ class Ring(Shape):
     dimension: ClassVar[int] = 1
     radius: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (circle(value(self.radius)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return hoop(value(self.radius))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (*around(value(self.radius), s[0]), 0)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import Line, MassProperties, Shape, diagonal
+from eomgen.model.shapes.base import MassProperties, Shape, diagonal
+from eomgen.model.shapes.forms import Form, LineForm
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,12 +19,12 @@ class Rod(Shape):
     dimension: ClassVar[int] = 1
     length: Length
 
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return (LineForm((ZERO, (value(self.length), 0, 0))),)
+
     def points(self, value: ValueOf) -> dict[str, Vector]:
         length = value(self.length)
         return {"origin": ZERO, "start": ZERO, "end": (length, 0, 0), "center": (Fraction(1, 2) * length, 0, 0)}
-
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (((0.0, 0.0), (value(self.length), 0.0)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (value(self.length) * s[0], 0, 0)

@@ -7,18 +7,17 @@ from typing import Any, ClassVar
 from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import (
     HALF,
-    Line,
     MassProperties,
     Shape,
     around,
-    circle,
     diagonal,
     more_than_a_turn,
     part_of_turn,
 )
+from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form
 from eomgen.symbolic.expression.functions import over, sin
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,9 +32,10 @@ class Sector(Shape):
     radius: Length
     opening: Opening
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        half = value(self.opening) / 2
-        return (((0.0, 0.0), *circle(value(self.radius), -half, half), (0.0, 0.0)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        half = HALF_OF * value(self.opening)
+        r = value(self.radius)
+        return (ArcForm(ZERO, r, r, -half, half, close="center"),)
 
     def impossible(self, value: ValueOf) -> str:
         return more_than_a_turn(value(self.opening))

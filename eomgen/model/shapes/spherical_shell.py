@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, circle, diagonal, on_ball
+from eomgen.model.shapes.base import PI, MassProperties, Shape, diagonal, on_ball
+from eomgen.model.shapes.forms import EllipsoidForm, Form
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -18,8 +19,9 @@ class SphericalShell(Shape):
     dimension: ClassVar[int] = 2
     radius: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
-        return (circle(value(self.radius)),)
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        r = value(self.radius)
+        return (EllipsoidForm(ZERO, (r, r, r)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius), s[0], s[1])

@@ -8,6 +8,7 @@ from eomgen.model.containers import ListRule
 from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import MassProperties, Shape, tensor
+from eomgen.model.shapes.forms import Form, PolyhedronForm
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.rational import Fraction
@@ -29,6 +30,9 @@ class Tetrahedron(Shape):
     kind: ClassVar[str] = "tetrahedron"
     dimension: ClassVar[int] = 3
     vertices: Corners
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return (PolyhedronForm(tuple(self._corners(value)), ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))),)
 
     def impossible(self, value: ValueOf) -> str:
         return "" if self.measure(value) else "its four vertices lie in one plane"

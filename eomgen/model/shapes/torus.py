@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import PI, Line, MassProperties, Shape, around, circle, diagonal
+from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
+from eomgen.model.shapes.forms import Form, circle_points, turned_profile
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
@@ -23,9 +24,10 @@ class Torus(Shape):
     major: Length
     minor: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
         R, r = value(self.major), value(self.minor)
-        return circle(R + r), circle(R - r)
+        profile = tuple((R + x, z) for x, z in circle_points(r, 16, 0, 2))
+        return (turned_profile(profile, R + r, R - r),)
 
     def impossible(self, value: ValueOf) -> str:
         return "" if value(self.minor) <= value(self.major) else "'minor' is larger than 'major'"

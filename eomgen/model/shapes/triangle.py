@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
-from eomgen.model.shapes.base import Line, MassProperties, Shape
+from eomgen.model.shapes.base import MassProperties, Shape
+from eomgen.model.shapes.forms import Form, PolygonForm
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,9 +23,9 @@ class Triangle(Shape):
     width: Length
     height: Length
 
-    def outline(self, value: ValueOf) -> tuple[Line, ...]:
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
         w, h = value(self.width), value(self.height)
-        return (((0.0, 0.0), (w, 0.0), (0.0, h), (0.0, 0.0)),)
+        return (PolygonForm((ZERO, (w, 0, 0), (0, h, 0))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return (value(self.width) * s[0], value(self.height) * s[1] * (1 - s[0]), 0)

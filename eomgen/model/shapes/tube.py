@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, around, between, diagonal
+from eomgen.model.shapes.forms import Form, cylinder_form
 from eomgen.model.shapes.hollow import Hollow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -21,6 +22,9 @@ class Tube(Hollow):
     kind: ClassVar[str] = "tube"
     dimension: ClassVar[int] = 3
     length: Length
+
+    def forms(self, value: ValueOf) -> tuple[Form, ...]:
+        return (cylinder_form(value(self.radius), value(self.length), value(self.inner)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.inner), value(self.radius), s[0])

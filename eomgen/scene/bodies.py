@@ -1,0 +1,99 @@
+"""Bodies -> marks: their shapes and parts; without them the lines between their places, in space their inertia."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import BodyLink
+from eomgen.mechanics.equations.system import System
+from eomgen.model.composite import pose_of
+from eomgen.model.shapes import MassProperties
+from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, Form, LineForm, PolygonForm
+from eomgen.model.trusses import is_node
+from eomgen.scene.forms import PointForm, RodForm
+from eomgen.scene.scene import Mark, SceneFrame
+from eomgen.symbolic.expression.functions import function, over, sqrt
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Vector
+
+
+def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
+    """What is drawn of a body in its own frame; of a node of a truss nothing."""
+    part = system.scope.model.bodies.get(link.name)
+    if part is None or is_node(link.name):
+        return []
+    marks: list[Mark] = []
+    if part.shape is not None and not part.shape.is_point:
+        marks = [Mark(form, frame, "body", link.name) for form in seen(system, part.shape.forms(system.scope.value))]
+    elif part.parts is None:
+        marks = skeleton(system, link, frame)
+        if not marks or (part.shape is not None and part.shape.is_point):
+            marks.append(Mark(PointForm(ZERO), frame, "body", link.name))
+    return marks
+
+
+def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[list[SceneFrame], list[Mark]]:
+    """The frames and marks of the pieces of a composite body; holes lie over what they are cut from."""
+    pieces = system.scope.model.bodies[body].parts if body in system.scope.model.bodies else None
+    frames: list[SceneFrame] = []
+    marks: list[Mark] = []
+    for piece in pieces or ():
+        for form in seen(system, piece.shape.forms(system.scope.value)):
+            if piece.hole and isinstance(form, (ArcForm, PolygonForm)):
+                marks.append(Mark(replace(form, hole=not form.hole), first + len(frames), "hole", body))
+            elif not piece.hole:
+                marks.append(Mark(form, first + len(frames), "body", body))
+        frames.append(SceneFrame(body, parent, pose_of(piece, system.scope.value)))
+    return frames, marks
+
+
+def seen(system: System, forms: Iterable[Form]) -> list[Form]:
+    """The forms of a shape: in the plane what one sees of it along z."""
+    if system.scope.model.space == "plane":
+        return [flat for form in forms for flat in form.flat()]
+    return list(forms)
+
+
+def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
+    """A body without a shape: the lines through its joint and its points, in space also its inertia."""
+    places = places_of_body(system, link)
+    plane = system.scope.model.space == "plane"
+    if plane:
+        return [Mark(LineForm(tuple(places)), frame, "body", link.name)] if len(places) > 1 else []
+    rods = [Mark(RodForm(places[0], place), frame, "body", link.name) for place in places[1:]]
+    return [*rods, *inertia_mark(mass_properties(system.scope, link.name), frame, link.name)]
+
+
+def places_of_body(system: System, link: BodyLink) -> list[Vector]:
+    """Where its joint sits, its own points in their order, where other bodies hang on it: each once, body axes."""
+    motion, part = system.motion, system.scope.model.bodies[link.name]
+    seated = link.joint is not None and link.joint.carries_reaction
+    own = [motion.points[link.name][name] for name in part.points]
+    hung = [other.before.p for other in motion.links if other.parent == motion.index[link.name]]
+    fixed = [place for place in hung if not motion.moves(place)]
+    found = [*([link.point] if seated else []), *own, *fixed]
+    center = motion.points[link.name].get("center")
+    if len(dict.fromkeys(found)) < 2 and center is not None:
+        found.append(center)
+    return list(dict.fromkeys(found))
+
+
+def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
+    """The ellipsoid of the same mass and moments, where its axes are those of the body: a^2 = 5 (B + C - A) / 2 m."""
+    I, m = mass.I, mass.m
+    if is_zero(m) or not all(is_zero(I[i][j]) for i in range(3) for j in range(3) if i != j):
+        return []
+    A, B, C = (I[k][k] for k in range(3))
+    if all(map(is_zero, (A, B, C))):
+        return [Mark(PointForm(mass.com), frame, "body", body)]
+    size = tuple(_half_axis(x, m) for x in (B + C - A, C + A - B, A + B - C))
+    return [Mark(EllipsoidForm(mass.com, (size[0], size[1], size[2])), frame, "inertia", body)]
+
+
+def _half_axis(twice: Any, m: Any) -> Any:
+    """The half-axis of a body whose integral of x^2 dm is half of `twice`; measured tensors may give less than 0."""
+    return sqrt(over(Fraction(5, 2) * function("max", twice, 0), m))

@@ -1,0 +1,230 @@
+"""Joints, ties and force elements -> marks: hinges and supports, strings, members, springs and dampers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any
+
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, ground_place
+from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.structures.blocks import members_of
+from eomgen.model.constraints.meeting import BodyLine, FlatSurface, Meeting, RoundSurface, TouchingPoint
+from eomgen.model.constraints.strand import Stop, Strand
+from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.joints.base import unit
+from eomgen.model.shapes.forms import ArcForm, LineForm
+from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm
+from eomgen.scene.scene import Mark
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply
+
+BESIDE = 1  # of a spring and a damper between the same places, each to its side [symbol units]
+
+
+# -- joints ----------------------------------------------------------------------------------------
+
+
+def joint_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
+    """The symbol of a body's joint, by what its subspace lets go; springs and dampers in it."""
+    if link.joint is None or not link.joint.carries_reaction:
+        return []
+    turning = [w for w, _ in link.S if not all(map(is_zero, w))]
+    sliding = [v for w, v in link.S if all(map(is_zero, w))]
+    draw = _plane_joint if system.scope.model.space == "plane" else _space_joint
+    return [*draw(system, link, frame, turning, sliding), *_joint_elements(system, link, frame, bool(turning))]
+
+
+def _plane_joint(
+    system: System, link: BodyLink, frame: int, turning: Sequence[Vector], sliding: Sequence[Vector]
+) -> list[Mark]:
+    grounded, own = link.parent == GROUND, link.name
+    above = 0 if grounded else link.parent + 1
+    if len(sliding) > 1 or len(link.S) > 2:
+        return []
+    if sliding:
+        v = apply(link.relative.R, sliding[0])
+        guide = Mark(TrackForm(link.before.p, apply(link.before.R, v)), above, "track", own)
+        symbol = "slider" if turning else "block"
+        return [guide, Mark(SymbolForm(symbol, link.point, sliding[0]), frame, "joint", own)]
+    if turning:
+        return [Mark(SymbolForm("pin" if grounded else "hinge", link.before.p), above, "support", own)]
+    return [Mark(SymbolForm("clamp" if grounded else "weld", link.before.p), above, "support", own)]
+
+
+def _space_joint(
+    system: System, link: BodyLink, frame: int, turning: Sequence[Vector], sliding: Sequence[Vector]
+) -> list[Mark]:
+    kinds = {(0, 0): "weld", (1, 0): "hinge", (0, 1): "slider", (1, 1): "tube", (2, 0): "cross", (3, 0): "ball"}
+    symbol = kinds.get((len(turning), len(sliding)))
+    if symbol is None:
+        return []
+    along = turning[0] if turning else sliding[0] if sliding else None
+    return [Mark(SymbolForm(symbol, link.point, along), frame, "joint", link.name)]
+
+
+def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> list[Mark]:
+    """Springs and dampers in a joint: along what slides, a spiral where it turns."""
+    efforts = [effort for effort in link.joint.efforts() if effort is not None]
+    springs, dampers = (any(getattr(e, name) is not None for e in efforts) for name in ("stiffness", "damping"))
+    if not (springs or dampers):
+        return []
+    if turns:
+        return [Mark(SymbolForm("coil", link.point), frame, "spring", link.name)] if springs else []
+    above = system.motion.links[link.parent].pose if link.parent != GROUND else Pose()
+    return elements(above.point(link.before.p), link.pose.point(link.point), springs, dampers, link.name)
+
+
+def elements(a: Vector, b: Vector, spring: bool, damper: bool, of: str) -> list[Mark]:
+    """A spring and a damper between two places; both stand side by side."""
+    side = BESIDE if spring and damper else 0
+    found = [Mark(SpringForm(a, b, side), 0, "spring", of)] if spring else []
+    return [*found, *([Mark(DamperForm(a, b, -side), 0, "damper", of)] if damper else [])]
+
+
+def force_elements(system: System) -> list[Mark]:
+    """Springs, dampers and pulls between points."""
+    motion, found = system.motion, list[Mark]()
+    for name, force in system.scope.model.forces.items():
+        element = force.element
+        if element is None or len(element.points) != 2:
+            continue
+        a, b = (motion.position(motion.place(point)) for point in element.points)
+        found += elements(a, b, element.stiffness is not None, element.damping is not None, name)
+        if element.pull is not None:
+            found.append(Mark(LineForm((a, b), fine=True), 0, "spring", name))
+    return found
+
+
+# -- ties --------------------------------------------------------------------------------------------
+
+
+def tie_marks(system: System) -> list[Mark]:
+    """Strings, members of trusses, links, tracks, hinges and supports."""
+    found = [*_members(system)]
+    for name, tie in system.scope.model.constraints.items():
+        scene = SystemScene(system.motion, f"constraints.{name}")
+        rows = [row for row in system.ties.rows if row.tie == name]
+        if strands := tie.strands_at(scene):
+            found += string_marks(strands, name)
+        elif (meeting := tie.meeting()) is not None:
+            found += _met(system, meeting, rows, name)
+        elif not any(row.part for row in rows):
+            found += _held(system, rows, name)
+    return found
+
+
+def _members(system: System) -> list[Mark]:
+    """The members of trusses."""
+    at = system.motion.position
+    return [
+        Mark(RodForm(at((first, ZERO)), at((second, ZERO))), 0, "member", f"{truss}.{member}")
+        for truss, member, (first, second) in members_of(system)
+    ]
+
+
+def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
+    """The straight pieces, the arcs on what the string lies on, and the pegs."""
+    found = [Mark(LineForm(strand.ends), 0, "string", of) for strand in strands]
+    for one, other in pairwise(strands):
+        if one.second.round:
+            found.append(Mark(_wrapped(one.second, one.d, other.d), 0, "string", of))
+    stops = {id(stop): stop for strand in strands for stop in (strand.first, strand.second)}
+    for peg in stops.values():
+        if peg.body is None and peg.round:
+            r = function("abs", peg.offset)
+            found.append(Mark(ArcForm(peg.center, r, r, close="chord"), 0, "joint", of))
+    return found
+
+
+def _wrapped(stop: Stop, arriving: Vector, leaving: Vector) -> ArcForm:
+    """The arc between where a string touches and leaves, counter-clockwise from the one or from the other."""
+    begin, end = (_direction(stop, d) for d in (arriving, leaving))
+    turns_left = type(stop.offset) is not int and _is_negative(stop)
+    start, stop_at = (begin, end) if turns_left else (end, begin)
+    r = function("abs", stop.offset)
+    return ArcForm(stop.center, r, r, start, stop_at)
+
+
+def _direction(stop: Stop, d: Vector) -> Any:
+    """The angle of the touching point, seen from the centre."""
+    x, y, _ = (stop.offset * e for e in stop.left(d))
+    return function("atan2", y, x)
+
+
+def _is_negative(stop: Stop) -> bool:
+    """Whether it is travelled round counter-clockwise: the offset is minus the radius."""
+    return (stop.scene.worth(stop.offset) or 0.0) < 0
+
+
+def _met(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
+    """What something touches, and the support of a point."""
+    found = _surface(system, meeting, of)
+    if isinstance(meeting.what, TouchingPoint) and not isinstance(meeting.surface, RoundSurface):
+        found += _point_support(system, meeting, rows, of)
+    return found
+
+
+def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
+    """The line, plane, circle or ball that is touched; nothing where a shape shows it already."""
+    surface, scope = meeting.surface, system.scope
+    frame = 0 if surface.on is None else system.motion.index[surface.on] + 1
+    if isinstance(surface, FlatSurface) and surface.at is not None:
+        at = ground_place(scope, surface.at) if surface.on is None else scope.vector(surface.at)
+        n = unit(scope.vector(surface.normal))
+        along = (n[1], -n[0], 0) if scope.model.space == "plane" else None
+        return [Mark(TrackForm(at, along, n), frame, "track", of)]
+    if isinstance(surface, RoundSurface) and surface.at is not None:
+        at = ground_place(scope, surface.at) if surface.on is None else scope.vector(surface.at)
+        r = scope.value(surface.radius)
+        return [Mark(ArcForm(at, r, r), frame, "track", of)]
+    return []
+
+
+def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
+    """A roller on the ground's line, a block on a body's line."""
+    if system.scope.model.space != "plane" or not isinstance(meeting.what, TouchingPoint):
+        return []
+    at = system.motion.position(system.motion.place(meeting.what.point))
+    surface, tie = meeting.surface, system.scope.model.constraints[of]
+    if isinstance(surface, FlatSurface):
+        n = unit(system.scope.vector(surface.normal))
+        if getattr(tie, "unilateral", None):
+            return []
+        return [Mark(SymbolForm("roller", at, (n[1], -n[0], 0)), 0, "support", of)]
+    if isinstance(surface, BodyLine):
+        (_, A), (_, B) = SystemScene(system.motion).line(surface.on)
+        R = system.motion.link(surface.on).pose.R
+        along = apply(R, (B[0] - A[0], B[1] - A[1], B[2] - A[2]))
+        return [Mark(SymbolForm("slider", at, along), 0, "joint", of)]
+    return []
+
+
+def _held(system: System, rows: Sequence[Any], of: str) -> list[Mark]:
+    """A hinge or support, by what its rows can carry; a link as a bar."""
+    pushes = [push for row in rows for push in row.pushes if isinstance(push, PointForce)]
+    parts = {row.component for row in rows}
+    if not pushes:
+        return []
+    if "tension" in parts:
+        ends = [system.motion.position(push.place) for push in pushes]
+        return [Mark(RodForm(a, b), 0, "string", of) for a, b in zip(ends[::2], ends[1::2], strict=False)]
+    at = system.motion.position(pushes[0].place)
+    between = len({push.place[0] for push in pushes if push.place[0] is not None}) > 1
+    held = any(isinstance(push, Couple) for row in rows for push in row.pushes)
+    if system.scope.model.space == "space":
+        return [Mark(SymbolForm("weld" if held else "ball", at), 0, "joint", of)]
+    if {"x", "y"} <= parts:
+        return [Mark(SymbolForm("clamp" if held else "hinge" if between else "pin", at), 0, "support", of)]
+    if "n" in parts and not between:
+        (row,) = (row for row in rows if row.component == "n")
+        x, y, _ = row.pushes[0].force
+        return [Mark(SymbolForm("roller", at, (y, -x, 0)), 0, "support", of)]
+    return [Mark(SymbolForm("hinge", at), 0, "joint", of)]
+
+
+def ordered(marks: Iterable[Mark], roles: Sequence[str]) -> tuple[Mark, ...]:
+    """The marks as they are drawn: by their roles, then as they came."""
+    return tuple(sorted(marks, key=lambda mark: roles.index(mark.role)))

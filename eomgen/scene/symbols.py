@@ -1,0 +1,95 @@
+"""Symbols of joints and supports, as the field draws them: forms in symbol units.
+
+In the plane x is to the right and y up; what lies under a support is its ground. In space z is the joint's axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from eomgen.model.shapes.forms import ArcForm, BoxForm, EllipsoidForm, Form, LineForm, PolygonForm, RevolutionForm
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Vector
+
+SymbolParts = tuple[tuple[str, Form], ...]
+"""(role, form): "joint" is filled with paper, "solid" with ink, "ground" is a thin line."""
+
+
+def _line(*points: tuple[float, float]) -> Form:
+    return LineForm(_spots(points))
+
+
+def _spots(points: Iterable[tuple[float, float]]) -> tuple[Vector, ...]:
+    return tuple((Fraction(str(x)), Fraction(str(y)), 0) for x, y in points)
+
+
+def _polygon(*points: tuple[float, float]) -> Form:
+    return PolygonForm(_spots(points))
+
+
+def _circle(x: float, y: float, radius: float) -> Form:
+    r = Fraction(str(radius))
+    return ArcForm((Fraction(str(x)), Fraction(str(y)), 0), r, r, close="chord")
+
+
+def _square(half: float) -> Form:
+    return _polygon((-half, -half), (half, -half), (half, half), (-half, half))
+
+
+def hatched(y: float, half: float = 1.7, sense: int = -1) -> SymbolParts:
+    """A line with hatching on its far side."""
+    strokes = [round(-half + 0.2 + 0.6 * k, 3) for k in range(int((2 * half - 0.2) / 0.6) + 1)]
+    lines = [_line((x, y), (round(x - 0.5, 3), round(y + sense * 0.6, 3))) for x in strokes]
+    return (("ground", _line((-half, y), (half, y))), *(("ground", line) for line in lines))
+
+
+def _spiral() -> Form:
+    """Two turns."""
+    angles = [math.tau * k / 16 for k in range(33)]
+    return _line(*((round(r * math.cos(a), 3), round(r * math.sin(a), 3)) for a in angles for r in (0.5 + 0.09 * a,)))
+
+
+HINGE: SymbolParts = (("joint", _circle(0, 0, 0.42)),)
+WHEELS = tuple(("joint", _circle(x, -1.7, 0.28)) for x in (-0.55, 0.55))
+PLANE: dict[str, SymbolParts] = {
+    "hinge": HINGE,
+    "weld": (("solid", _square(0.4)),),
+    "pin": (("joint", _polygon((0, 0), (-1, -1.7), (1, -1.7))), *hatched(-1.7), *HINGE),
+    "roller": (("joint", _polygon((0, 0), (-1, -1.4), (1, -1.4))), *WHEELS, *hatched(-2.0), *HINGE),
+    "clamp": (("solid", _polygon((-0.9, -0.35), (0.9, -0.35), (0.9, 0.35), (-0.9, 0.35))), *hatched(-0.35)),
+    "slider": (("joint", _polygon((-0.9, -0.5), (0.9, -0.5), (0.9, 0.5), (-0.9, 0.5))), *HINGE),
+    "block": (("joint", _polygon((-1.1, -0.6), (1.1, -0.6), (1.1, 0.6), (-1.1, 0.6))),),
+    "coil": (("ground", _spiral()),),
+}
+
+
+def _ball(radius: float) -> Form:
+    r = Fraction(str(radius))
+    return EllipsoidForm(ZERO, (r, r, r))
+
+
+def _drum(radius: float, half: float) -> Form:
+    r, h = Fraction(str(radius)), Fraction(str(half))
+    return RevolutionForm(ZERO, ((0, -h), (r, -h), (r, h), (0, h)), (r,))
+
+
+def _block(x: float, y: float, z: float) -> Form:
+    return BoxForm(ZERO, (Fraction(str(x)), Fraction(str(y)), Fraction(str(z))))
+
+
+SPACE: dict[str, SymbolParts] = {
+    "hinge": (("joint", _drum(0.4, 1.1)),),
+    "ball": (("joint", _ball(0.6)),),
+    "weld": (("solid", _block(0.8, 0.8, 0.8)),),
+    "slider": (("joint", _block(1.0, 1.0, 2.4)),),
+    "tube": (("joint", _drum(0.6, 1.6)),),
+    "cross": (("joint", _drum(0.25, 1.2)), ("joint", _block(2.4, 0.5, 0.5))),
+}
+
+
+def symbols_used(marks: Iterable[Any], plane: bool) -> dict[str, SymbolParts]:
+    """The symbols of marks by their names, in the order of the table."""
+    names = {mark.form.symbol for mark in marks}
+    return {name: parts for name, parts in (PLANE if plane else SPACE).items() if name in names}
