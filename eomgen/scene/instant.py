@@ -47,7 +47,8 @@ def drawn_start(system: System) -> DrawnState:
 
 def frame_at(scene: Scene, state: DrawnState) -> np.ndarray:
     """The numbers of the scene's frame at a state: slot i is that of `scene.values[i]`; nan where there is none."""
-    return frames_along(scene, np.array([state.t]), state.x[None, :], state.p)[0]
+    found: np.ndarray = frames_along(scene, np.array([state.t]), state.x[None, :], state.p)[0]
+    return found
 
 
 def frames_along(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, target: str | None = "numpy") -> np.ndarray:

@@ -85,6 +85,7 @@ SPACE: dict[str, SymbolParts] = {
     "weld": (("solid", _block(0.8, 0.8, 0.8)),),
     "slider": (("joint", _block(1.0, 1.0, 2.4)),),
     "tube": (("joint", _drum(0.6, 1.6)),),
+    "coil": (("ground", _spiral()),),
     "cross": (("joint", _drum(0.25, 1.2)), ("joint", _block(2.4, 0.5, 0.5))),
 }
 
