@@ -1,0 +1,218 @@
+"""tests/golden/textbook.toml -> each formula of an author beside ours: typeset, how long, and whether they agree.
+
+python tests/helpers/golden_formulas.py       a table of all, the longest ratio first
+"""
+
+from __future__ import annotations
+
+import re
+import statistics
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import eomgen
+from eomgen import Equations, Output
+from eomgen.questions.answers import Answers
+from eomgen.report.latex import setter_of, side_latex
+from eomgen.report.latex_math import Setter
+from eomgen.report.latex_names import notation, symbol_latex
+from eomgen.report.statements import Formula, Side
+from eomgen.report.text import side_text
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.print.length import length_of_latex
+
+ROOT = Path(__file__).parents[2]
+LIST = ROOT / "tests/golden/textbook.toml"
+PLACED = re.compile(r"\\(?:d?dot|left|right|frac|mathrm)(?![a-z])|\\,")
+LETTER = re.compile(r"(\\[A-Za-z]+|[A-Za-z])(?:_(\{+\w+\}+|\w))?")
+OWN = "textbook/"  # how a model begins that was written for the list
+
+
+@dataclass(frozen=True)
+class Golden:
+    """A formula as an author prints it; the head of the list says what each key means."""
+
+    name: str
+    source: str
+    model: str
+    asks: str
+    author: str
+    text: str
+    above: str = ""
+
+    @property
+    def path(self) -> Path:
+        folder = LIST.parent if self.model.startswith(OWN) else ROOT / "models"
+        return folder / f"{self.model}.toml"
+
+
+@dataclass(frozen=True)
+class Ours:
+    """The same formula by eomgen: typeset, and as text of the grammar."""
+
+    latex: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Both, and how long they are in visible marks."""
+
+    golden: Golden
+    ours: Ours
+
+    @property
+    def lengths(self) -> tuple[int, int]:
+        return length_of_latex(self.ours.latex), length_of_latex(self.golden.author)
+
+    @property
+    def ratio(self) -> float:
+        ours, his = self.lengths
+        return ours / his
+
+
+@cache
+def golden_formulas() -> tuple[Golden, ...]:
+    """The list, in its order."""
+    return tuple(Golden(**entry) for entry in tomllib.loads(LIST.read_text(encoding="utf-8"))["formula"])
+
+
+@cache
+def compared() -> tuple[Compared, ...]:
+    """Every formula beside ours."""
+    return tuple(Compared(golden, ours_of(golden)) for golden in golden_formulas())
+
+
+def ours_of(golden: Golden) -> Ours:
+    """What eomgen prints for what is asked."""
+    kind, _, name = golden.asks.partition(" ")
+    return ASKED[kind](golden.path, name)
+
+
+def _equation(path: Path, name: str) -> Ours:
+    derivation = _derived(path).derivation
+    (sides,) = [(e.left, e.right) for e in derivation.equations if e.speed.name in (name, f"{name}'")]
+    return _joined(setter_of(derivation), sides)
+
+
+def _formula(path: Path, left: str) -> Ours:
+    derivation = _derived(path).derivation
+    statements = [statement for step in derivation.steps for statement in step.statements]
+    found = [s.sides[1] for s in statements if isinstance(s, Formula) and side_text(s.sides[0]) == left]
+    assert found, f"{path.stem}: the derivation has no formula for {left}"
+    return _joined(setter_of(derivation), found[:1])
+
+
+def _output(path: Path, name: str) -> Ours:
+    exact = _answered(path)[name].exact
+    assert exact is not None, f"{path.stem}: no formula for {name}"
+    scalar, names = read(Graph(), exact)
+    return Ours(side_latex(Setter(notation(names)), scalar), exact)
+
+
+ASKED: dict[str, Callable[[Path, str], Ours]] = {"equation": _equation, "formula": _formula, "output": _output}
+
+
+def _joined(setter: Setter, sides: Sequence[Side]) -> Ours:
+    texts, formulas = map(side_text, sides), [side_latex(setter, side) for side in sides]
+    return Ours(" = ".join(formulas), " = ".join(texts))
+
+
+@cache
+def _derived(path: Path) -> Equations:
+    return eomgen.derive(eomgen.load(path))
+
+
+@cache
+def _answered(path: Path) -> Answers:
+    return eomgen.solve(eomgen.load(path))
+
+
+def read(graph: Graph, text: str) -> tuple[Scalar, list[str]]:
+    expression = parse(text, longest=len(text))
+    names = [name for kind, name in expression.code if kind == "name"]
+    value: Scalar = expression.evaluate({name: graph.symbol(name) for name in names} | {"pi": graph.pi})
+    return value, names
+
+
+def agrees(golden: Golden, ours: Ours) -> bool:
+    """Whether both say the same: equal at random exact states; an equation of motion up to a factor.
+
+    a_1 f_2 = a_2 f_1 with f = left - right and a = df/dq'' of an acceleration that stands in both. What else holds
+    accelerations is compared with those of the motion in their place.
+    """
+    graph = Graph()
+    if not golden.asks.startswith("equation"):
+        texts = (golden.text, ours.text)
+        if any("''" in text for text in texts):
+            texts = _along_the_motion(golden, texts)
+        his, mine = (read(graph, text)[0] for text in texts)
+        return equal_at_random_states([(his, mine)]).equal
+    (his, names), (mine, _) = _residual(graph, golden.text), _residual(graph, ours.text)
+    speed = golden.asks.split()[1]
+    acceleration = graph.symbol(next(n for n in (f"{speed}''", f"{speed}'") if n in names))
+    a_1, a_2 = derivative(his, acceleration), derivative(mine, acceleration)
+    assert not is_zero(a_1), golden.name
+    return equal_at_random_states([(a_1 * mine, a_2 * his)]).equal
+
+
+def _along_the_motion(golden: Golden, texts: tuple[str, str]) -> tuple[str, str]:
+    """The texts, their accelerations replaced by the equations of motion."""
+    asked = {f"asked_{k}": Output(value=text) for k, text in enumerate(texts)}
+    his, mine = (found.exact for found in eomgen.solve(replace(eomgen.load(golden.path), outputs=asked)).values())
+    assert his is not None and mine is not None, golden.name
+    return his, mine
+
+
+def _residual(graph: Graph, equation: str) -> tuple[Node, list[str]]:
+    (left, of_left), (right, of_right) = (read(graph, side) for side in equation.split("="))
+    residual = left - right
+    assert isinstance(residual, Node)
+    return residual, [*of_left, *of_right]
+
+
+def letters_of_latex(latex: str) -> Counter[str]:
+    """How often each letter stands in a formula, with its index: {"m_2": 1, "theta_1": 3}; functions by their names."""
+    found = (found.groups() for found in LETTER.finditer(PLACED.sub("", latex)))
+    return Counter("_".join((letter.strip("\\"), *([index.strip("{}")] if index else []))) for letter, index in found)
+
+
+def letters_of_text(text: str) -> Counter[str]:
+    """The same of a text of the grammar."""
+    total: Counter[str] = Counter()
+    for side in text.split("="):
+        for kind, what in parse(side).code:
+            if kind == "function":
+                total[what[0]] += 1
+            elif kind == "name":
+                total += letters_of_latex(symbol_latex(what.rstrip("'")))
+    return total
+
+
+def table() -> str:
+    """All formulas, the longest ratio first, as Markdown."""
+    rows = sorted(compared(), key=lambda row: -row.ratio)
+    ratios = [row.ratio for row in rows]
+    lines = [
+        f"{len(rows)} formulas, median {statistics.median(ratios):.3f}, above 1.3: {sum(x > 1.3 for x in ratios)}",
+        "",
+        "| ratio | ours | his | formula | ours, typeset | the author's |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        mark = "" if agrees(row.golden, row.ours) else " **NOT EQUAL**"
+        ours, his = row.lengths
+        where = f"{row.golden.name} ({row.golden.model}, {row.golden.asks}){mark}"
+        lines.append(f"| {row.ratio:.2f} | {ours} | {his} | {where} | `{row.ours.latex}` | `{row.golden.author}` |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(table())
