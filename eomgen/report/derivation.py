@@ -12,7 +12,7 @@ from eomgen.mechanics.formulations import derived_by, lagrange
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import kinetostatic_steps, reactions_table_step
-from eomgen.report.document import Document, document_of
+from eomgen.report.document import Document, document_of, with_symbols
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.report.integral_steps import integral_steps
@@ -72,7 +72,8 @@ def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = Fal
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
     notation = notation_step(written.steps, system.scope.names)
-    document = document_of(model, method, (*written.steps, notation))
+    declared = {} if isinstance(letters, str) else letters.declared
+    document = with_symbols(document_of(model, method, (*written.steps, notation)), declared)
     return replace(document, equations=written.equations, definitions=written.definitions)
 
 
