@@ -142,10 +142,24 @@ def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
     for row, b, test in zip(system.rows, system.right, tests, strict=True):
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
-        kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > max(tolerance * largest, floor)}
+        least = max(tolerance * largest, floor)
+        kept = {
+            j: x
+            for j, x in row.items()
+            if not is_zero(x) and (abs(shadow[j]) > least or (shadow[j] and _is_product(x)))
+        }
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
         lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines
+
+
+def _is_product(x: Scalar) -> bool:
+    """Whether it is a product of numbers, symbols and their waves: nothing cancels, so a small one is not rounding."""
+    if type(x) is not Node or x.op == "symbol":
+        return True
+    if x.op in ("sin", "cos"):
+        return type(x.args[0]) is Node and x.args[0].op == "symbol"
+    return x.op in ("mul", "div", "neg", "sqrt") and all(map(_is_product, x.args))
 
 
 def _eliminate(
