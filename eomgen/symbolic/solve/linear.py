@@ -143,23 +143,25 @@ def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
         least = max(tolerance * largest, floor)
-        kept = {
-            j: x
-            for j, x in row.items()
-            if not is_zero(x) and (abs(shadow[j]) > least or (shadow[j] and _is_product(x)))
-        }
+        sure = {j: x for j, x in row.items() if abs(shadow[j]) > least or _is_small(x, system.values, pivots)}
+        kept = {j: x for j, x in sure.items() if not is_zero(x)}
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
         lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines
 
 
-def _is_product(x: Scalar) -> bool:
-    """Whether it is a product of numbers, symbols and their waves: nothing cancels, so a small one is not rounding."""
-    if type(x) is not Node or x.op == "symbol":
-        return True
-    if x.op in ("sin", "cos"):
-        return type(x.args[0]) is Node and x.args[0].op == "symbol"
-    return x.op in ("mul", "div", "neg", "sqrt") and all(map(_is_product, x.args))
+def _is_small(x: Scalar, values: ValuesAt, pivots: Pivots) -> bool:
+    """Whether an entry is small and not rounding: a product in which none but numbers and parameters are small."""
+    others: list[Scalar] = []
+    left = [x]
+    while left:
+        factor = left.pop()
+        if type(factor) is Node and factor.op in ("mul", "div", "neg", "sqrt"):
+            left += factor.args
+        elif type(factor) is Node and factor not in pivots.factors:
+            others.append(factor)
+    simple = all(type(y) is Node and y.op in ("symbol", "sin", "cos") for y in others)
+    return simple and all(abs(value) > pivots.tolerance for value in values(others))
 
 
 def _eliminate(
