@@ -31,7 +31,6 @@ from eomgen.model.kinds import (
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
-from eomgen.model.symbols import SymbolField
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit
@@ -50,7 +49,6 @@ class Parameter(Part):
         unit: in which the number is given; `value` is in SI already.
         about: a remark.
         positive: whether roots of its squares may be taken.
-        symbol: in formulas, in LaTeX (None: by its name).
     """
 
     shorthand: ClassVar[str] = "value"
@@ -60,7 +58,6 @@ class Parameter(Part):
     unit: UnitText | None = None
     about: Text | None = None
     positive: Flag = False
-    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +70,6 @@ class Coordinate(Part):
         near: first guess of a dependent coordinate, or of an equilibrium.
         dependent: eliminated through the constraints.
         motion, rate, acceleration: q, q' or q'' as a function of time, or through samples, of a driven coordinate.
-        symbol: in formulas, in LaTeX (None: by its name); its rates get dots.
     """
 
     shorthand: ClassVar[str] = "start"
@@ -88,7 +84,6 @@ class Coordinate(Part):
     motion: MotionLaw | None = None
     rate: RateInTime | None = None
     acceleration: TimeLaw | None = None
-    symbol: SymbolField | None = None
 
     @property
     def driven(self) -> bool:
@@ -105,7 +100,6 @@ class Speed(Part):
     rate: RateLaw | None = None
     start: Formula | None = None
     about: Text | None = None
-    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +112,6 @@ class Input(Part):
     value: TimeLaw
     about: Text | None = None
     unit: UnitText | None = None
-    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,7 +149,6 @@ class Body(Part):
             6 `[xx, yy, zz, xy, yz, zx]` with the tensor's sign in space [kg m^2].
         line: two of its points, a member's axis.
         measured: published data, which may break the triangle inequality.
-        symbol: its index in formulas, in LaTeX (None: its name).
     """
 
     title: ClassVar[str] = "body"
@@ -170,7 +162,6 @@ class Body(Part):
     line: TwoOwnPoints | None = None
     joint: JointField | None = None
     measured: Flag = False
-    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,7 +203,6 @@ class Unknown(Part):
     title: ClassVar[str] = "unknown"
     about: Text | None = None
     unit: UnitText | None = None
-    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,6 @@ from eomgen.model.findings import Finding
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.model.symbols import ReactionSymbolsField
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
@@ -64,7 +63,6 @@ class Joint(Part):
         at: where the joint sits, parent's axes [m]; on the ground also a point's name.
         point: the point of this body that sits there; None: its origin.
         turned: fixed rotations before the joint, each about the axes that the one before left.
-        symbol: what its reactions are called in formulas, in LaTeX: A gives A_x, A_y, M_A.
     """
 
     kind: ClassVar[str]
@@ -76,7 +74,6 @@ class Joint(Part):
     at: MovingGroundPlace | None = None
     point: OwnPointName | None = None
     turned: Turns | None = None
-    symbol: ReactionSymbolsField | None = None
 
     @property
     def parent(self) -> str | None:

@@ -1,0 +1,152 @@
+"""The gallery: a page for each model of models/, made by eomgen itself: picture, equations, answers, file.
+
+EOMGEN_GALLERY=quick makes the pages of a few models. A page is made again where its model or eomgen has changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cut_reference import write
+
+import eomgen
+from eomgen.report import markdown
+from eomgen.report.document import Document
+
+ROOT = Path(__file__).parents[2]
+MODELS = ROOT / "models"
+PLACE = ROOT / "docs" / "gallery"
+QUICK = ("double_pendulum", "gerber_beam", "heavy_top", "quick_return", "seeds/ch13_p2", "seeds/ch22_p1")
+PATIENCE = 60.0  # seconds of one model
+LONGEST = 4000  # letters of a section
+GROUPS = {"": "Models", "seeds": "Exercises of a textbook"}
+
+
+def chosen() -> list[str]:
+    """The models, by their path below models/ without its ending."""
+    every = sorted(path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.toml"))
+    return [name for name in every if os.environ.get("EOMGEN_GALLERY") != "quick" or name in QUICK]
+
+
+def version_of_package() -> str:
+    """Changes with any line of eomgen."""
+    found = hashlib.sha256()
+    for path in sorted((ROOT / "eomgen").rglob("*.py")):
+        found.update(path.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def cut(document: Document, keys: tuple[str, ...]) -> str:
+    """Some sections of a document in Markdown."""
+    steps = tuple(step for step in document.steps if step.key in keys)
+    text = markdown.render(replace(document, steps=steps, about="", source="", certificate=None))
+    return text.partition("\n")[2].strip() if steps else ""
+
+
+def equations(model: eomgen.Model) -> str:
+    """Of what moves."""
+    return cut(eomgen.derive(model).derivation, ("equations", "integrals"))
+
+
+def reactions(model: eomgen.Model) -> str:
+    """Of what stands."""
+    return cut(eomgen.statics(model).derivation, ("structure", "reactions", "agreement"))
+
+
+def velocities(model: eomgen.Model) -> str:
+    """Of a mechanism at its instant."""
+    return cut(eomgen.kinematics(model).derivation, ("centers", "velocities", "accelerations"))
+
+
+def moments(model: eomgen.Model) -> str:
+    """Of bodies alone."""
+    derivation = eomgen.inertia(model).derivation
+    return cut(derivation, tuple(step.key for step in derivation.steps if step.key.startswith("inertia")))
+
+
+def answers(model: eomgen.Model) -> str:
+    """What the file asks, and what comes out."""
+    rows = [answer_row(name, answer) for name, answer in eomgen.solve(model).items()]
+    return "\n".join(["## What the file asks", "", "| output | exact | value |", "|---|---|---|", *rows])
+
+
+def answer_row(name: str, answer: eomgen.Answer) -> str:
+    """A line of the table; a bar inside code would end its cell."""
+    value = "" if answer.value is None else f"{answer.value:.6g} {answer.unit or ''}".strip()
+    exact = (answer.exact or "").replace("|", "\\|")
+    return f"| `{name}` | {f'`{exact}`' if 0 < len(exact) < 200 else ''} | {value} |"
+
+
+def parts_of(model: eomgen.Model) -> Iterator[Callable[[eomgen.Model], str]]:
+    """What a page tells of a model, besides its picture and its file."""
+    has_mass = any(body.mass is not None or body.shape is not None for body in model.bodies.values())
+    free = any(coordinate.motion is None for coordinate in model.coordinates.values())
+    if free and has_mass:
+        yield equations
+    elif not model.coordinates and (model.constraints or model.trusses or model.forces):
+        yield reactions
+    elif model.coordinates or model.given:
+        yield velocities
+    elif model.bodies:
+        yield moments
+    if model.outputs:
+        yield answers
+
+
+def told(part: Callable[[eomgen.Model], str], model: eomgen.Model) -> str:
+    """A section; where a verb refuses, its own words."""
+    try:
+        with eomgen.patience(PATIENCE):
+            text = part(model)
+    except (eomgen.EomgenError, eomgen.OutOfPatience) as error:
+        return f"eomgen says: {markdown.markdown_escaped(str(error).splitlines()[0])}"
+    return text if len(text) <= LONGEST else "It is long: the verbs below print all of it."
+
+
+def page(name: str) -> str:
+    """The Markdown of a model."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    up = "../" * (name.count("/") + 2)
+    remarks = (model.about or "", f"Source: {model.source}." if model.source else "")
+    blocks = [f"# {markdown.markdown_escaped(model.name)}", *map(markdown.markdown_escaped, filter(None, remarks))]
+    blocks += filter(None, (told(part, model) for part in parts_of(model)))
+    blocks.append(f"## Its file\n\n```{{literalinclude}} {up}models/{name}.toml\n:language: toml\n```")
+    blocks.append(f"A copy to work on: `eomgen new mine --example {Path(name).name}`.")
+    return "\n\n".join(blocks) + "\n"
+
+
+def contents(names: list[str]) -> str:
+    """The page that lists all others."""
+    blocks = ["# Gallery", "Every model that ships, worked out by eomgen itself when this site was built."]
+    for folder, title in GROUPS.items():
+        here = [name for name in names if str(Path(name).parent.as_posix()).removeprefix(".") == folder]
+        listed = "\n".join(here)
+        blocks += [f"## {title}\n\n```{{toctree}}\n:maxdepth: 1\n\n{listed}\n```"] if here else []
+    return "\n\n".join(blocks) + "\n"
+
+
+def generate(app: Any) -> None:
+    """All pages that are not there as they must be."""
+    names, version = chosen(), version_of_package()
+    for name in names:
+        path = PLACE / f"{name}.md"
+        stamp = path.with_suffix(".made")
+        made = hashlib.sha256(version.encode() + (MODELS / f"{name}.toml").read_bytes()).hexdigest()
+        if not path.exists() or not stamp.exists() or stamp.read_text() != made:
+            write(path, page(name))
+            stamp.write_text(made)
+    for path in PLACE.rglob("*.md"):
+        if path.relative_to(PLACE).with_suffix("").as_posix() not in [*names, "index"]:
+            path.unlink()
+    write(PLACE / "index.md", contents(names))
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Sphinx asks for it."""
+    app.connect("builder-inited", generate)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

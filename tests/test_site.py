@@ -1,0 +1,88 @@
+"""The site: every command on its pages runs and prints what stands there; it builds without a warning."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from html import unescape
+from pathlib import Path
+
+import pytest
+from pages import ellipsis, run_page
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+RUN = re.compile(r"^```(sh|text)$", re.M)
+PAGES = [
+    page for page in sorted([*DOCS.glob("*.md"), *DOCS.glob("how_to/*.md")]) if RUN.search(page.read_text("utf-8"))
+]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The site with a gallery of a few models, built by its own command, where a warning is an error."""
+    place = tmp_path_factory.mktemp("site")
+    quick = {**os.environ, "EOMGEN_GALLERY": "quick", "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, str(DOCS / "build.py"), str(place)]
+    done = subprocess.run(command, env=quick, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return place
+
+
+def test_a_reader_needs_no_network(site):
+    """No page asks for anything from elsewhere; every formula is set; every link leads to a page."""
+    pages = list(site.rglob("*.html"))
+    assert len(pages) > 50
+    for page in pages:
+        text = page.read_text("utf-8")
+        asked = re.findall(r"<(?:script|img|iframe|link|source)\b[^>]*?\b(?:src|href)=\"([^\"]+)\"", text)
+        assert not [each for each in asked if "//" in each], page
+        assert "merror" not in text and "latex-error" not in text, page
+        for target in re.findall(r"<a [^>]*?href=\"([^\"#?]+)", text):
+            if "://" not in target and not target.startswith("mailto:"):
+                assert (page.parent / target).exists(), f"{page}: {target}"
+
+
+def test_each_section_of_the_reference_is_a_page(site):
+    """Nothing is lost where the reference is cut: each of its lines of code stands in a page."""
+    shown = "".join(unescape(re.sub("<[^>]+>", "", page.read_text("utf-8"))) for page in site.glob("model_file/*.html"))
+    blocks = re.findall(r"^```\w+\n(.*?)^```", (ROOT / "models" / "README.md").read_text("utf-8"), re.M | re.S)
+    lines = {line.strip() for block in blocks for line in block.splitlines() if "# doctest" not in line}
+    assert len(lines) > 400 and not [line for line in lines if line not in shown]
+
+
+def test_a_page_of_the_gallery_tells_what_eomgen_finds(site):
+    """Its equations as formulas, its answers, its file."""
+    found = {path.stem: path.read_text("utf-8") for path in site.glob("gallery/**/*.html")}
+    assert "<math" in found["double_pendulum"] and "Equations of motion" in found["double_pendulum"]
+    assert "<mn>20</mn>" in found["gerber_beam"] and "eomgen says" not in "".join(found.values())
+    assert all(
+        "eomgen new mine --example" in re.sub("<[^>]+>", "", text) for name, text in found.items() if name != "index"
+    )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_command_of_a_page_does_what_stands_there(page, tmp_path, monkeypatch):
+    """In a new folder, one after the other."""
+    monkeypatch.chdir(tmp_path)
+    assert run_page(page.read_text("utf-8")) > 0
+
+
+def test_a_page_that_says_what_was_not_printed_is_found(tmp_path, monkeypatch):
+    """One digit wrong, one line left out."""
+    monkeypatch.chdir(tmp_path)
+    page = (DOCS / "first_hour.md").read_text("utf-8")
+    for old, new in (("= 49.05 N", "= 49.06 N"), ("space: plane\n", "")):
+        assert old in page
+        with pytest.raises(AssertionError):
+            run_page(page.replace(old, new))
+
+
+def test_dots_stand_for_what_is_left_out():
+    """Lines, or a part of one."""
+    assert re.fullmatch(ellipsis("a\n...\nb ... d\n"), "a\n1\n2\nb c d\n")
+    assert not re.fullmatch(ellipsis("a\nb\n"), "a\n1\nb\n")
