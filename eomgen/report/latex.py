@@ -19,6 +19,7 @@ from eomgen.report.statements import (
     Law,
     Lines,
     Listing,
+    Matrix,
     Name,
     Omitted,
     Partial,
@@ -111,6 +112,8 @@ def _symbols(part: object) -> list[Node]:
         return [part.row, part.column]
     if isinstance(part, Partial):
         return [*_symbols(part.of), part.by]
+    if isinstance(part, Matrix):
+        return [x for row in part.rows for entry in row for x in _symbols(entry)]
     return _symbols(part.of) if isinstance(part, Rate) else []
 
 
@@ -237,8 +240,7 @@ def piece_latex(setter: Setter, piece: Piece, escape: Callable[[str], str]) -> s
 
 def side_latex(setter: Setter, side: Side) -> str:
     """One side of a formula."""
-    found = _side(setter, side)
-    return found.tex if isinstance(found, Set) else setter.set(found).tex
+    return _whole(setter, side).tex
 
 
 def _side(setter: Setter, side: Side) -> Set | Scalar:
@@ -246,9 +248,24 @@ def _side(setter: Setter, side: Side) -> Set | Scalar:
     if isinstance(side, (Name, Entry, Partial, Rate)):
         tex = _quantity(setter, side)
         return Set(tex, width_of(tex))
+    if isinstance(side, Matrix):
+        return _matrix(setter, side)
     if isinstance(side, Omitted):
         return Set(rf"\text{{({side.operations} operations, not printed)}}", 32)
     return Set(side.latex, width_of(side.latex)) if isinstance(side, Law) else side
+
+
+def _matrix(setter: Setter, matrix: Matrix) -> Set:
+    """In parentheses; as wide as its columns beside one another."""
+    rows = [[_whole(setter, entry) for entry in row] for row in matrix.rows]
+    width = sum(max(entry.width for entry in column) + 2 for column in zip(*rows, strict=True))
+    lines = r" \\ ".join(" & ".join(entry.tex for entry in row) for row in rows)
+    return Set(rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}", width)
+
+
+def _whole(setter: Setter, side: Side) -> Set:
+    found = _side(setter, side)
+    return found if isinstance(found, Set) else setter.set(found)
 
 
 def _quantity(setter: Setter, side: Name | Entry | Partial | Rate) -> str:

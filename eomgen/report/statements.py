@@ -70,13 +70,20 @@ class Omitted:
 
 
 @dataclass(frozen=True)
+class Matrix:
+    """A matrix as it stands: rows of scalars or numbers."""
+
+    rows: tuple[tuple[Scalar | Law, ...], ...]
+
+
+@dataclass(frozen=True)
 class Code:
     """Something that a user types."""
 
     text: str
 
 
-Side = Name | Entry | Partial | Rate | Law | Omitted | Scalar
+Side = Name | Entry | Partial | Rate | Law | Omitted | Matrix | Scalar
 Piece = str | Code | Name | Entry | Partial | Rate | Law | Node
 
 

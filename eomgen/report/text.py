@@ -17,6 +17,7 @@ from eomgen.report.statements import (
     Law,
     Lines,
     Listing,
+    Matrix,
     Name,
     Omitted,
     Partial,
@@ -71,11 +72,21 @@ def statement_lines(statement: Statement) -> list[str]:
         if left and is_piecewise(last):
             head = broken(f"{formula_text(Formula(tuple(left)))} =", INDENT, WIDTH)
             return [*head, *(line for case in cases_text(last) for line in broken(case, 2 * INDENT, WIDTH))]
+        if left and isinstance(last, Matrix):
+            return _matrix_lines(f"{INDENT}{formula_text(Formula(tuple(left)))} = ", last)
         return broken(formula_text(statement), INDENT, WIDTH)
     if isinstance(statement, Grid):
         return _column_lines(statement, len(statement.head) - 1, LAST)
     grid = statement.grid
     return _column_lines(grid, grid.head.index("meaning") if "meaning" in grid.head else 0, MEANING)
+
+
+def _matrix_lines(lead: str, matrix: Matrix) -> list[str]:
+    """M = [a  b], a row a line, its columns below one another."""
+    rows = [[side_text(entry) for entry in row] for row in matrix.rows]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)) for row in rows]
+    return [f"{lead if k == 0 else ' ' * len(lead)}[{line}]" for k, line in enumerate(lines)]
 
 
 def prose_text(prose: Prose) -> str:
@@ -105,6 +116,9 @@ def side_text(side: Side) -> str:
         return f"{'-' if side.sign < 0 else ''}d{_name_text(side.of)}/d{side.by.name}"
     if isinstance(side, Rate):
         return side.of.name + "'" if isinstance(side.of, Node) else f"d/dt({side_text(side.of)})"
+    if isinstance(side, Matrix):
+        rows = (f"[{', '.join(map(side_text, row))}]" for row in side.rows)
+        return f"[{', '.join(rows)}]"
     if isinstance(side, Omitted):
         return f"({side.operations} operations, not printed)"
     if isinstance(side, Law):

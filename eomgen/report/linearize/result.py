@@ -20,6 +20,7 @@ from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
+from eomgen.mechanics.small_motions.state_space import StateMatrices, exact_state_space, with_outputs
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
@@ -30,6 +31,7 @@ from eomgen.proof.small_motions import small_motion_checks
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.linearize.picture import modes_picture
+from eomgen.report.linearize.state_space import LETTERS, StateSpace, state_space_of
 from eomgen.report.linearize.steps import linearization_steps
 from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
@@ -109,6 +111,29 @@ class Linearization(Result):
         """The input matrix of x' = A x + B w."""
         self._refuse_unvalued()
         return self.small.input_matrix
+
+    def state_space(self, outputs: Sequence[str] = ()) -> StateSpace:
+        """x' = A x + B w, y = C_y x + D_y w, x = (coordinates, speeds).
+
+        Args:
+            outputs: y: names of coordinates, of speeds, or of their rates (theta''); (): the coordinates.
+        Raises:
+            UsageError: another name.
+            DerivationError: they are known in numbers only, and parameters have no values.
+        """
+        wanted = tuple((outputs,) if isinstance(outputs, str) else outputs) or self.coordinates
+        exact, numbers = self._state_spaces(wanted)
+        if exact is None:
+            self._refuse_unvalued()
+        return state_space_of(exact, numbers)
+
+    def _state_spaces(self, outputs: Sequence[str]) -> tuple[StateMatrices | None, StateMatrices | None]:
+        """(exact, in numbers), as far as they are known."""
+        exact = exact_state_space(self.small, outputs)
+        if not self.valued:
+            return exact, None
+        A, B = self.small.state_matrix.tolist(), self.small.input_matrix.tolist()
+        return exact, with_outputs(self.small.numbers, A, B, outputs)
 
     @property
     def spectrum(self) -> Spectrum:
@@ -223,6 +248,7 @@ class Linearization(Result):
                 for name, letter in (("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H"))
                 if parts
             },
+            "state_space": self._state_space_entry(),
             "state_matrix": self.A.tolist() if self.valued else None,
             "input_matrix": self.B.tolist() if self.valued else None,
             "characteristic_polynomial": _polynomial(self.modes.polynomial),
@@ -241,6 +267,21 @@ class Linearization(Result):
             "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
             "stability": self.spectrum.stability if self.valued else None,
             "why": self.spectrum.why if self.valued else None,
+        }
+
+    def _state_space_entry(self) -> dict[str, Any]:
+        """The state space with the coordinates as outputs."""
+        exact, numbers = self._state_spaces(self.coordinates)
+        return {
+            "states": [*self.coordinates, *self.speeds],
+            "outputs": list(self.coordinates),
+            **{
+                letter: {
+                    "exact": None if exact is None else [[to_text(x) for x in row] for row in getattr(exact, letter)],
+                    "value": None if numbers is None else getattr(numbers, letter),
+                }
+                for letter in LETTERS
+            },
         }
 
     def _family(self, family: Family | None) -> dict[str, Any] | None:

@@ -13,17 +13,19 @@ from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.modes import Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
+from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode
+from eomgen.mechanics.small_motions.state_space import exact_state_space, with_outputs
 from eomgen.mechanics.small_motions.transfer import TransferFunction
 from eomgen.report.linearize.reference_step import reference_step
 from eomgen.report.setting_steps import listed_symbols
-from eomgen.report.statements import Cell, Formula, Grid, Law, Side, Statement, Step, narrow_grid, prose
+from eomgen.report.statements import Cell, Formula, Grid, Law, Matrix, Prose, Side, Statement, Step, narrow_grid, prose
 from eomgen.report.statements import Entry as Place
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.print.text import text_size, to_text
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
 FREE = Law("M*q'' + C*q' + K*q = 0", r"M \ddot{q} + C \dot{q} + K q = 0")
@@ -47,6 +49,7 @@ PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C
 DETERMINANT = ("det({s}^2*M + {s}*C + K)", r"\det\left({s}^{{2}} M + {s} C + K\right)")
 STATE_DETERMINANT = ("det(M)*det({s}*1 - A)", r"\det M \det\left({s} \mathbf{{1}} - A\right)")
 LONG = 1200  # characters of one formula
+WIDEST = 88  # characters of a row of a matrix
 MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
 
 
@@ -54,7 +57,7 @@ def linearization_steps(modes: Modes) -> tuple[Step, ...]:
     """Reference, equations, characteristic polynomial, modes, stability, transfer functions."""
     steps = [reference_step(modes), _equations(modes), *_characteristic(modes)]
     steps.append(_modes(modes))
-    return (*steps, *_stability(modes), *_transfers(modes))
+    return (*steps, *_stability(modes), *_state_space(modes), *_transfers(modes))
 
 
 # -- the equations --------------------------------------------------------------------------------------------
@@ -92,6 +95,8 @@ def _equations(modes: Modes) -> Step:
         statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
         return Step("equations", "Equations to first order", tuple(statements))
     rows = _rows(modes)
+    if len(rows) > 1:
+        statements.append(prose("Rows and columns in the order ", *listed_symbols(tuple(map(_plain, rows))), ":"))
     statements += _entries("M", e.M, rows, rows, symmetric=True)
     statements += _rates(modes, undamped)
     symmetric = small.is_second_order and _symmetric(modes, e.K)
@@ -144,13 +149,26 @@ def _symmetric(modes: Modes, A: Entries) -> bool:
 def _entries(
     letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
 ) -> list[Statement]:
-    """The entries that are not zero; of a symmetric matrix each once."""
+    """The matrix; where it is too wide for a line its entries that are not zero, of a symmetric one each once."""
+    if not columns:
+        return []
+    whole = matrix_of(A)
+    if whole is not None:
+        return [Formula((Law(letter, letter), whole))]
     found: list[Statement] = []
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
             if not is_zero(A[i][j]) and (j >= i or not symmetric):
                 found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(A[i][j]))))
     return found
+
+
+def matrix_of(A: Entries) -> Matrix | None:
+    """The matrix as it is printed; None where a line does not hold a row of it."""
+    rows = tuple(tuple(_number(x) if isinstance(x, float) else x for x in row) for row in A)
+    texts = [[x.text if isinstance(x, Law) else to_text(x) for x in row] for row in rows]
+    width = sum(max(map(len, column)) + 2 for column in zip(*texts, strict=True))
+    return Matrix(rows) if rows and rows[0] and width <= WIDEST else None
 
 
 def _plain(x: Node) -> Node:
@@ -166,7 +184,8 @@ def _side(x: MatrixEntry) -> Side:
 
 
 def _number(x: float) -> Law:
-    return Law(f"{x:.7g}", f"{x:.7g}")
+    text = f"{x + 0.0:.7g}"  # no minus before 0
+    return Law(text, _latex_number(text))
 
 
 # -- modes ------------------------------------------------------------------------------------------------------
@@ -303,6 +322,49 @@ def _or_number(modes: Modes, x: Scalar) -> Side:
     if text_size(x) <= LONG or not reference.valued:
         return _side(x)
     return _number(number_of(x, known_exactly(reference.system.scope)))
+
+
+def _state_space(modes: Modes) -> tuple[Step, ...]:
+    """A, B, C_y, D_y of the coordinates as outputs, exact where they are short, else in numbers; without inputs A."""
+    e = modes.small.exact or modes.small.numbers
+    shown = _state_matrices(modes) if len(e.speeds) <= MOST_SHOWN else ()
+    if not shown:
+        return ()
+    words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols((*e.coordinates, *e.speeds)), "):")
+    if e.inputs:
+        words = _with_inputs(e)
+    letters = ("A", "B", "C_y", "D_y")
+    formulas = [Formula((Law(x, x.replace("_y", "_{y}")), m)) for x, m in zip(letters, shown, strict=False)]
+    return (Step("state_space", "State space", (words, *formulas)),)
+
+
+def _with_inputs(e: LinearEquations) -> Prose:
+    return prose(
+        Law("x' = A*x + B*w,  y = C_y*x + D_y*w", r"\dot{x} = A x + B w,\quad y = C_{y} x + D_{y} w"),
+        ", with x = (",
+        *listed_symbols((*e.coordinates, *e.speeds)),
+        "), w = (",
+        *listed_symbols(e.inputs),
+        ") and y = (",
+        *listed_symbols(e.coordinates),
+        "):",
+    )
+
+
+def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
+    """Those that are not empty, exact where all of them can be printed; else in numbers; () where there are neither."""
+    small = modes.small
+    outputs = tuple(q.name for q in small.numbers.coordinates)
+    ways = [exact_state_space(small, outputs)]
+    if small.reference.valued:
+        A, B = small.state_matrix.tolist(), small.input_matrix.tolist()
+        ways.append(with_outputs(small.numbers, A, B, outputs))
+    for found in ways:
+        if found is not None:
+            shown = [matrix_of(x) for x in ((found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,))]
+            if None not in shown:
+                return tuple(x for x in shown if x is not None)
+    return ()
 
 
 def _transfers(modes: Modes) -> tuple[Step, ...]:
