@@ -43,7 +43,7 @@ def certify(
         claims.append(identities.derivation(equations, derived))
     if equations.J:
         claims.append(identities.closing_rows(equations))
-    checks = [*identities.compared(claims, trials.states), trials.twists()]
+    checks = [*identities.compared(claims, trials.states), trials.places(), trials.twists()]
     if trials.given:
         checks.append(trials.given_motions())
     if equations.system.elimination is not None:
@@ -51,7 +51,7 @@ def certify(
     checks.append(trials.free_bodies())
     if rubs(equations.system):
         checks.append(trials.friction())
-    checks += [*trials.tensors(), *trials.contacts(), *trials.elements(), *trials.balance()]
+    checks += [*trials.tensors(), *trials.contacts(), *trials.threads(), *trials.elements(), *trials.balance()]
     checks += [] if printed is None else trials.printed(printed)
     if rhs is not None:
         checks.append(trials.code(rhs))

@@ -9,16 +9,16 @@ own lengths, rates, stretches and loads are what is proven.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, velocity_of
-from eomgen.mechanics.bodies.loads import Applied, JointEffort, SystemScene, in_ground_axes
+from eomgen.mechanics.bodies.loads import Applied, JointEffort, SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Couple, PointForce
+from eomgen.proof.pushes import Pushes, add_push, direction_at, pushed_otherwise, pushes_of
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
@@ -38,9 +38,6 @@ from eomgen.symbolic.expression.spatial import (
 )
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-
-Pushes = dict[str, tuple[Numbers, Numbers]]
-"""Of each body (moment about the ground's origin, force), ground axes."""
 
 
 def elements_of(system: System) -> tuple[tuple[Applied, Element], ...]:
@@ -140,19 +137,9 @@ class _Acting:
     @property
     def wrong(self) -> str:
         pull, energy = self.law
-        size: Any = 1 + abs(pull)
-        expected = self.of_pull(pull)
-        for body, push in self.stated.items():
-            due = expected.get(body, (ZERO, ZERO))
-            scale = size * (1 + max(map(abs, (x for end in self.ends for x in end)), default=0))
-            if any(
-                abs(x - y) > ZERO_AT_50 * scale
-                for a, b in zip(push, due, strict=True)
-                for x, y in zip(a, b, strict=True)
-            ):
-                return f"pushes '{body}' otherwise than its length and rate say"
-        if missing := [body for body in expected if body not in self.stated]:
-            return f"does not act on '{missing[0]}'"
+        reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
+        if body := pushed_otherwise(self.stated, self.of_pull(pull), (1 + abs(pull)) * reach):
+            return f"pushes '{body}' otherwise than its length and rate say"
         if energy is not None and self.applied.potential is not None:
             return _energy(self.at((self.applied.potential,))[0], energy)
         return ""
@@ -182,7 +169,7 @@ class _Acting:
         """Of the pull on the first end."""
         along = self.element.along
         v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
-        return times(1 / _size(v), v)
+        return direction_at(v)
 
     @cached_property
     def measured(self) -> tuple[Any, Any]:
@@ -227,7 +214,7 @@ class _Acting:
             return self.at((self.system.scope.value(slack),))[0]
         first, second = (self.scene.position(self.scene.place(p)) for p in self.element.points)
         apart = self.vector([self.scene.start(x) for x in minus(second, first)])
-        return _size(apart) if self.element.along is None else dot(apart, self.direction)
+        return dot(apart, direction_at(apart) if self.element.along is None else self.direction)
 
     def _counted(self, stretch: Any, k: Any) -> Any:
         """An angle by as many whole turns as are in the couple that acts."""
@@ -241,42 +228,16 @@ class _Acting:
     @cached_property
     def stated(self) -> Pushes:
         """By the loads."""
-        found: Pushes = {}
-        for body, moment, force in self._loads():
-            _add(found, body, moment, force)
-        return found
-
-    def _loads(self) -> Iterator[tuple[str | None, Numbers, Numbers]]:
-        for load in self.applied.loads:
-            if isinstance(load, PointForce):
-                r = self.vector(self.motion.position(load.place))
-                f = self.vector(in_ground_axes(self.motion, load.force, load.axes))
-                yield load.place[0], cross(r, f), f
-            elif isinstance(load, Couple):
-                yield load.body, self.vector(in_ground_axes(self.motion, load.couple, load.axes)), ZERO
+        return pushes_of(self.motion, self.state, self.applied.loads)
 
     def of_pull(self, pull: Any) -> Pushes:
         """By the law."""
         found: Pushes = {}
         if not self.element.points:
             for body, sign in zip(self.element.bodies, (1, -1), strict=True):
-                _add(found, body, (0, 0, sign * pull), ZERO)
+                add_push(found, body, (0, 0, sign * pull), ZERO)
             return found
         for point, place, sign in zip(self.element.points, self.ends, (1, -1), strict=True):
             f: Numbers = times(sign * pull, self.direction)
-            _add(found, self.scene.place(point)[0], cross(place, f), f)
+            add_push(found, self.scene.place(point)[0], cross(place, f), f)
         return found
-
-
-def _add(pushes: Pushes, body: str | None, moment: Numbers, force: Numbers) -> None:
-    """One more push; the ground bears all."""
-    if body is not None:
-        tau, f = pushes.get(body, (ZERO, ZERO))
-        pushes[body] = plus(tau, moment), plus(f, force)
-
-
-def _size(v: Numbers) -> Any:
-    size = fifty_digits().functions["sqrt"](dot(v, v))
-    if size == 0:
-        raise NoValue("two points at one place have no line")
-    return size

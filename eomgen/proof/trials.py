@@ -27,8 +27,10 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.joint_places import misplaced
 from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, in_doubles
+from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
@@ -121,6 +123,11 @@ class Trials:
             return ""
 
         return self._at_states("eliminated rows hold whatever the speeds", "50 digits", check)
+
+    def places(self) -> Check:
+        """Every body against its parent, by the moves that its joint is declared to be."""
+        name = "bodies stand against one another as their joints are declared"
+        return self._at_states(name, "50 digits", lambda state: misplaced(self.equations.system, state))
 
     def twists(self) -> Check:
         """Twists against central differences of the poses along the motion."""
@@ -267,6 +274,12 @@ class Trials:
         if meetings_of(self.equations.system):
             name = "contacts lie on both surfaces, and neither part nor slip"
             yield self._at_states(name, "50 digits", lambda state: apart(self.equations.system, state))
+
+    def threads(self) -> Iterable[Check]:
+        """Strings and links run and pull as they are declared; none where there are none."""
+        if threads_of(self.equations.system):
+            name = "strings and links touch what they are led over, keep their length and pull along it"
+            yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
     def elements(self) -> Iterable[Check]:
         """Springs, dampers and pulls act as they are declared; none where there are none."""

@@ -151,9 +151,14 @@ class MotionFromStart:
     def _until(self, condition: WrittenEquation, side: str | None) -> StateAtInstant:
         if self._is_start(condition):
             return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
-        if self.models is None or self._starts_in_balance(self.phase):
+        if not self.goes_through_phases:
             return self._within(self.phase, condition, self.start, self.numbers)
-        return self._through(self._runs(condition), condition, side)
+        return self._through(self.runs_to(condition), condition, side)
+
+    @cached_property
+    def goes_through_phases(self) -> bool:
+        """Whether it is followed in numbers from phase to phase."""
+        return self.models is not None and not self._starts_in_balance(self.phase)
 
     def _is_start(self, condition: WrittenEquation) -> bool:
         """Whether an instant is asked for by the time t = 0.
@@ -162,7 +167,7 @@ class MotionFromStart:
             RunFailed: nothing that moves stands in the condition.
         """
         symbols = self.phase.system.symbols
-        scalar = _difference(self.phase, condition)
+        scalar = difference_of(self.phase, condition)
         if depends_on(scalar, (*symbols.q, *symbols.u)):
             return False
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
@@ -180,7 +185,7 @@ class MotionFromStart:
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """In one phase."""
-        moment = reached(phase, _difference(phase, condition), start, numbers)
+        moment = reached(phase, difference_of(phase, condition), start, numbers)
         moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
         if self.models is not None:
             self._refuse_ended(moment)
@@ -220,16 +225,25 @@ class MotionFromStart:
 
     # -- through several phases -------------------------------------------------------------------
 
-    def _runs(self, condition: WrittenEquation) -> list[PhaseRun]:
-        """The phases up to the one in which the condition is met.
+    def runs_to(self, condition: WrittenEquation) -> list[PhaseRun]:
+        """The phases up to the one in which the condition is met, as they were run.
 
         Raises:
             RunFailed: it is not met.
         """
+        if condition.text not in self._runs:
+            self._runs[condition.text] = self._run_to(condition)
+        return self._runs[condition.text]
+
+    @cached_property
+    def _runs(self) -> dict[str, list[PhaseRun]]:
+        return {}
+
+    def _run_to(self, condition: WrittenEquation) -> list[PhaseRun]:
         assert self.models is not None
 
         def until(phase: PhaseModel) -> Scalar:
-            return _difference(PhaseEquations(phase.system), condition)
+            return difference_of(PhaseEquations(phase.system), condition)
 
         for horizon in HORIZONS:
             runs = list(through(self.models, self._first, Plan(horizon, FINE, None, until)))
@@ -245,7 +259,7 @@ class MotionFromStart:
         for k, run in enumerate(runs):
             phase = PhaseEquations(run.phase.system)
             exact = {} if k and _jumps(runs[k - 1].end, run.here.values) else carried(moment, phase)
-            ended_by = _difference(phase, condition) if run.bound is None else run.bound.value
+            ended_by = difference_of(phase, condition) if run.bound is None else run.bound.value
             moment = _end_of(phase, run, ended_by, exact)
         after = runs[-1].after
         if side != "after" or after is None:
@@ -297,6 +311,6 @@ def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
     return any(depends_on(scalar, moving) for scalar in (*phase.accelerations, *bounds))
 
 
-def _difference(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
+def difference_of(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
     return phase.of_state(condition.left) - phase.of_state(condition.right)

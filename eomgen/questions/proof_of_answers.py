@@ -34,6 +34,7 @@ from eomgen.proof.tally import Tally
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.proof_of_phases import wrong_way
 from eomgen.report.quantity import Quantity
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.constraint_rank import nearness_of
@@ -219,8 +220,8 @@ class _Proof:
         motion = self.solver.motions[output.from_ == "rest"]
         moment = self._moment(output)
         assert moment is not None
-        if motion.models is not None:
-            raise DerivationError("the motion has phases, and its instants are those of the run in time itself")
+        if motion.goes_through_phases:
+            return wrong_way(motion, output, moment)
         t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
         if not (math.isfinite(t) and motion.numbers):
             raise RunFailed("the instant is not known in numbers")

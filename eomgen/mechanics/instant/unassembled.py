@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.joints.orientation import rotation_by, turning_columns
 from eomgen.model.joints.placed import Placed
 from eomgen.model.kinds import Coordinates, ValueOf
@@ -44,6 +45,12 @@ class DisplacedJoint(Joint):
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return tuple(Expression(name, (("name", name),), (-1,)) for name in (*self.along, *self.about))
+
+    def moves(self) -> tuple[Move, ...]:
+        names, places = self.variables(""), len(self.along)
+        about = (Z,) if len(self.about) == 1 else (X, Y, Z)
+        slides = map(SlideAlong, (X, Y, Z), names[:places])
+        return (*slides, *self.placed.moves(), *map(TurnAbout, about, names[places:]))
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
         return self._standing(value)[2] + (s[2] if self.about else 0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.constraints.meeting import Meeting
+from eomgen.model.constraints.meeting import Meeting, Thread
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.findings import Finding
@@ -59,6 +59,10 @@ class Constraint(Part, ABC):
 
     def meeting(self) -> Meeting | None:
         """What touches what, as it is declared; None where nothing does, or where it is not told."""
+        return None
+
+    def thread(self) -> Thread | None:
+        """How it runs, as it is declared, where it is straight from point to point."""
         return None
 
     def drives(self) -> str:

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import Thread
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Scene
 from eomgen.model.kinds import Flag, Length, TwoPoints
@@ -28,6 +29,9 @@ class Link(Constraint):
     points: TwoPoints
     length: Length | None = None
     unilateral: Flag = False
+
+    def thread(self) -> Thread:
+        return Thread(self.points, length=self.length)
 
     def rows(self, scene: Scene) -> tuple[TieRow, ...]:
         """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.

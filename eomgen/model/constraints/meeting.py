@@ -71,6 +71,21 @@ class BodyLine:
 
 
 @dataclass(frozen=True)
+class Thread:
+    """What is straight from stop to stop: a string or a link.
+
+    Args:
+        stops: points by name, and wraps as a string has them.
+        ways: the direction of each strand that keeps one; None: they follow.
+        length: of what has one strand [m]; None: that at the start.
+    """
+
+    stops: Any
+    ways: Any = None
+    length: Any = None
+
+
+@dataclass(frozen=True)
 class Meeting:
     """Two things that touch; `sticks`: they do not slide on one another."""
 

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, owner_of
 from eomgen.model.constraints.base import Constraint
+from eomgen.model.constraints.meeting import Thread
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
@@ -74,6 +75,9 @@ class String(Constraint):
             passes = isinstance(item, str) or item.slip
             numbers.append(numbers[-1] if passes else numbers[-1] + 1)
         return tuple(numbers)
+
+    def thread(self) -> Thread:
+        return Thread(self.path, self.strands)
 
     def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
         """From stop to stop, along given directions or common tangents."""

@@ -13,6 +13,7 @@ from eomgen.errors import NotYet
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
 from eomgen.model.findings import Finding
+from eomgen.model.joints.moves import Move
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
@@ -96,6 +97,10 @@ class Joint(Part):
     def works_in(self, space: str) -> bool:
         """Whether this version derives the joint in this space."""
         return space == "space" or not self.only_space
+
+    def moves(self) -> tuple[Move, ...]:
+        """What it does, as it is declared, from the (turned) parent's joint frame to the child's."""
+        raise self._not_yet()
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         """The joint's variables s, f of them."""

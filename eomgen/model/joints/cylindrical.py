@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
@@ -30,6 +31,9 @@ class Cylindrical(AxisJoint):
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(self.axis, self.displacement), TurnAbout(self.axis, self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement, self.angle)

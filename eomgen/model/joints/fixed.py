@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.joints.moves import Move, TurnAbout
 from eomgen.model.kinds import ConstantAngle, SpaceDirection, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -20,6 +21,9 @@ class Fixed(Joint):
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
+
+    def moves(self) -> tuple[Move, ...]:
+        return (TurnAbout(self.axis, self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return ()

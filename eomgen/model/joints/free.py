@@ -8,6 +8,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.findings import Finding
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, linear
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -17,6 +18,7 @@ from eomgen.model.joints.orientation import (
     other_space,
     rotation_of,
     turning_findings,
+    turning_moves,
 )
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement, ValueOf
@@ -71,6 +73,11 @@ class Free(Joint):
             return self.angles
         names = self.quaternion or ()
         return tuple(as_expression(name) for name in names) or (() if self.angle is None else (self.angle,))
+
+    def moves(self) -> tuple[Move, ...]:
+        if self.orientation is None:
+            return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
+        return (*map(SlideAlong, (X, Y, Z), self.position or ()), *turning_moves(self))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         if space == "space":

@@ -15,6 +15,7 @@ from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, NameRule, TextRule
 from eomgen.model.findings import Finding
 from eomgen.model.joints.base import Column, X, Y, Z, angular
+from eomgen.model.joints.moves import Move, QuaternionTurn, TurnAbout
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -70,6 +71,13 @@ def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[F
             yield Finding((*path, key), what, "leave it out", key=True)
     if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
         yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
+
+
+def turning_moves(joint: Any) -> tuple[Move, ...]:
+    """The turns of a joint's orientation, as they are declared."""
+    if joint.quaternion is not None:
+        return (QuaternionTurn(joint.quaternion),)
+    return tuple(TurnAbout(AXES[axis], angle) for axis, angle in zip(joint.orientation, joint.angles, strict=True))
 
 
 def rotation_by(sequence: str, angles: tuple[Any, ...]) -> Matrix:

@@ -9,6 +9,7 @@ from eomgen.model.containers import ListRule
 from eomgen.model.findings import Finding
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
+from eomgen.model.joints.moves import Move, WayAlongPieces
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn, ValueOf
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
@@ -118,6 +119,9 @@ class Path(Joint):
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
+
+    def moves(self) -> tuple[Move, ...]:
+        return (WayAlongPieces(self.along, self.heading, self.pieces),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.along,)

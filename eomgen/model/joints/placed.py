@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -15,6 +16,7 @@ from eomgen.model.joints.orientation import (
     columns_of,
     rotation_of,
     turning_findings,
+    turning_moves,
 )
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
@@ -55,6 +57,10 @@ class Placed(Joint):
         if self.quaternion is not None:
             return tuple(as_expression(name) for name in self.quaternion)
         return self.angles or (() if self.angle is None else (self.angle,))
+
+    def moves(self) -> tuple[Move, ...]:
+        turned = (TurnAbout(self.axis, self.angle),) if self.orientation is None else turning_moves(self)
+        return (*map(SlideAlong, (X, Y, Z), self.at or ()), *turned)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         zero = Expression.number(0)

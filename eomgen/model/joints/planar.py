@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import Angle, Displacement, ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -24,6 +25,9 @@ class Planar(Joint):
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.x, self.y, self.angle)

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Scalars, Z, unit, vector
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import (
     ConstantAngle,
     Direction,
@@ -45,6 +46,10 @@ class Prismatic(AxisJoint):
 
     def turns(self) -> tuple[Expression, ...]:
         return ()
+
+    def moves(self) -> tuple[Move, ...]:
+        turn_axis = None if len(self.axis) == 2 else self.axis
+        return (SlideAlong(self.axis, self.displacement), TurnAbout(turn_axis, self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.displacement,)

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
+from eomgen.model.joints.moves import Move, TurnAbout
 from eomgen.model.kinds import (
     Angle,
     AngularDamping,
@@ -41,6 +42,9 @@ class Revolute(AxisJoint):
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (TurnAbout(self.axis, self.angle),)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)

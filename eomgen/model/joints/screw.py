@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
+from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import (
     Angle,
     AngularDamping,
@@ -49,6 +50,9 @@ class Screw(AxisJoint):
 
     def turns(self) -> tuple[Expression, ...]:
         return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(self.axis, self.pitch * self.angle), TurnAbout(self.axis, self.angle))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return (self.angle,)

@@ -7,6 +7,7 @@ from typing import ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, linear
+from eomgen.model.joints.moves import Move
 from eomgen.model.joints.orientation import (
     Angles,
     Omega,
@@ -15,6 +16,7 @@ from eomgen.model.joints.orientation import (
     columns_of,
     rotation_of,
     turning_findings,
+    turning_moves,
 )
 from eomgen.model.kinds import ValueOf
 from eomgen.model.positions import DocumentPath
@@ -51,6 +53,9 @@ class Spherical(Joint):
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles or tuple(as_expression(name) for name in self.quaternion or ())
+
+    def moves(self) -> tuple[Move, ...]:
+        return turning_moves(self)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return self.turns()

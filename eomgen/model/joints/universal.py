@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
+from eomgen.model.joints.moves import Move, TurnAbout
 from eomgen.model.kinds import ValueOf
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
@@ -33,6 +34,9 @@ class Universal(Joint):
 
     def turns(self) -> tuple[Expression, ...]:
         return self.angles
+
+    def moves(self) -> tuple[Move, ...]:
+        return tuple(map(TurnAbout, self.axes, self.angles))
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         return self.angles
