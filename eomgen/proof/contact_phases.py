@@ -24,18 +24,21 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.bodies.armature import armatures
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
+from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.model.contacts import Contact
 from eomgen.proof.check import Check
+from eomgen.proof.joint_places import misplaced
 from eomgen.proof.tally import Tally
 from eomgen.simulation.contact_events import sliding_velocity
 from eomgen.simulation.phase_model import PhaseModel, Values, slack_name
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.simulation.result import Phase
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import apply
-from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import OPEN_GAP, SUMMED, UNBALANCED
 
 STATES = 100  # of a phase that are looked at
@@ -134,6 +137,43 @@ class _Seen:
             raise NoValue("its force has no single value")
         known = found[:, asked]
         return np.asarray(known[np.isfinite(known).all(axis=1)].T)
+
+
+def bodies_stand_as_told(phases: Sequence[Phase], apart: System) -> Iterator[Check]:
+    """In every phase bodies are where the whole model has them, and that where their joints say.
+
+    Args:
+        apart: the model without its contacts that can end, all pieces of its paths in it.
+    """
+    tally = Tally("bodies stand in every phase as their joints are declared", "50 digits")
+    for phase in phases:
+        tally.add(f"from {phase.start:.6g} s", partial(_misplaced, phase, apart))
+    return tally.checks()
+
+
+def _misplaced(phase: Phase, apart: System) -> str:
+    """At its beginning, its middle and its end."""
+    assert phase.track is not None
+    own: System = phase.model.system
+    for row in sorted({0, len(phase.track[0]) // 2, len(phase.track[0]) - 1}):
+        t, x = float(phase.track[0][row]), phase.track[1][row]
+        values = phase.model.values(t, x)
+        known, here = (_state(system, values, phase.model.p, t) for system in (apart, own))
+        if wrong := misplaced(apart, known):
+            return wrong
+        for link in own.motion.links:
+            there = evaluate(apart.motion.link(link.name).pose.p, known, fifty_digits())
+            gap = max(abs(x - y) for x, y in zip(evaluate(link.pose.p, here, fifty_digits()), there, strict=True))
+            if gap > OPEN_GAP * (1 + max(map(abs, there))):
+                return f"'{link.name}' is {float(gap):.3g} m from where it is in all phases"
+    return ""
+
+
+def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
+    symbols = system.symbols
+    known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
+    given = zip(symbols.parameters.values(), p, strict=True)
+    return {**known, symbols.t: of_50_digits(t)} | {node: of_50_digits(float(x)) for node, x in given}
 
 
 # -- from phase to phase ---------------------------------------------------------------------------

@@ -49,7 +49,7 @@ def strung_otherwise(system: System, state: State) -> str:
 
 @dataclass(frozen=True)
 class _Stop:
-    """Where a thread is led: its place over the graph, in numbers the centre, a (0 of a point) and the axis; ground axes."""
+    """Where a thread is led: its place over the graph; the centre, a (0 of a point) and the axis in numbers."""
 
     body: str | None
     place: Vector

@@ -18,7 +18,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.contact_phases import changes_follow_impulses, contacts_do_as_told
+from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
 from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
@@ -65,6 +65,7 @@ class RunProof:
         seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
         yield from contacts_do_as_told(seen)
         if len(seen) > 1:
+            yield from bodies_stand_as_told(seen, self.models.without_contacts.system)
             yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:

@@ -9,7 +9,7 @@ from eomgen.model.containers import ListRule
 from eomgen.model.findings import Finding
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
-from eomgen.model.joints.moves import Move, WayAlongPieces
+from eomgen.model.joints.moves import Move, SlideAlong, WayAlongPieces
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn, ValueOf
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
@@ -197,6 +197,9 @@ class OnePiece(Path):
     """
 
     begin: MovingPlace
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(X, self.begin[0]), SlideAlong(Y, self.begin[1]), *super().moves())
 
     def _begin(self, value: ValueOf) -> Vector:
         return (value(self.begin[0]), value(self.begin[1]), 0)
