@@ -16,7 +16,7 @@ from eomgen.report.derivation import derivation_of
 from eomgen.report.latex import equations_latex, unit_latex, value_latex
 from eomgen.report.latex_lines import LINE, pieces, rows_of, runs_of
 from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import latex_escaped, notation, symbol_latex
+from eomgen.report.latex_names import Notation, latex_escaped
 from eomgen.report.markdown import markdown_escaped as escaped_markdown
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
@@ -159,7 +159,15 @@ def test_each_operation_is_set_by_its_own_rule(make, expected):
         ("k_max", r"k_{\mathrm{max}}"),
         ("tau1", r"\tau_{1}"),
         ("lambda", r"\lambda"),
-        ("lam(B, 1)", r"\lambda_{\mathrm{B},1}"),
+        ("lam(B, 1)", r"\lambda_{B,1}"),
+        ("mb", "m_{b}"),
+        ("lAB", "l_{AB}"),
+        ("IA'", r"\dot{I}_{A}"),
+        ("EI", r"\mathrm{EI}"),
+        ("phiA", r"\phi_{A}"),
+        ("B_x", "B_{x}"),
+        ("R_stick_x", r"R_{\mathrm{stick},x}"),
+        ("x" + 4 * "'", "x^{(4)}"),
         ("Ixx1", "I_{xx,1}"),
         ("x_1_2", "x_{1,2}"),
         ("θ2'", r"\dot{\theta}_{2}"),
@@ -170,12 +178,17 @@ def test_each_operation_is_set_by_its_own_rule(make, expected):
     ],
 )
 def test_names_are_set_with_greek_letters_subscripts_and_dots(name, expected):
-    assert symbol_latex(name) == expected
+    assert Notation().latex(name) == expected
+
+
+def told_apart(names: list[str]) -> dict[str, str]:
+    found = Notation().told_apart(names)
+    return {name: found.latex(name) for name in names}
 
 
 def test_two_names_that_would_look_alike_are_told_apart_everywhere():
     """theta1 and theta_1, and their rates"""
-    found = notation(["theta_1", "theta1", "theta1'", "theta_1''"])
+    found = told_apart(["theta_1", "theta1", "theta1'", "theta_1''"])
     assert found == {
         "theta_1": r"\theta_{1}",
         "theta1": r"\mathrm{theta1}",
@@ -190,7 +203,7 @@ def test_no_two_symbols_of_a_derivation_look_alike(name):
     derived = equations(name)
     s = derived.graph.symbols
     symbols = [x.name for x in (*s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)]
-    found = notation(symbols)
+    found = told_apart(symbols)
     assert len(set(found.values())) == len(symbols)
 
 
@@ -200,7 +213,7 @@ def test_a_users_text_is_never_markup():
         r"50\% of \#1 \& \{a\_b\}\textasciicircum{}\$\textbackslash{}x\$ \textasciitilde{}\textless{}\textgreater{}"
     )
     assert escaped_markdown("a|b *c* <b> $x$\n# d") == r"a\|b \*c\* \<b\> \$x\$ \# d"
-    assert unit_latex("kg*m^2/s^-3") == r"kg\,m$^{2}$/s$^{-3}$"
+    assert unit_latex("kg*m^2/s^-3") == r"kg$\cdot$m$^{2}$/s$^{-3}$"
     assert unit_latex("m/s^2") == "m/s$^{2}$"
 
 

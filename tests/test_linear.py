@@ -40,6 +40,18 @@ def test_a_force_along_a_direction_is_found_without_dividing_by_its_components()
     assert not equal_at_random_states([(divided.constants[0], solution.constants[0])]).equal  # only for consistent b
 
 
+def test_a_small_coefficient_is_none_the_less_one():
+    """x + r sin(t) y = 0, y = b: x = -r sin(t) b, also at r = 1e-40, beside which 50 digits of others end."""
+    g = Graph()
+    r, theta, b = g.symbol("r"), g.symbol("theta"), g.symbol("b")
+    state = {r: fifty_digits().number(Fraction(1, 10**40)), theta: fifty_digits().number(1)}
+    rows = LinearSystem([{0: 1, 1: r * sin(theta)}, {1: 1}], [0, b], 2, lambda x: evaluate(x, state, fifty_digits()))
+    found = sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants
+    assert equal_at_random_states([(found[0], -r * sin(theta) * b)]).equal
+    state[theta] = state[r]  # an angle that ties hold at 0, in numbers of 50 digits
+    assert sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants[0] == 0
+
+
 @pytest.mark.parametrize("sure", [None, 1])
 def test_what_is_indeterminate_stays_so(sure):
     """One row for two unknowns: the second is free, the first follows from it; a third is determined all the same."""

@@ -419,9 +419,9 @@ NAMES = {
     "theta1'": r"\dot{\theta}_{1}",
     "x": "x",
     "x_left''": r"\ddot{x}_{\mathrm{left}}",
-    "ω2": "ω_{2}",
+    "ω2": r"\omega_{2}",
     "slider": r"\mathrm{slider}",
-    "q_a_1": r"q_{\mathrm{a\,1}}",
+    "q_a_1": "q_{a,1}",
 }
 
 

@@ -121,3 +121,8 @@ def test_a_ball_of_two_arguments_holds_the_true_value(op):
         for other in (b - d, b + d):
             true, _ = fine.functions[op](fine.number(one), fine.number(other))
             assert abs(mp.mpf(true) - mp.mpf(value)) <= mp.mpf(r) < 1e-20
+
+
+def test_a_root_of_a_root_of_nothing_is_nothing():
+    """sqrt(x^2 - sqrt(x^4)) = 0, of 480 digits its two roots leave 120."""
+    assert number_of(sqrt(X * X - sqrt(sqrt(X) ** 8)), {X: 0.3}) == 0

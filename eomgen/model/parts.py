@@ -31,6 +31,7 @@ from eomgen.model.kinds import (
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
+from eomgen.model.symbols import SymbolField
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit
@@ -49,6 +50,7 @@ class Parameter(Part):
         unit: in which the number is given; `value` is in SI already.
         about: a remark.
         positive: whether roots of its squares may be taken.
+        symbol: in formulas, in LaTeX (None: by its name).
     """
 
     shorthand: ClassVar[str] = "value"
@@ -58,6 +60,7 @@ class Parameter(Part):
     unit: UnitText | None = None
     about: Text | None = None
     positive: Flag = False
+    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +73,7 @@ class Coordinate(Part):
         near: first guess of a dependent coordinate, or of an equilibrium.
         dependent: eliminated through the constraints.
         motion, rate, acceleration: q, q' or q'' as a function of time, or through samples, of a driven coordinate.
+        symbol: in formulas, in LaTeX (None: by its name); its rates get dots.
     """
 
     shorthand: ClassVar[str] = "start"
@@ -84,6 +88,7 @@ class Coordinate(Part):
     motion: MotionLaw | None = None
     rate: RateInTime | None = None
     acceleration: TimeLaw | None = None
+    symbol: SymbolField | None = None
 
     @property
     def driven(self) -> bool:
@@ -100,6 +105,7 @@ class Speed(Part):
     rate: RateLaw | None = None
     start: Formula | None = None
     about: Text | None = None
+    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +118,7 @@ class Input(Part):
     value: TimeLaw
     about: Text | None = None
     unit: UnitText | None = None
+    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,6 +156,7 @@ class Body(Part):
             6 `[xx, yy, zz, xy, yz, zx]` with the tensor's sign in space [kg m^2].
         line: two of its points, a member's axis.
         measured: published data, which may break the triangle inequality.
+        symbol: its index in formulas, in LaTeX (None: its name).
     """
 
     title: ClassVar[str] = "body"
@@ -162,6 +170,7 @@ class Body(Part):
     line: TwoOwnPoints | None = None
     joint: JointField | None = None
     measured: Flag = False
+    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,6 +212,7 @@ class Unknown(Part):
     title: ClassVar[str] = "unknown"
     about: Text | None = None
     unit: UnitText | None = None
+    symbol: SymbolField | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -186,6 +186,8 @@ def _toml_mend(what: str, text: str, offset: int) -> str:
         return "a table has a name and single brackets: [bodies.boom]"
     if culprit.isalpha() and not culprit.isascii():
         return f'as a key a name with such letters stands in quotes: "{culprit}" = 1'
+    if "'\\'" in what:
+        return r"in single quotes a backslash is one: symbol = '\theta_A'"
     if "value" in what.lower():
         return 'an expression stands in quotes: angle = "theta - pi/2"'
     return "see https://toml.io" if "digits" not in what and "deep" not in what else "make it smaller"

@@ -7,13 +7,15 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
-from eomgen.model.catalog import Catalog, owner_of
+from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import Leaf, NameRule
 from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.part import leaves_of
+from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import MASSES_APART
+from eomgen.symbolic.print.symbols import Symbol, symbol_of
 
 TURN = 2 * math.pi
 
@@ -23,7 +25,7 @@ def warnings_of(model: Any) -> tuple[Finding, ...]:
     catalog = Catalog(model, ())
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
-    more = (_unheld(catalog), _masses(catalog, values))
+    more = (_unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
     return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
 
 
@@ -145,6 +147,31 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Findi
             f"{whereabouts(leaf.path)} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
         )
         yield Finding(leaf.path, what, "look at the units; what does not move needs no body")
+
+
+def _symbols_twice(catalog: Catalog) -> Iterator[Finding]:
+    """Two things that formulas cannot tell apart, because one of them declares its symbol."""
+    declared = dict(_declared(catalog))
+    looks = {symbol.tex: path for path, symbol in declared.items()}
+    for table in SYMBOL_TABLES:
+        for name in catalog.table(table):
+            path: DocumentPath = (table, name, "symbol")
+            if path not in declared and (other := looks.get(symbol_of(name).tex)) is not None:
+                yield _alike(other, declared[other], whereabouts((table, name)))
+    for path, symbol in declared.items():
+        if looks[symbol.tex] != path:
+            yield _alike(path, symbol, whereabouts(looks[symbol.tex][:-1]))
+
+
+def _declared(catalog: Catalog) -> Iterator[tuple[DocumentPath, Symbol]]:
+    """Every symbol that is declared for a quantity, with its place; indices are no symbols by themselves."""
+    for leaf in catalog.leaves:
+        if isinstance(leaf.value, Symbol) and (leaf.path[0] in SYMBOL_TABLES or leaf.path[-1] != "symbol"):
+            yield leaf.path, leaf.value
+
+
+def _alike(path: DocumentPath, symbol: Symbol, other: str) -> Finding:
+    return Finding(path, f"{symbol.tex} stands for {other} too", "give one of them another symbol")
 
 
 def _valued(catalog: Catalog) -> set[str]:

@@ -21,7 +21,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_SQUARED, SOLVED
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
 HOW = "equations with 50 digits, the code's accelerations put in"
@@ -97,9 +97,9 @@ class RunNumbers:
         """(what dx leaves of the equations, against the largest of their terms; in which); nan where it is none.
 
         Raises:
-            NoValue: a coefficient is beyond doubles.
+            NoValue: a coefficient, or its square, is beyond doubles.
         """
-        if not all(np.all(np.isfinite(x)) for x in (self.rates, self.M, self.J, self.forcing, self.gamma)):
+        if not all(np.all(np.abs(x) < LARGEST_SQUARED) for x in (self.rates, self.M, self.J, self.forcing, self.gamma)):
             raise NoValue("a coefficient of the equations is beyond doubles")
         rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
         sizes = 1 + np.max(np.abs(self.rates), initial=0.0)

@@ -42,7 +42,7 @@ from eomgen.symbolic.expression.spatial import (
     vector_of,
 )
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50
 
 STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
 DIFFERENCES = "differences at 50 digits"
@@ -160,8 +160,14 @@ class _Proof:
         return later(-h), values, later(h)
 
     def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
-        """(scalars, their first and second rates) by differences."""
+        """(scalars, their first and second rates) by differences.
+
+        Raises:
+            NoValue: they are so large that no digits are left for differences.
+        """
         early, now, late = (evaluate(tuple(scalars), each, fifty_digits()) for each in self.way)
+        if any(abs(x) > LARGEST_AT_50 for x in now):
+            raise NoValue("too far from the origin for differences")
         first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
         second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
         return now, first, second

@@ -57,9 +57,14 @@ class ReadBack:
     equations: EquationsOfMotion
     printed: Printed
 
-    @cached_property
+    @property
     def equalities(self) -> list[tuple[str, Scalar, Scalar]]:
         """(what is on the left, a, b) of sides that are to be the same."""
+        return self._formulas[0]
+
+    @cached_property
+    def _formulas(self) -> tuple[list[tuple[str, Scalar, Scalar]], dict[str, Scalar]]:
+        """(the equalities, what each name stands for that they define)."""
         energies = {"T": self.equations.T, "V": self.equations.V}
         own, names = self._symbols, {**energies, **self._symbols}
         found = []
@@ -71,11 +76,11 @@ class ReadBack:
             found += [(sides[0], known[0], x) for x in known[1:]]
             if read[0] is None and known and sides[0].replace("_", "").isalnum():
                 names[sides[0]] = known[0]
-        return found
+        return found, {name: x for name, x in names.items() if name not in energies or name in own}
 
     @cached_property
     def constants(self) -> list[tuple[str, Scalar]]:
-        read = [(text, self._read(text, self._symbols)) for text in self.printed.constants]
+        read = [(text, self._read(text, self._formulas[1])) for text in self.printed.constants]
         return [(text, x) for text, x in read if x is not None]
 
     @property

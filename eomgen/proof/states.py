@@ -20,7 +20,7 @@ from eomgen.proof.pieces import Switch, switches_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
 
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
@@ -78,9 +78,11 @@ class States:
         return Supply(place for place in states if self._is_near(place.state))
 
     def _is_near(self, state: State) -> bool:
-        """Whether its numbers are so small that digits are left for differences."""
+        """Whether its numbers are so small that digits are left for differences, and squares for doubles."""
         symbols = self.system.symbols
-        return all(abs(state[x]) <= LARGEST_AT_50 for x in (*symbols.q, *symbols.u) if x in state)
+        moving, given = (*symbols.q, *symbols.u), symbols.parameters.values()
+        near = all(abs(state[x]) <= LARGEST_AT_50 for x in moving if x in state)
+        return near and all(abs(state[x]) <= LARGEST_SQUARED for x in given if x in state)
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:

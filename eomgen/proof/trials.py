@@ -134,9 +134,11 @@ class Trials:
         links, digits = self.equations.system.motion.links, fifty_digits()
         poses = tuple(x for link in links for x in (*(x for row in link.pose.R for x in row), *link.pose.p))
         twists = tuple(x for link in links for x in (*link.twist.w, *link.twist.v))
-        h = digits.number(1) / 10**15
+        moving = self.equations.system.scope.rates
 
         def check(state: State) -> str:
+            fastest = max((abs(x) for x in evaluate(moving, state, digits)), default=0)
+            h = 1 / (digits.number(10**15) * (1 + fastest))  # what moves fast is compared over as short a way
             late, early = (evaluate(poses, _moved(self.equations.system, state, sign * h), digits) for sign in (1, -1))
             all_rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
             now, motions = evaluate(poses, state, digits), evaluate(twists, state, digits)

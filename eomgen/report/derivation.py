@@ -12,7 +12,7 @@ from eomgen.mechanics.formulations import derived_by, lagrange
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.report import energy_steps, motion_steps, projection_steps
 from eomgen.report.balance_steps import kinetostatic_steps, reactions_table_step
-from eomgen.report.document import Document, document_of
+from eomgen.report.document import Document, document_of, with_symbols
 from eomgen.report.energy_steps import Momenta
 from eomgen.report.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.report.integral_steps import integral_steps
@@ -26,7 +26,7 @@ from eomgen.report.setting_steps import setting_steps
 from eomgen.report.statements import Formula, Law, Step
 from eomgen.report.text import side_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import text_size
 
 LAGRANGE = Law(
@@ -72,7 +72,8 @@ def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = Fal
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
     notation = notation_step(written.steps, system.scope.names)
-    document = document_of(model, method, (*written.steps, notation))
+    declared = {} if isinstance(letters, str) else letters.declared
+    document = with_symbols(document_of(model, method, (*written.steps, notation)), declared)
     return replace(document, equations=written.equations, definitions=written.definitions)
 
 
@@ -198,10 +199,13 @@ _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 
 def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
     """(the sides of every formula that holds at any state, what is said to stay constant), as they are printed."""
-    sides = {
-        step.key: [tuple(map(side_text, s.sides)) for s in step.statements if isinstance(s, Formula)]
-        for step in document.steps
-        if step.key not in FROM_THE_START
-    }
-    constants = tuple(each[-1] for each in sides.pop("integrals", ()))
-    return tuple(each for formulas in sides.values() for each in formulas), constants
+    formulas: list[tuple[str, ...]] = []
+    constants: list[str] = []
+    for step in (step for step in document.steps if step.key not in FROM_THE_START):
+        for statement in (s for s in step.statements if isinstance(s, Formula)):
+            sides = tuple(map(side_text, statement.sides))
+            if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
+                constants.append(sides[-1])
+            else:
+                formulas.append(sides)
+    return tuple(formulas), tuple(constants)

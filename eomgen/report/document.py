@@ -10,9 +10,11 @@ from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
 from eomgen.proof.check import Certificate
+from eomgen.report.latex_names import Notation, notation_of
 from eomgen.report.quantity import Quantity
 from eomgen.report.statements import Equation, Lines, Meaning, Statement, Step, Table
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.symbols import Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
 NOTHING_CHECKED = Problem("", "nothing of this result could be checked")
@@ -42,6 +44,7 @@ class Document:
         interrupted: it holds what there was when somebody stopped it.
         cautions: what is allowed in the model and hardly meant.
         taken: what was made of values that a person typed.
+        notation: how its symbols are set in LaTeX.
     """
 
     title: str
@@ -59,6 +62,7 @@ class Document:
     interrupted: bool = False
     cautions: tuple[Problem, ...] = ()
     taken: tuple[Taken, ...] = ()
+    notation: Notation = Notation()
 
     @property
     def nomenclature(self) -> tuple[Meaning, ...]:
@@ -101,7 +105,13 @@ class Document:
 
 def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
     """The document of a model, under its name, its remark and its source."""
-    return Document(model.name, model.about or "", model.source or "", model.space, method, steps)
+    about, source = model.about or "", model.source or ""
+    return Document(model.name, about, source, model.space, method, steps, notation=notation_of(model))
+
+
+def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
+    """The document with symbols for names that are not the model's: of its reactions."""
+    return replace(document, notation=document.notation.with_symbols(symbols))
 
 
 def plain_document(
@@ -112,7 +122,8 @@ def plain_document(
     notes: tuple[str, ...] = (),
 ) -> Document:
     """A document of one section without a head: what is no derivation."""
-    return Document(model.name, steps=(Step("", "", statements),), entries=entries, failed=failed, notes=notes)
+    steps = (Step("", "", statements),)
+    return Document(model.name, steps=steps, entries=entries, failed=failed, notes=notes, notation=notation_of(model))
 
 
 def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:

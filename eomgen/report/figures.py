@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -12,13 +11,10 @@ from typing import Any
 
 from eomgen import files
 from eomgen.errors import UsageError, visible
+from eomgen.report.latex_names import Notation
 from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
 
 FORMATS = (".png", ".svg", ".pdf")
-GREEK = frozenset(
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
-    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
-)
 STYLE: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -87,16 +83,9 @@ class Picture:
         return page.getvalue()
 
 
-def mathtext(name: str) -> str:
+def mathtext(name: str, notation: Notation | None = None) -> str:
     r"""A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}."""
-    base, dots = name.rstrip("'"), len(name) - len(name.rstrip("'"))
-    head, tail = re.fullmatch(r"([^\W\d_]+|.)_*(.*)", base.strip("_") or "x", re.DOTALL).groups()  # type: ignore[union-attr]
-    letter = f"\\{head}" if head in GREEK else head if len(head) == 1 else f"\\mathrm{{{head}}}"
-    dotted = {0: letter, 1: f"\\dot{{{letter}}}", 2: f"\\ddot{{{letter}}}"}.get(dots, letter + "'" * dots)
-    below = tail.replace("_", r"\,")
-    if len(below) > 1 and not below.isdigit():
-        below = f"\\mathrm{{{below}}}"
-    return f"{dotted}_{{{below}}}" if below else dotted
+    return (notation or Notation()).latex(name).replace(r"\_", r"\ ")
 
 
 def halo() -> list[Any]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from eomgen.report.document import Document
+from eomgen.report.latex import names_in, setter_of
 from eomgen.report.quantity import Quantity
 from eomgen.report.statements import Formula, Grid, Prose, Statement, Table
 from eomgen.report.text import cell_text, formula_text, prose_text, side_text, statement_lines
@@ -26,8 +27,15 @@ def as_dict(document: Document) -> dict[str, Any]:
     entries = document.entries() or _printed(document)
     own: dict[str, Any] = {"warnings": [each.as_dict() for each in document.warnings]} if document.title else {}
     own |= {"taken": {each.name: each.as_dict() for each in document.taken}} if document.title else {}
-    own |= {"steps": steps(document)} if document.has_heads else {}
+    if document.has_heads:
+        own |= {"steps": steps(document), "symbols": symbols(document)}
     return {"schema_version": SCHEMA_VERSION, **_plain(entries), **own}
+
+
+def symbols(document: Document) -> dict[str, str]:
+    """The LaTeX of every symbol of the steps, by its name in their formulas."""
+    names, notation = names_in(document), setter_of(document).notation
+    return {name: notation.latex(name) for name in names}
 
 
 def _plain(entry: Any) -> Any:

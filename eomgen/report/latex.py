@@ -9,7 +9,7 @@ from dataclasses import replace
 from eomgen.report.document import Document
 from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
-from eomgen.report.latex_names import latex_escaped, notation, upright
+from eomgen.report.latex_names import latex_escaped
 from eomgen.report.statements import (
     Cell,
     Code,
@@ -58,6 +58,7 @@ NARROW = 45  # the same in a table of many columns
 LINE = 95  # characters of words in all columns of a table, in which a formula counts as SIDE
 SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
+_LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x",
@@ -88,11 +89,13 @@ LETTERS = {
 
 def setter_of(document: Document) -> Setter:
     """One notation for the symbols of the whole document."""
-    names: dict[str, None] = {}
-    for step in document.steps:
-        for statement in step.statements:
-            names |= dict.fromkeys(symbol.name for symbol in symbols_in(statement))
-    return Setter(notation(names))
+    return Setter(document.notation.told_apart(names_in(document)))
+
+
+def names_in(document: Document) -> tuple[str, ...]:
+    """The names of the symbols that stand in its formulas, each once."""
+    statements = (statement for step in document.steps for statement in step.statements)
+    return tuple(dict.fromkeys(symbol.name for statement in statements for symbol in symbols_in(statement)))
 
 
 def symbols_in(statement: Statement) -> list[Node]:
@@ -285,7 +288,7 @@ def _name(setter: Setter, quantity: Name) -> str:
     """x_{arm}, v_{x,arm}, Q_{theta}: a mass centre goes by the name of its body."""
     begin = LETTERS.get(quantity.letter, quantity.letter + "_{")
     inside = [] if quantity.by is None else [_symbol(setter, quantity.by)]
-    inside += [upright(quantity.of.removesuffix(".center"))] if quantity.of else []
+    inside += [setter.notation.index(quantity.of.removesuffix(".center"))] if quantity.of else []
     opened = not begin.endswith("{")
     tex = begin + ("," if opened and inside else "") + ",".join(inside) + "}"
     tex = tex.replace("_{}", "")
@@ -297,11 +300,15 @@ def _symbol(setter: Setter, symbol: Node) -> str:
 
 
 def unit_latex(unit: str) -> str:
-    """kg*m^2 with its exponents raised."""
-    pieces = re.split(r"\^\(?(-?\d+)\)?", unit)
-    return "".join(
-        f"$^{{{piece}}}$" if k % 2 else latex_escaped(piece).replace("*", r"\,") for k, piece in enumerate(pieces)
-    )
+    """kg*m^2 with its exponents raised and dots between its names."""
+    pieces = re.split(r"\^\(?(-?\d+)\)?|([⁻⁰¹²³⁴-⁹]+)", unit)
+    set_: list[str] = []
+    for k, piece in enumerate(pieces):
+        if piece and k % 3:
+            set_.append(f"$^{{{piece.translate(_LOWERED)}}}$")
+        elif piece:
+            set_.append(latex_escaped(piece.replace("*", "·")))
+    return "".join(set_)
 
 
 def value_latex(value: str) -> str:

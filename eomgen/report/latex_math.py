@@ -7,11 +7,11 @@ Loops over an explicit stack, as the printing of text does.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
-from eomgen.report.latex_names import symbol_latex
+from eomgen.report.latex_names import Notation
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
@@ -54,11 +54,11 @@ class Setter:
     """Sets graph scalars, with one notation for all of them.
 
     Args:
-        notation: the LaTeX of symbols by name; others are set by their own names.
+        notation: how names are set; None: by their own letters.
     """
 
-    def __init__(self, notation: Mapping[str, str] | None = None) -> None:
-        self.notation = notation or {}
+    def __init__(self, notation: Notation | None = None) -> None:
+        self.notation = notation or Notation()
         self._set: dict[Node, Set] = {}
         self._plans: dict[Node, list[Product]] = {}
 
@@ -145,10 +145,10 @@ class Setter:
     def _base(self, node: Node) -> Set:
         op = node.op
         if op in ("symbol", "pi"):
-            tex = r"\pi" if op == "pi" else self.notation.get(node.name) or symbol_latex(node.name)
-            return Set(tex, width_of(tex))
+            tex = r"\pi" if op == "pi" else self.notation.latex(node.name)
+            return Set(tex, width_of(tex), TALL if "^" in tex else ATOM)
         if op == "sampled":
-            tex = symbol_latex(sampled_of(node.args[1]).name)
+            tex = self.notation.latex(sampled_of(node.args[1]).name)
             return Set(tex, width_of(tex))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sqrt":

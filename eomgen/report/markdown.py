@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from eomgen.report.document import Document
 from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex, with_listings_typeset
 from eomgen.report.latex_math import Setter
+from eomgen.report.quantity import unit_text
 from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose, Statement
 
 name = "markdown"
@@ -60,13 +61,18 @@ def _piece(setter: Setter, piece: Piece) -> str:
 
 def _grid(setter: Setter, grid: Grid) -> str:
     """A table of words and formulas; a bar inside a formula would end its cell."""
-    lines = [_cells(setter, grid.head), "|" + "---|" * len(grid.head)]
-    return "\n".join([*lines, *(_cells(setter, row) for row in grid.rows)])
+    plain = [False] * len(grid.head)
+    units = [head == "unit" for head in grid.head]
+    lines = [_cells(setter, grid.head, plain), "|" + "---|" * len(grid.head)]
+    return "\n".join([*lines, *(_cells(setter, row, units) for row in grid.rows)])
 
 
-def _cells(setter: Setter, row: tuple[Cell, ...]) -> str:
+def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:
+    """The cells of a row; `units`: which of them are units, if they are words."""
     cells = (
-        markdown_escaped(cell) if isinstance(cell, str) else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
-        for cell in row
+        markdown_escaped(unit_text(cell) if unit else cell)
+        if isinstance(cell, str)
+        else f"${side_latex(setter, cell)}$".replace("|", r"\vert ")
+        for cell, unit in zip(row, units, strict=True)
     )
     return "| " + " | ".join(cells) + " |"

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POWER = re.compile(r"\^\(?(-?\d+)\)?")
+
+
+def unit_text(unit: str) -> str:
+    """A unit as it is printed: kg*m^2 as kg·m², which is read back as well."""
+    return _POWER.sub(lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,7 @@ class Quantity:
     @property
     def number(self) -> str:
         """The number with its unit, as it is printed; "" where there is none."""
-        return "" if self.value is None else f"{self.value:.10g} {self.unit or ''}".rstrip()
+        return "" if self.value is None else f"{self.value:.10g} {unit_text(self.unit or '')}".rstrip()
 
     @property
     def lines(self) -> list[str]:

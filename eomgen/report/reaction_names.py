@@ -1,8 +1,9 @@
-"""Balance -> a symbol and its meaning for every reaction: B_x, N_wall, F_floor, T_rope, M_E."""
+"""Balance -> a symbol and its meaning for every reaction: B_x, R_stick_x, N_wall, F_floor, T_rope, M_E."""
 
 from __future__ import annotations
 
-from collections.abc import Container
+import re
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 from eomgen.mechanics.balance.balance import Balance
@@ -13,14 +14,17 @@ from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
+from eomgen.model.symbols import ReactionSymbols
 from eomgen.report.statements import Meaning, Table
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.print.symbols import Symbol, index_latex
 
 LETTERS = {"n": "N", "t": "F", "s": "S", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
-"""label -> the letter of a symbol whose owner stands behind it; forces along axes have their owner in front."""
+"""label -> the letter of a symbol whose owner stands behind it."""
 
 AXES = ("x", "y", "z")
+_LETTER = re.compile(r"[A-Z]+\d*")
 HEAD = ("reaction", "meaning", "unit", "")
 
 
@@ -33,12 +37,14 @@ class Lettered:
         symbols: one for each component, in order.
         rubs: the contacts that rub.
         frictions: a symbol for the friction of each, along each direction in which it rubs.
+        declared: how they are set in LaTeX, of joints and ties that say so, by name.
     """
 
     reactions: Reactions
     symbols: tuple[Node, ...]
     rubs: tuple[Rub, ...]
     frictions: tuple[tuple[Node, ...], ...]
+    declared: Mapping[str, Symbol]
 
     @property
     def balance(self) -> Balance:
@@ -70,32 +76,90 @@ class Lettered:
 
 def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
     """A symbol for every reaction, none of them a name of the model."""
-    graph = reactions.balance.system.scope.graph
-    rubs = tuple(rubbing_contacts(reactions.balance.system, reactions.components))
+    balance = reactions.balance
+    graph = balance.system.scope.graph
+    rubs = tuple(rubbing_contacts(balance.system, reactions.components))
     used: set[str] = set()
+    declared: dict[str, Symbol] = {}
 
-    def symbol(name: str) -> Node:
+    def symbol(label: str, owner: str, more: tuple[str, ...], given: Symbol | None) -> Node:
+        name = reaction_name(label, owner, *more)
         while name in taken or name in used:
             name += "_r"
         used.add(name)
+        declared.update({} if given is None else {name: given})
         return graph.symbol(name)
 
-    symbols = tuple(symbol(_letters(reactions.balance, component)) for component in reactions.components)
-    frictions = [(rub.name, reactions.components[rub.component].friction) for rub in rubs]
-    named = tuple(tuple(symbol(f"{LETTERS[x.label]}_{name}") for x in friction) for name, friction in frictions)
-    return Lettered(reactions, symbols, rubs, named)
+    symbols = tuple(
+        symbol(c.label, _owner(balance, c), more := _more(balance, c), _declared(balance, c, c.label, more))
+        for c in reactions.components
+    )
+    frictions = [(rub.name, reactions.components[rub.component]) for rub in rubs]
+    named = tuple(
+        tuple(symbol(x.label, name, (), _declared(balance, c, x.label, ())) for x in c.friction)
+        for name, c in frictions
+    )
+    return Lettered(reactions, symbols, rubs, named, declared)
 
 
-def _letters(balance: Balance, component: Component) -> str:
-    """B_x, N_wall, T_rope_2, N_n1_n2, M_E: what the symbol is called."""
+def reaction_name(label: str, owner: str, *more: str) -> str:
+    """B_x, R_stick_x, N_wall, T_rope_2, M_E: what a reaction is called.
+
+    A force along an axis of an owner that is no letter has R before it: stick_x would be a position of the stick.
+    """
+    if label in AXES:
+        pieces = ("" if _LETTER.fullmatch(owner) else "R", owner, *more, label)
+    else:
+        pieces = (LETTERS[label.partition(" ")[0]], owner, *more)
+    return "_".join(filter(None, pieces))
+
+
+def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[str], *, alone: bool) -> Symbol | None:
+    """How a joint or a tie calls a reaction in LaTeX; None where it does not say so.
+
+    Args:
+        more: what its name has behind the owner: a side, a number.
+        alone: it is the only one there.
+    """
+    kind = label.partition(" ")[0]
+    if given is None or (given.letter is None and kind not in given.each):
+        return None
+    index = [index_latex(piece) for piece in more]
+    if kind in given.each:
+        return given.each[kind].with_index(*index)
+    assert given.letter is not None
+    if alone:
+        return given.letter
+    if label in AXES:
+        return given.letter.with_index(*index, label)
+    return Symbol(label, LETTERS[kind], ",".join([given.letter.tex, *index]))
+
+
+def _declared(balance: Balance, component: Component, label: str, more: tuple[str, ...]) -> Symbol | None:
+    """The symbol of a component, or of its friction along a direction, where its joint or tie gives one."""
+    model = balance.system.scope.model
+    part = model.constraints.get(component.owner) or getattr(model.bodies.get(component.owner), "joint", None)
+    mine = [c for c in balance.components if c.owner == component.owner and c.kind == component.kind]
+    alone = len(mine) == 1 and not component.friction
+    return None if part is None else reaction_symbol(part.symbol, label, more, alone=alone)
+
+
+def _owner(balance: Balance, component: Component) -> str:
+    """In whose name it is: of the only truss there is nobody's."""
+    if component.label != "tension" or not component.side:
+        return component.owner
+    return component.owner if len(trusses_of(balance.system.scope.model.constraints)) > 1 else ""
+
+
+def _more(balance: Balance, component: Component) -> tuple[str, ...]:
+    """What the name has behind its owner: the side of a hinge, the ends of a member, a number."""
     if component.label in AXES:
-        return "_".join(filter(None, (component.owner, component.side, component.label)))
+        return (component.side,) if component.side else ()
     kind, _, number = component.label.partition(" ")
     if kind == "tension" and component.side:
-        trusses = trusses_of(balance.system.scope.model.constraints)
-        return "_".join(("N", *([component.owner] if len(trusses) > 1 else []), *component.side.split("-")))
+        return tuple(component.side.split("-"))
     number = number or _strand(balance, component) or _couple(balance, component)
-    return "_".join(filter(None, (LETTERS[kind], component.owner, number)))
+    return (number,) if number else ()
 
 
 def _strand(balance: Balance, component: Component) -> str:

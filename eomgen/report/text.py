@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TypeGuard
 
 from eomgen.report.document import Document
+from eomgen.report.quantity import unit_text
 from eomgen.report.reading import without_cases
 from eomgen.report.statements import (
     Cell,
@@ -165,13 +166,19 @@ def cell_text(cell: Cell) -> str:
     return cell if isinstance(cell, str) else side_text(cell)
 
 
+def _cell(head: str, cell: Cell) -> str:
+    """A cell below its head."""
+    return unit_text(cell_text(cell)) if head == "unit" else cell_text(cell)
+
+
 def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
     """Columns as wide as what stands in them; one is wrapped where they do not fit beside one another.
 
     Args:
         least: the width that is left to that column.
     """
-    rows = [tuple(map(cell_text, row)) for row in (grid.head, *grid.rows)]
+    heads = tuple(map(cell_text, grid.head))
+    rows = [heads, *(tuple(map(_cell, heads, row)) for row in grid.rows)]
     if not any(rows):
         return []
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

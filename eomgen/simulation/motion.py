@@ -99,7 +99,7 @@ def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
 
 
 def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
-    """Refuses a state so far from 0 that its neighbour among doubles moves otherwise.
+    """Refuses a state so far from 0 that its neighbour among doubles moves otherwise, or is not reached in a second.
 
     Raises:
         DerivationError: the coordinate is named.
@@ -109,11 +109,14 @@ def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
         beside = x.copy()
         beside[k] += apart[k]
         rate, other = phase.rate(t, x), phase.rate(t, beside)
-        if np.max(np.abs(other - rate)) > COMPUTED * np.max(np.abs(rate)):
+        gained = np.abs(phase.rate(t, x + rate)[k]) + np.abs(rate[k])
+        if np.max(np.abs(other - rate)) > COMPUTED * np.max(np.abs(rate)) or 0 < gained < apart[k]:
             name = phase.coordinates[k]
-            where = f"'{name}' starts at {x[k]:.6g}"
-            what = f"{where}, where neighbouring doubles are {apart[k]:.3g} apart and move otherwise"
-            raise DerivationError(what, f"coordinates.{name}", "start nearer to 0, an angle less whole turns")
+            why = "farther than it moves in a second" if 0 < gained < apart[k] else "and move otherwise"
+            what = f"'{name}' starts at {x[k]:.6g}, where neighbouring doubles are {apart[k]:.3g} apart"
+            raise DerivationError(
+                f"{what} {why}", f"coordinates.{name}", "start nearer to 0, an angle less whole turns"
+            )
 
 
 def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | None:

@@ -163,3 +163,10 @@ def test_a_ball_that_spins_on_a_rubbing_table_has_small_motions_about_axes_that_
     assert oscillating == pytest.approx(expected, rel=1e-9)
     assert found.coordinates[2:] == ("turn_x_ball", "turn_y_ball", "turn_z_ball")
     assert found.certify()
+
+
+def test_a_steady_motion_is_sought_along_what_velocity_ties_integrate_to():
+    """phi = phi_0 + theta_0 - theta + 3 (sin theta_0 - sin theta) as the disc rolls; upright 1/5 + 3 sin 1/5."""
+    found = eomgen.linearize(MODELS / "rolling_disc_and_bar.toml", about="steady", coordinates=["phi"])
+    assert found.as_dict()["state"]["phi"]["value"] == pytest.approx(0.2 + 3 * np.sin(0.2), rel=1e-12)
+    assert found.certify().ok

@@ -127,7 +127,14 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
 
     The way is damped: see `symbolic.numeric.newton`.
     """
-    gaps, scale = (*gaps_of(ties), *norms_of(ties)), np.ones(len(free)) if sizes is None else sizes
+    return nearest_root((*gaps_of(ties), *norms_of(ties)), state, free, sizes)
+
+
+def nearest_root(
+    gaps: Sequence[Scalar], state: State, free: Sequence[Node], sizes: np.ndarray | None = None
+) -> State | None:
+    """The nearest state at which these vanish, as `closed`."""
+    gaps, scale = tuple(gaps), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     found = CLOSING.root(_Gaps(gaps, slopes, tuple(free), scale), state)
     return found.x if found.met else None

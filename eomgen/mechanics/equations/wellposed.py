@@ -103,7 +103,7 @@ def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
     sizes = np.diag(M)
     if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
         return False
-    return bool(np.linalg.eigvalsh(M / np.sqrt(np.outer(sizes, sizes)))[0] > RANK)
+    return bool(np.linalg.eigvalsh(M / np.outer(np.sqrt(sizes), np.sqrt(sizes)))[0] > RANK)
 
 
 def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, float] | None:

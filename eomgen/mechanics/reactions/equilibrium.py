@@ -29,7 +29,8 @@ from eomgen.model.forces.load import Couple, PointForce
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, plus, times
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50
 
 
 def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
@@ -68,6 +69,8 @@ def _of_bodies(balance: Balance, numbers: BodyNumbers, x: np.ndarray) -> str:
     wrong = np.flatnonzero(~(np.abs(total) <= COMPUTED * size))
     if not len(wrong):
         return ""
+    if COMPUTED * size[wrong[0]] < ELIMINATED_AT_50 * size.max():
+        raise NoValue("what is small is lost beside the largest force")
     e = balance.equations[wrong[0]]
     return f"body '{e.body}' is out of balance along {DIRECTIONS[e.direction]}"
 

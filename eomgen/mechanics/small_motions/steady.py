@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import closed
+from eomgen.mechanics.constraints.closure import movable, nearest_root
 from eomgen.mechanics.small_motions.field import Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, determined
 from eomgen.mechanics.small_motions.forms import floats
@@ -224,8 +224,9 @@ class Here:
         dq = floats(self.equations.P) @ step[:n]
         state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(symbols.q, dq, strict=True)}}
         state |= {symbols.u[k]: state[symbols.u[k]] + number * d for k, d in zip(self.choice.u, step[n:], strict=True)}
-        following = [symbols.q[k] for k in self.choice.dq]
-        found = closed(self.first.system.ties, state, following) if following else state
+        moved = movable(self.first.system.ties)
+        following = [q for q in (symbols.q[k] for k in self.choice.dq) if q in moved]
+        found = nearest_root(self.first.relations, state, following) if following else state
         if found is None:
             raise NoValue("the ties do not close")
         return self.at(self.first, self.choice, self._with_speeds(found))

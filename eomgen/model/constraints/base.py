@@ -13,6 +13,7 @@ from eomgen.model.findings import Finding
 from eomgen.model.forces.load import Scene
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
+from eomgen.model.symbols import ReactionSymbolsField
 from eomgen.symbolic.expression.graph import Scalar
 
 
@@ -21,7 +22,7 @@ class Constraint(Part, ABC):
     """A tie between bodies, or between coordinates.
 
     `table` is where a user declares it. `spaces` are those in which this version states its rows; elsewhere it is read,
-    checked and not derived yet.
+    checked and not derived yet. `symbol` is what its reactions are called in formulas.
     """
 
     kind: ClassVar[str]
@@ -31,6 +32,7 @@ class Constraint(Part, ABC):
     holds_ground: ClassVar[bool] = False  # its point may be one of the ground
     pulls: ClassVar[bool] = False  # a wire, which goes slack; anything else opens
     on_line: ClassVar[bool] = False  # in space it holds its point from all sides of a line
+    symbol: ReactionSymbolsField | None = None
 
     def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """What is wrong with its fields together; one alone its rule has looked at."""

@@ -17,6 +17,7 @@ from eomgen.model.joints.moves import Move
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
+from eomgen.model.symbols import ReactionSymbolsField
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
@@ -64,6 +65,7 @@ class Joint(Part):
         at: where the joint sits, parent's axes [m]; on the ground also a point's name.
         point: the point of this body that sits there; None: its origin.
         turned: fixed rotations before the joint, each about the axes that the one before left.
+        symbol: what its reactions are called in formulas, in LaTeX: A gives A_x, A_y, M_A.
     """
 
     kind: ClassVar[str]
@@ -75,6 +77,7 @@ class Joint(Part):
     at: MovingGroundPlace | None = None
     point: OwnPointName | None = None
     turned: Turns | None = None
+    symbol: ReactionSymbolsField | None = None
 
     @property
     def parent(self) -> str | None:

@@ -10,12 +10,13 @@ from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.mechanics.structures.loose_motion import motion_in_words
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.trusses import is_node
-from eomgen.report.document import Document, document_of
-from eomgen.report.reaction_names import lettered, said
+from eomgen.report.document import Document, document_of, with_symbols
+from eomgen.report.reaction_names import lettered, reaction_name, said
 from eomgen.report.setting_steps import count, data_step
 from eomgen.report.statements import Cell, Formula, Grid, Law, Statement, Step, narrow_grid, prose
 from eomgen.report.statics.work_steps import virtual_work_step
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.print.symbols import Symbol
 
 METHOD = "statics"
 SymbolsByName = Mapping[str, Node]
@@ -29,7 +30,7 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
         more: steps that follow: section forces, influence lines.
     """
     model = statics.system.scope.model
-    symbols = symbols_of_reactions(statics)
+    symbols, declared = _named(statics)
     steps = (
         data_step(statics.system),
         structure_step(statics),
@@ -39,14 +40,20 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
         *agreement_step(statics),
         *more,
     )
-    return document_of(model, METHOD, steps)
+    return with_symbols(document_of(model, METHOD, steps), declared)
 
 
 def symbols_of_reactions(statics: StaticReactions) -> dict[str, Node]:
     """A symbol for each reaction by its name: the component's where it is one, else one of its own."""
+    return _named(statics)[0]
+
+
+def _named(statics: StaticReactions) -> tuple[dict[str, Node], dict[str, Symbol]]:
+    """(a symbol for each reaction by its name, how they are set in LaTeX where that is declared)."""
     letters = lettered(statics.balance, statics.system.scope.names)
     graph, taken = statics.system.scope.graph, {*statics.system.scope.names, *letters.names}
     found: dict[str, Node] = {}
+    declared = dict(letters.declared)
     for reaction in statics.reactions:
         if reaction.named is None:
             found[reaction.name] = statics.system.symbols.unknowns[reaction.name]
@@ -55,17 +62,18 @@ def symbols_of_reactions(statics: StaticReactions) -> dict[str, Node]:
         if len(reaction.named.combination) == 1 and alone and is_zero(reaction.named.given):
             found[reaction.name] = letters.symbols[alone[0]]
         else:
-            found[reaction.name] = graph.symbol(_untaken(_letter(reaction.name), taken))
-            taken.add(found[reaction.name].name)
-    return found
+            name = _untaken(_letter(reaction.name), taken)
+            found[reaction.name] = graph.symbol(name)
+            taken.add(name)
+    return found, declared
 
 
 def _letter(name: str) -> str:
-    """reaction_x(foot) -> foot_x, reaction_couple_z(foot) -> M_foot_z"""
+    """reaction_x(foot) -> R_foot_x, reaction_couple_z(foot) -> M_foot_z"""
     kind, _, rest = name.partition("(")
-    owner = rest.removesuffix(")").replace(".", "_").replace(", ", "_").replace("-", "_")
-    parts = kind.removeprefix("reaction_").split("_")
-    return "_".join(("M", owner, *parts[1:])) if parts[0] == "couple" else "_".join((owner, *parts))
+    owner, *more = rest.removesuffix(")").replace(".", "_").replace(", ", "_").replace("-", "_").split("_")
+    what, *axes = kind.removeprefix("reaction_").split("_")
+    return reaction_name(what, owner, *more, *axes)
 
 
 def _untaken(name: str, taken: set[str]) -> str:

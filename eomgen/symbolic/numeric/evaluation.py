@@ -293,7 +293,11 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     def number(c: Number) -> Any:
         return mp.mpf(c.numerator) / c.denominator
 
-    own: dict[str, Callable[..., Any]] = {"pow": real(mp.power), "pi": lambda: +mp.pi}
+    def power(a: Any, b: Any) -> Any:
+        """a ^ b; of an exponent with no digit behind its point the power has no sure digit."""
+        return mp.nan if abs(a) != 1 and a and b and mp.mag(b) > mp.prec else mp.power(a, b)
+
+    own: dict[str, Callable[..., Any]] = {"pow": real(power), "pi": lambda: +mp.pi}
     own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
     failed = (lambda x: mp.nan) if partial else _no_value
     return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed)

@@ -18,7 +18,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 
 PRECISIONS = (30, 60, 120, 240, 480)  # digits
-VANISHED = "1e-200"  # what is smaller, as far as 480 digits can tell, is 0
+VANISHED = "1e-100"  # what is smaller, as far as 480 digits can tell, is 0: a root of a root of nothing is 1e-120 wide
 
 
 def number_of(x: Scalar, values: Mapping[Node, Scalar | float] | None = None) -> float:

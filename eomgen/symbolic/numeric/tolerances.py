@@ -52,6 +52,7 @@ MASSES_APART = 1e11  # of the least mass: beside a larger one the least is lost 
 AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
 GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
 LARGEST_AT_50 = 1e15  # [SI] a coordinate or speed: beyond it a difference with a step of 1e-15 is lost
+LARGEST_SQUARED = 1e150  # [SI] of what is multiplied in doubles: beyond it its square has no value
 COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50 digits: it is 0
 
 # Accuracy that is asked of a run in time: rtol and atol of a step.

@@ -142,10 +142,26 @@ def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
     for row, b, test in zip(system.rows, system.right, tests, strict=True):
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
-        kept = {j: x for j, x in row.items() if not is_zero(x) and abs(shadow[j]) > max(tolerance * largest, floor)}
+        least = max(tolerance * largest, floor)
+        sure = {j: x for j, x in row.items() if abs(shadow[j]) > least or _is_small(x, system.values, pivots)}
+        kept = {j: x for j, x in sure.items() if not is_zero(x)}
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
         lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
     return lines
+
+
+def _is_small(x: Scalar, values: ValuesAt, pivots: Pivots) -> bool:
+    """Whether an entry is small and not rounding: a product in which none but numbers and parameters are small."""
+    others: list[Scalar] = []
+    left = [x]
+    while left:
+        factor = left.pop()
+        if type(factor) is Node and factor.op in ("mul", "div", "neg", "sqrt"):
+            left += factor.args
+        elif type(factor) is Node and factor not in pivots.factors:
+            others.append(factor)
+    simple = all(type(y) is Node and y.op in ("symbol", "sin", "cos") for y in others)
+    return simple and all(abs(value) > pivots.tolerance for value in values(others))
 
 
 def _eliminate(
