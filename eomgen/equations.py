@@ -14,16 +14,20 @@ from eomgen.codegen.inverse import InverseDynamics
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
-from eomgen.errors import DerivationError, MissingValues
+from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.matrices import coriolis_of, gravity_of, jacobian_of_point
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.formulations import derived_by
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.small_motions.first_order import FirstOrder
+from eomgen.mechanics.small_motions.slopes import slopes_at
+from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
@@ -34,8 +38,10 @@ from eomgen.report.payload import equations_payload
 from eomgen.report.result import Result
 from eomgen.report.statements import Prose, Step
 from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import text_size
@@ -116,6 +122,80 @@ class Equations(Result):
     phi = cached_property(lambda self: tuple(None if x is None else _expression(x) for x in self.graph.phi))
     T = cached_property(lambda self: _expression(self.graph.T))
     V = cached_property(lambda self: _expression(self.graph.V))
+
+    @cached_property
+    def gravity(self) -> Any:
+        """g(q): minus the generalized forces of gravity, a column."""
+        return _column(gravity_of(self.system))
+
+    @cached_property
+    def coriolis(self) -> Any:
+        """C(q, u) with C u = c, by Christoffel's symbols: M' - 2 C is skew.
+
+        Raises:
+            DerivationError: speeds are not the rates of all coordinates, or something moves as a function of time.
+        """
+        return _matrix(coriolis_of(self.graph), len(self.speeds))
+
+    def point_jacobian(self, point: str) -> Any:
+        """J of v = J u + what moves as given, the velocity of a point in ground axes: 2 rows in the plane, 3 in space.
+
+        Raises:
+            UsageError: no such point.
+        """
+        return _matrix(jacobian_of_point(self.system, point), len(self.speeds))
+
+    def rhs_jacobian(
+        self,
+        t: float = 0.0,
+        x: Sequence[float] | None = None,
+        p: Sequence[float] | None = None,
+        inputs: Sequence[float] | None = None,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """(A, B) of dx' = A dx + B dw beside any motion: the slopes of the right-hand side in x = (q, u) and inputs.
+
+        Args:
+            x, p: None: the model's start and values.
+            inputs: None: the model's own.
+        Raises:
+            MissingValues: parameters without values.
+        """
+        s = self.graph.symbols
+        values = parameter_vector(self.model) if p is None else p
+        known: dict[Any, Any] = dict(zip((s.t, *s.parameters.values()), (t, *values), strict=True))
+        known |= dict(zip((*s.q, *s.u), self.start() if x is None else x, strict=True))
+        own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
+        return slopes_at(self._first_order, known | dict(zip(s.inputs.values(), own, strict=True)))
+
+    @cached_property
+    def _first_order(self) -> FirstOrder:
+        return FirstOrder(self.system, ())
+
+    def subs(self, values: Mapping[Any, Any] | None = None, /, **more: Any) -> Substituted:
+        """The matrices with some names replaced, all at once: equations.subs(m=2).M, equations.subs({"theta'": 0}).c.
+
+        Args:
+            values, more: numbers, sympy expressions, or texts of the grammar, by name or by symbol.
+        Raises:
+            UsageError: a name that the equations do not have.
+        """
+        return Substituted(self, {self._named(key): self._value(x) for key, x in {**(values or {}), **more}.items()})
+
+    def _named(self, key: Any) -> Any:
+        if str(key) not in self.symbols:
+            mend = nearest(str(key), self.symbols) or f"one of {', '.join(self.symbols)}"
+            raise UsageError(f"nothing is called '{key}' in the equations", mend=mend)
+        return self.symbols[str(key)]
+
+    def _value(self, given: Any) -> Any:
+        """What a name is replaced by, in sympy."""
+        import sympy
+
+        from eomgen.symbolic.print.sympy_form import to_sympy
+
+        if isinstance(given, str):
+            return to_sympy([self.system.scope.value(as_expression(given))])[0]
+        return sympy.sympify(given)
 
     @cached_property
     def derived(self) -> EquationsOfMotion:
@@ -261,7 +341,35 @@ class Equations(Result):
             return p, None
 
 
-def _matrix(rows: tuple[tuple[Any, ...], ...], columns: int) -> Any:
+MATRICES = ("N", "nu", "M", "c", "Q", "forcing", "J", "sigma", "gamma", "phi", "T", "V", "gravity", "coriolis")
+
+
+@dataclass(frozen=True)
+class Substituted:
+    """The matrices of equations of motion with some names replaced, by their own names: N, nu, M, c, Q, ...
+
+    Args:
+        equations: the equations.
+        values: what stands for each symbol.
+    """
+
+    equations: Equations
+    values: Mapping[Any, Any]
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in MATRICES:
+            raise AttributeError(f"the equations have no matrix '{name}': there are {', '.join(MATRICES)}")
+        found = getattr(self.equations, name)
+        if name == "phi":
+            return tuple(None if gap is None else gap.subs(self.values, simultaneous=True) for gap in found)
+        return found.subs(self.values, simultaneous=True)
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{symbol} = {value}" for symbol, value in self.values.items())
+        return f"<matrices of {self.equations!r}, with {said}>"
+
+
+def _matrix(rows: Sequence[Sequence[Any]], columns: int) -> Any:
     """Graph scalars as a sympy matrix: as a person writes them where they are few, else sub-expressions shared."""
     import sympy
 

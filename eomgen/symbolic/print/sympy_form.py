@@ -27,7 +27,31 @@ TRUTHS = (Relational, BooleanFunction, BooleanAtom)
 SUMS = frozenset(("add", "sub", "neg"))
 
 
-class RateSymbol(sympy.Symbol):  # type: ignore[misc]
+class NamedSymbol(sympy.Symbol):  # type: ignore[misc]
+    """A real symbol that its name replaces too: x.subs("m", 2), x.subs({"m": 2}), x.subs(sympy.Symbol("m"), 2).
+
+    sympy makes of a name a symbol of which nothing is known, which is another one than a real symbol of that name: it
+    would be found nowhere, in silence. Else it is the real symbol: sympy.Symbol("m", real=True) equals it.
+    """
+
+    __slots__ = ()
+
+    def _eval_subs(self, old: Any, new: Any) -> Any:
+        return new if isinstance(old, sympy.Symbol) and old.name == self.name else None
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, sympy.Symbol):
+            return bool(self._hashable_content() == other._hashable_content())
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((sympy.Symbol.__name__, *self._hashable_content()))
+
+
+NamedSymbol.__name__ = sympy.Symbol.__name__  # sympy sorts factors and summands by the names of their classes
+
+
+class RateSymbol(NamedSymbol):
     """The symbol of a derivative: theta' is printed with a dot, theta'' with two."""
 
     __slots__ = ()
@@ -42,7 +66,7 @@ class RateSymbol(sympy.Symbol):  # type: ignore[misc]
 
 def symbol(name: str) -> sympy.Symbol:
     """The real sympy symbol of a name; a Rate where the name has a prime."""
-    return (RateSymbol if name.endswith("'") else sympy.Symbol)(name, real=True)
+    return (RateSymbol if name.endswith("'") else NamedSymbol)(name, real=True)
 
 
 def to_sympy(outputs: Iterable[Scalar]) -> list[sympy.Expr]:
